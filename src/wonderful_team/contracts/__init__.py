@@ -1,0 +1,121 @@
+"""The closed set of questions that a model can be asked: one file each, input and answer types together."""
+
+from wonderful_team.contracts.choose_mark import ChooseMark, MarkChoice
+from wonderful_team.contracts.choose_point import ChoosePoint, PointChoice
+from wonderful_team.contracts.draft_plan import DraftPlan
+from wonderful_team.contracts.extract_targets import ExtractTargets, SubgoalTargets, TargetList
+from wonderful_team.contracts.give_box import BoxAnswer, GiveBox
+from wonderful_team.contracts.judge_box import BoxVerdict, JudgeBox
+from wonderful_team.contracts.judge_outcome import JudgeOutcome, Outcome, VerdictDraft
+from wonderful_team.contracts.judge_revision import JudgeRevision, RevisionVerdict
+from wonderful_team.contracts.locate_points import LocatePoints, Points
+from wonderful_team.contracts.move_box import BoxMove, MoveBox
+from wonderful_team.contracts.plans import ClarificationDraft, PlanDraft, SubgoalDraft, TargetDraft
+from wonderful_team.contracts.presence import EdgePresence, Presence, PresenceAnswer, Strip
+from wonderful_team.contracts.read_scene import ReadScene, RolePoint, SceneReading, SceneTarget
+from wonderful_team.contracts.remember import MemoryEntry, Remember
+from wonderful_team.contracts.replan import Advice, Replan
+from wonderful_team.contracts.review_path import PathReview, ReviewPath
+from wonderful_team.contracts.review_plan import DoubtDraft, PlanReview, ReviewPlan
+from wonderful_team.contracts.review_steps import ReviewSteps
+from wonderful_team.contracts.revise_plan import PlanRevision, RevisePlan
+from wonderful_team.contracts.shown import (
+    EDGES,
+    AnswerModel,
+    BoxPx,
+    Edge,
+    PointPx,
+    Question,
+    ShownSlot,
+    ShownTask,
+)
+from wonderful_team.contracts.steps import PickPlaceDraft, PlaceDraft, StepList, step_list_type
+from wonderful_team.contracts.write_function import FunctionCode, WriteFunction
+from wonderful_team.contracts.write_steps import WriteSteps
+
+QUESTIONS: tuple[type[Question], ...] = (
+    DraftPlan,
+    ReviewPlan,
+    RevisePlan,
+    ExtractTargets,
+    LocatePoints,
+    ChooseMark,
+    GiveBox,
+    ReadScene,
+    Presence,
+    JudgeBox,
+    JudgeRevision,
+    MoveBox,
+    ChoosePoint,
+    WriteSteps,
+    ReviewSteps,
+    WriteFunction,
+    ReviewPath,
+    Remember,
+    JudgeOutcome,
+    Replan,
+)
+
+__all__ = [
+    "EDGES",
+    "QUESTIONS",
+    "Advice",
+    "AnswerModel",
+    "BoxAnswer",
+    "BoxMove",
+    "BoxPx",
+    "BoxVerdict",
+    "ChooseMark",
+    "ChoosePoint",
+    "ClarificationDraft",
+    "DoubtDraft",
+    "DraftPlan",
+    "Edge",
+    "EdgePresence",
+    "ExtractTargets",
+    "FunctionCode",
+    "GiveBox",
+    "JudgeBox",
+    "JudgeOutcome",
+    "JudgeRevision",
+    "LocatePoints",
+    "MarkChoice",
+    "MemoryEntry",
+    "MoveBox",
+    "Outcome",
+    "PathReview",
+    "PickPlaceDraft",
+    "PlaceDraft",
+    "PlanDraft",
+    "PlanReview",
+    "PlanRevision",
+    "PointChoice",
+    "PointPx",
+    "Points",
+    "Presence",
+    "PresenceAnswer",
+    "Question",
+    "ReadScene",
+    "Remember",
+    "Replan",
+    "ReviewPath",
+    "ReviewPlan",
+    "ReviewSteps",
+    "RevisePlan",
+    "RevisionVerdict",
+    "RolePoint",
+    "SceneReading",
+    "SceneTarget",
+    "ShownSlot",
+    "ShownTask",
+    "StepList",
+    "Strip",
+    "SubgoalDraft",
+    "SubgoalTargets",
+    "TargetDraft",
+    "TargetList",
+    "VerdictDraft",
+    "WriteFunction",
+    "WriteSteps",
+    "step_list_type",
+]

@@ -1,0 +1,32 @@
+"""DraftPlan: write a plan of qualitative subgoals."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from wonderful_team.contracts.plans import PlanDraft, check_plan
+from wonderful_team.contracts.shown import AnswerModel, Question, ShownTask
+
+
+@dataclass(frozen=True, eq=False)
+class DraftPlan(Question):
+    """Asked of the Supervisor.
+
+    Attributes:
+        step_kinds: What the robot can do; the plan must be possible with these alone.
+        with_targets: Targets are written with the draft (`lean`); else the lists stay empty (`paper`).
+        advice: What went wrong before: from the Replanner, or targets that were not found.
+    """
+
+    task: ShownTask
+    step_kinds: tuple[str, ...]
+    with_targets: bool
+    advice: tuple[str, ...] = ()
+
+    def output(self) -> type[AnswerModel]:
+        return PlanDraft
+
+    def settle(self, answer: Any) -> tuple[Any, tuple[str, ...]]:
+        check_plan(answer, self.task.slot_names, self.with_targets)
+        return answer, ()

@@ -1,0 +1,106 @@
+"""Pieces of a plan as models write them, and their way into the frozen types."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Literal
+
+from pydantic import Field
+
+from wonderful_team.contracts.shown import AnswerModel, Reasoning, known, unique
+from wonderful_team.types import PointRole, Subgoal, Target
+
+
+class TargetDraft(AnswerModel):
+    """Something the plan needs to find in the main view."""
+
+    id: str = Field(description="T1, T2, ... in order of use.")
+    kind: Literal["object", "area"] = Field(description="object: has an outline; area: free space or a region.")
+    words: str = Field(description="What it is, so that somebody who sees only the picture finds it.", min_length=1)
+    part: str | None = Field(description="The part that matters, such as the handle; null for the whole.")
+    where: str = Field(description="How it stands to other things; empty when the words suffice.")
+    like: list[str] = Field(description="Names of the instruction's pictures that show it; empty for none.")
+    use: list[PointRole] = Field(description="What its points are for.")
+
+    def to_target(self) -> Target:
+        source: Literal["scene", "slot"] = "slot" if self.like else "scene"
+        return Target(
+            self.id,
+            self.kind,
+            self.words,
+            self.part,
+            self.where,
+            source,
+            tuple(self.like),
+            tuple(dict.fromkeys(self.use)),
+        )
+
+
+class SubgoalDraft(AnswerModel):
+    """One qualitative goal: no coordinates."""
+
+    id: str = Field(description="G1, G2, ... in order of execution.")
+    text: str = Field(min_length=1)
+    after: list[str] = Field(description="Ids of subgoals that must be reached first.")
+    targets: list[str] = Field(description="Ids of the targets it needs; empty when targets are extracted later.")
+    function: str | None = Field(description="What a helper function should compute (a path), or null.")
+
+    def to_subgoal(self) -> Subgoal:
+        return Subgoal(self.id, self.text, tuple(self.after), tuple(self.targets), self.function)
+
+
+class ClarificationDraft(AnswerModel):
+    """Asked only when neither picture nor instruction settles what is meant."""
+
+    question: str = Field(min_length=1)
+    choices: list[str]
+
+
+class PlanDraft(AnswerModel):
+    """A plan as the Supervisor writes it."""
+
+    reasoning: str = Reasoning
+    subgoals: list[SubgoalDraft] = Field(description="Empty only when the instruction is already fulfilled.")
+    targets: list[TargetDraft]
+    mode: Literal["full", "one_step"] = Field(
+        description="How it should be checked. full: subgoal after subgoal; one_step: the whole plan at once."
+    )
+    clarification: ClarificationDraft | None
+
+    def to_subgoals(self) -> tuple[Subgoal, ...]:
+        return tuple(draft.to_subgoal() for draft in self.subgoals)
+
+    def to_targets(self) -> tuple[Target, ...]:
+        return tuple(draft.to_target() for draft in self.targets)
+
+
+def check_subgoals(subgoals: Sequence[SubgoalDraft], target_ids: Sequence[str] | None) -> None:
+    """Raise ValueError when ids repeat, refer to nothing, or order themselves in a circle."""
+    ids = [draft.id for draft in subgoals]
+    unique(ids, "subgoal ids")
+    for position, draft in enumerate(subgoals):
+        known(draft.after, ids, f"subgoal in 'after' of {draft.id}")
+        late = [name for name in draft.after if ids.index(name) >= position]
+        if late:
+            raise ValueError(f"subgoal {draft.id} stands before {', '.join(late)}, which it says must come first")
+        if target_ids is not None:
+            known(draft.targets, target_ids, f"target of subgoal {draft.id}")
+
+
+def check_targets(targets: Sequence[TargetDraft], slot_names: Sequence[str]) -> None:
+    """Raise ValueError when ids repeat or refer to pictures that the instruction does not have."""
+    unique([draft.id for draft in targets], "target ids")
+    for draft in targets:
+        known(draft.like, slot_names, f"picture in 'like' of {draft.id}")
+
+
+def check_plan(draft: PlanDraft, slot_names: Sequence[str], with_targets: bool) -> None:
+    """Raise ValueError when a draft does not hang together."""
+    if draft.clarification is not None:
+        return
+    check_targets(draft.targets, slot_names)
+    check_subgoals(draft.subgoals, [target.id for target in draft.targets] if with_targets else None)
+    if with_targets:
+        for subgoal in draft.subgoals:
+            if not subgoal.targets:
+                raise ValueError(f"subgoal {subgoal.id} names no target")

@@ -1,0 +1,36 @@
+"""ReviewPath: does the drawn path do what the subgoal asks?"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from pydantic import Field
+
+from wonderful_team.contracts.shown import AnswerModel, Question, Reasoning
+from wonderful_team.pictures import Picture
+from wonderful_team.types import Subgoal
+
+
+class PathReview(AnswerModel):
+    """A word on a path."""
+
+    reasoning: str = Reasoning
+    accepted: bool
+    problem: str = Field(description="What is wrong, in one sentence; empty when accepted.")
+
+
+@dataclass(frozen=True, eq=False)
+class ReviewPath(Question):
+    """Asked of the Supervisor after a helper function ran. `view` carries the path as a PathMark."""
+
+    subgoal: Subgoal
+    view: Picture
+
+    def output(self) -> type[AnswerModel]:
+        return PathReview
+
+    def settle(self, answer: Any) -> tuple[Any, tuple[str, ...]]:
+        if answer.accepted == bool(answer.problem):
+            raise ValueError("problem must be empty exactly when accepted is true")
+        return answer, ()

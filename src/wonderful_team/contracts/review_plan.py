@@ -1,0 +1,61 @@
+"""ReviewPlan: approve a plan (or one subgoal of it), or raise one doubt about one subgoal."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Literal
+
+from pydantic import Field
+
+from wonderful_team.contracts.shown import AnswerModel, Question, Reasoning, ShownTask, known
+from wonderful_team.types import Subgoal, Target
+
+
+class DoubtDraft(AnswerModel):
+    """One question about one subgoal or step."""
+
+    about: str = Field(description="Id of the subgoal (or number of the step) in doubt.")
+    kind: Literal[
+        "collision", "physical_constraint", "missing_prerequisite", "ambiguity", "needless_step", "wrong_target"
+    ]
+    question: str = Field(min_length=1)
+
+
+class PlanReview(AnswerModel):
+    """Verification's word."""
+
+    reasoning: str = Reasoning
+    approved: bool
+    doubt: DoubtDraft | None = Field(description="Null exactly when approved.")
+
+
+@dataclass(frozen=True, eq=False)
+class ReviewPlan(Question):
+    """Asked of Verification.
+
+    Attributes:
+        under_check: Id of the subgoal to check now (`full`), or None for the whole plan (`one_step`).
+        checked: What was checked or asked before, one line each, so that nothing is asked twice.
+    """
+
+    task: ShownTask
+    step_kinds: tuple[str, ...]
+    subgoals: tuple[Subgoal, ...]
+    targets: tuple[Target, ...]
+    under_check: str | None = None
+    checked: tuple[str, ...] = ()
+
+    def output(self) -> type[AnswerModel]:
+        return PlanReview
+
+    def settle(self, answer: Any) -> tuple[Any, tuple[str, ...]]:
+        check_review(answer, [subgoal.id for subgoal in self.subgoals] or ["plan"], "subgoal")
+        return answer, ()
+
+
+def check_review(answer: PlanReview, ids: list[str], what: str) -> None:
+    """Raise ValueError when approval and doubt contradict each other, or the doubt is about nothing."""
+    if answer.approved == (answer.doubt is not None):
+        raise ValueError("doubt must be null exactly when approved is true")
+    if answer.doubt is not None:
+        known([answer.doubt.about], ids, what)

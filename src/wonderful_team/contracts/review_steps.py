@@ -1,0 +1,35 @@
+"""ReviewSteps: approve the steps, or raise one doubt about one of them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from wonderful_team.actions import Step
+from wonderful_team.contracts.review_plan import PlanReview, check_review
+from wonderful_team.contracts.shown import AnswerModel, Question, ShownTask
+from wonderful_team.pictures import Picture
+from wonderful_team.types import Subgoal, Target
+
+
+@dataclass(frozen=True, eq=False)
+class ReviewSteps(Question):
+    """Asked of Verification. A doubt's `about` is the number of the step, from 1.
+
+    Attributes:
+        overview: The main view with every target's box and label, and the steps as numbered arrows.
+    """
+
+    task: ShownTask
+    subgoals: tuple[Subgoal, ...]
+    targets: tuple[Target, ...]
+    steps: tuple[Step, ...]
+    overview: Picture
+    checked: tuple[str, ...] = ()
+
+    def output(self) -> type[AnswerModel]:
+        return PlanReview
+
+    def settle(self, answer: Any) -> tuple[Any, tuple[str, ...]]:
+        check_review(answer, [str(number) for number in range(1, len(self.steps) + 1)], "step")
+        return answer, ()

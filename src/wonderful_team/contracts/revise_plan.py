@@ -1,0 +1,43 @@
+"""RevisePlan: answer a doubt: change the plan, or say why it stands."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Literal
+
+from pydantic import Field
+
+from wonderful_team.contracts.plans import PlanDraft, check_plan
+from wonderful_team.contracts.shown import AnswerModel, Question, Reasoning, ShownTask
+from wonderful_team.types import Doubt, Subgoal, Target
+
+
+class PlanRevision(AnswerModel):
+    """The Supervisor's reply to a doubt."""
+
+    reasoning: str = Reasoning
+    decision: Literal["revise", "keep"]
+    answer: str = Field(description="One or two sentences for Verification.", min_length=1)
+    plan: PlanDraft | None = Field(description="The whole new plan when the decision is revise; else null.")
+
+
+@dataclass(frozen=True, eq=False)
+class RevisePlan(Question):
+    """Asked of the Supervisor after a doubt."""
+
+    task: ShownTask
+    step_kinds: tuple[str, ...]
+    subgoals: tuple[Subgoal, ...]
+    targets: tuple[Target, ...]
+    doubt: Doubt
+    with_targets: bool
+
+    def output(self) -> type[AnswerModel]:
+        return PlanRevision
+
+    def settle(self, answer: Any) -> tuple[Any, tuple[str, ...]]:
+        if (answer.decision == "revise") != (answer.plan is not None):
+            raise ValueError("plan must be given exactly when the decision is revise")
+        if answer.plan is not None:
+            check_plan(answer.plan, self.task.slot_names, self.with_targets)
+        return answer, ()

@@ -1,0 +1,156 @@
+"""What questions share: the task as it is shown, and the typed pieces that answers are made of.
+
+A question holds nothing that is not shown: an agent renders every field into words or pictures.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import Any, ClassVar, Literal, TypeAlias
+
+from pydantic import BaseModel, ConfigDict, Field, FiniteFloat
+
+from wonderful_team.geometry import Box
+from wonderful_team.pictures import Picture, Point
+from wonderful_team.types import SlotKind
+
+OVERSHOOT = 0.02
+"""How far past a picture's side a coordinate may lie and still be clamped (share of that side)."""
+
+Edge: TypeAlias = Literal["left", "top", "right", "bottom"]
+EDGES: tuple[Edge, ...] = ("left", "top", "right", "bottom")
+
+
+class AnswerModel(BaseModel):
+    """Base of every answer: unknown fields are refused."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+class PointPx(AnswerModel):
+    """A point in pixels of the picture shown: x right, y down, from its top-left corner."""
+
+    x: FiniteFloat
+    y: FiniteFloat
+
+    @property
+    def as_tuple(self) -> Point:
+        return self.x, self.y
+
+
+class BoxPx(AnswerModel):
+    """A box in pixels of the picture shown: left, top, right, bottom edge."""
+
+    x0: FiniteFloat
+    y0: FiniteFloat
+    x1: FiniteFloat
+    y1: FiniteFloat
+
+    @property
+    def as_box(self) -> Box:
+        """Raises ValueError when the edges are in the wrong order."""
+        return Box(self.x0, self.y0, self.x1, self.y1)
+
+
+@dataclass(frozen=True, eq=False)
+class ShownSlot:
+    """One of the instruction's pictures, as shown."""
+
+    name: str
+    kind: SlotKind
+    pictures: tuple[Picture, ...]
+    index: int | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class ShownTask:
+    """The instruction with its pictures, and the views of the scene; the first view is the main one."""
+
+    instruction: str
+    views: tuple[Picture, ...]
+    slots: tuple[ShownSlot, ...] = ()
+
+    @property
+    def main(self) -> Picture:
+        return self.views[0]
+
+    @property
+    def slot_names(self) -> tuple[str, ...]:
+        return tuple(slot.name for slot in self.slots)
+
+
+class Question:
+    """Base of all questions. Subclasses are frozen dataclasses."""
+
+    contract: ClassVar[str]
+
+    def __init_subclass__(cls) -> None:
+        cls.contract = cls.__name__
+
+    def output(self) -> type[AnswerModel]:
+        """The type of a right answer to this very question."""
+        raise NotImplementedError
+
+    def settle(self, answer: Any) -> tuple[Any, tuple[str, ...]]:
+        """Check what the schema cannot, and clamp small overshoots.
+
+        Returns:
+            The answer, perhaps clamped, and what was mended, in words.
+
+        Raises:
+            ValueError: The answer does not fit the question; the text goes back to the model.
+        """
+        return answer, ()
+
+
+def settle_point(point: PointPx, picture: Picture) -> tuple[PointPx, tuple[str, ...]]:
+    """Clamp an overshoot of at most 2 % of a side; refuse more."""
+    x, y = (
+        _clamp(value, side, name, picture.name)
+        for value, side, name in zip(point.as_tuple, picture.size_px, ("x", "y"), strict=True)
+    )
+    if (x, y) == point.as_tuple:
+        return point, ()
+    return PointPx(x=x, y=y), (f"point {point.as_tuple} clamped to ({x:.0f}, {y:.0f}) in {picture.name}",)
+
+
+def settle_box(box: BoxPx, picture: Picture) -> tuple[BoxPx, tuple[str, ...]]:
+    """Like settle_point, for the four edges; the edges must be in order and enclose something."""
+    width, height = picture.size_px
+    values = (
+        _clamp(box.x0, width, "x0", picture.name),
+        _clamp(box.y0, height, "y0", picture.name),
+        _clamp(box.x1, width, "x1", picture.name),
+        _clamp(box.y1, height, "y1", picture.name),
+    )
+    settled = BoxPx(x0=values[0], y0=values[1], x1=values[2], y1=values[3])
+    if settled.x0 >= settled.x1 or settled.y0 >= settled.y1:
+        raise ValueError(f"box {values}: x0 must be less than x1 and y0 less than y1")
+    if settled == box:
+        return box, ()
+    return settled, (f"box clamped to {tuple(round(v) for v in values)} in {picture.name}",)
+
+
+def _clamp(value: float, side: int, name: str, where: str) -> float:
+    slack = OVERSHOOT * side
+    if not -slack <= value <= side + slack:
+        raise ValueError(f"{name} = {value:g} lies outside {where}, which spans 0 to {side} px")
+    return min(max(value, 0.0), float(side))
+
+
+def known(names: Iterable[str], allowed: Sequence[str], what: str) -> None:
+    """Raise ValueError for names that do not exist, listing those that do."""
+    wrong = [name for name in names if name not in allowed]
+    if wrong:
+        raise ValueError(f"unknown {what} {', '.join(map(repr, wrong))}; valid: {', '.join(allowed) or 'none'}")
+
+
+def unique(names: Sequence[str], what: str) -> None:
+    """Raise ValueError when a name occurs twice."""
+    twice = sorted({name for name in names if names.count(name) > 1})
+    if twice:
+        raise ValueError(f"{what} must be unique; these occur twice: {', '.join(twice)}")
+
+
+Reasoning = Field(description="Short: what in the picture or the words decides this.")

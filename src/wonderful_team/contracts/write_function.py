@@ -1,0 +1,48 @@
+"""WriteFunction: write a small Python function that computes a path from boxes and points."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from pydantic import Field
+
+from wonderful_team.contracts.shown import AnswerModel, Question, Reasoning
+from wonderful_team.geometry import Box
+from wonderful_team.pictures import Picture
+from wonderful_team.types import Subgoal
+
+MAX_POINTS = 20
+"""Most points a helper function may return (DESIGN, bounds)."""
+
+
+class FunctionCode(AnswerModel):
+    """Python source that defines `path(boxes)`."""
+
+    reasoning: str = Reasoning
+    code: str = Field(
+        description="Defines path(boxes), which returns a list of (x, y) in pixels of the picture; "
+        "boxes maps a target id to (x0, y0, x1, y1). Only `math` may be imported.",
+        min_length=1,
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class WriteFunction(Question):
+    """Asked of the Supervisor.
+
+    Attributes:
+        boxes: Boxes of the subgoal's targets in pixels of `view`, also drawn there.
+        error: What went wrong with the last version: an exception, a bound, or what the review saw; "" at first.
+        last_code: The last version; "" at first.
+    """
+
+    subgoal: Subgoal
+    view: Picture
+    boxes: Mapping[str, Box] = field(default_factory=dict)
+    error: str = ""
+    last_code: str = ""
+    max_points: int = MAX_POINTS
+
+    def output(self) -> type[AnswerModel]:
+        return FunctionCode

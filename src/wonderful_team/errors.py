@@ -1,0 +1,136 @@
+"""Errors sorted by whose fault they are, because fault decides what happens next and how a trial is counted.
+
+Every class carries the exit code of the command line and, for failures of a method, the stage at which it failed.
+Messages name the value, the limit and what would be valid; they are built here where the shape repeats.
+"""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable
+from typing import ClassVar
+
+
+class WonderfulTeamError(Exception):
+    """Base of every error that this package raises on purpose."""
+
+    exit_code: ClassVar[int] = 1
+    stage: str | None = None
+
+    def __init__(self, message: str, *, stage: str | None = None) -> None:
+        super().__init__(message)
+        if stage is not None:
+            self.stage = stage
+
+
+class ConfigError(WonderfulTeamError):
+    """Wrong use or configuration; raised before anything is touched."""
+
+    exit_code = 2
+
+
+class UnknownNameError(ConfigError):
+    """A name that is not registered; lists the known ones and the nearest."""
+
+    def __init__(self, kind: str, name: str, known: Iterable[str]) -> None:
+        names = sorted(known)
+        near = difflib.get_close_matches(name, names, n=1)
+        hint = f" Did you mean {near[0]!r}?" if near else ""
+        super().__init__(f"unknown {kind} {name!r}.{hint} Known: {', '.join(names) or 'none'}")
+
+
+class MissingExtraError(ConfigError):
+    """An optional dependency is not installed; names the exact command that brings it."""
+
+    def __init__(self, feature: str, extra: str) -> None:
+        super().__init__(f"{feature} needs an optional part: pip install 'wonderful-team[{extra}]'")
+
+
+class BadPictureError(ConfigError):
+    """A picture file or array that cannot be used; says why."""
+
+
+class MissingDepthError(ConfigError):
+    """Metres were asked for where no depth is known; names the pixels."""
+
+
+class ModelUnavailableError(WonderfulTeamError):
+    """The provider did not answer; the trial is an error, never the method's failure."""
+
+    exit_code = 3
+
+
+class ModelOutputError(WonderfulTeamError):
+    """A model kept answering outside the contract after every allowed attempt."""
+
+
+class UnsupportedQuestion(ModelOutputError):  # noqa: N818  the name says what it is
+    """A model was asked a kind of question that it cannot answer."""
+
+    def __init__(self, model: str, contract: str, why: str = "") -> None:
+        super().__init__(f"model {model!r} cannot answer {contract}" + (f": {why}" if why else ""))
+        self.contract = contract
+
+
+class PlanError(WonderfulTeamError):
+    """No acceptable plan came out of the team."""
+
+    stage = "plan"
+
+
+class NotFoundError(WonderfulTeamError):
+    """A target is not in the picture, or could not be grounded within the bounds."""
+
+    stage = "grounding"
+
+
+class ActionRefusedError(WonderfulTeamError):
+    """The safety gate refused; `reasons` holds all of them at once."""
+
+    exit_code = 4
+    stage = "gate"
+
+    def __init__(self, reasons: Iterable[str]) -> None:
+        self.reasons = tuple(reasons)
+        super().__init__("refused by the safety gate: " + "; ".join(self.reasons))
+
+
+class BudgetReached(WonderfulTeamError):  # noqa: N818
+    """A cap on calls, tokens, seconds or money was met before a request was sent; the best so far is kept."""
+
+    exit_code = 5
+    stage = "budget"
+
+
+class RobotFaultError(WonderfulTeamError):
+    """The robot reported a fault while something moved; the run halts and a person looks."""
+
+    exit_code = 6
+    stage = "execution"
+
+
+class SafetyStopError(WonderfulTeamError):
+    """Motion was stopped for safety; the run halts and a person looks."""
+
+    exit_code = 6
+    stage = "execution"
+
+
+class NotUnderstoodError(WonderfulTeamError):
+    """A model says which words it used and which it does not know, instead of guessing."""
+
+    exit_code = 7
+    stage = "plan"
+
+
+class NeedsClarification(WonderfulTeamError):  # noqa: N818
+    """Neither picture nor instruction settles what is meant; holds the question and the choices."""
+
+    exit_code = 7
+    stage = "plan"
+
+    def __init__(self, question: str, choices: Iterable[str]) -> None:
+        self.question = question
+        self.choices = tuple(choices)
+        listed = f" Choices: {' | '.join(self.choices)}" if self.choices else ""
+        super().__init__(f"needs clarification: {question}{listed}")

@@ -1,0 +1,82 @@
+"""Poses in the robot base frame. Angles are radians inside; quaternions are wxyz."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from wonderful_team.geometry.arrays import Array, as_points, frozen_array
+
+
+def wrap_angle(angle_rad: float) -> float:
+    """The same angle in (-pi, pi]."""
+    wrapped = math.remainder(angle_rad, 2 * math.pi)
+    return math.pi if wrapped == -math.pi else wrapped
+
+
+@dataclass(frozen=True, eq=False)
+class Pose:
+    """A rigid pose.
+
+    Attributes:
+        position_m: Shape (3,) [m].
+        quaternion_wxyz: Unit quaternion, shape (4,); normalised when built.
+    """
+
+    position_m: Array
+    quaternion_wxyz: Array
+
+    def __post_init__(self) -> None:
+        quaternion = np.asarray(self.quaternion_wxyz, dtype=np.float64)
+        norm = float(np.linalg.norm(quaternion))
+        if norm < 1e-9:
+            raise ValueError("quaternion_wxyz: length must not be zero")
+        object.__setattr__(self, "position_m", frozen_array(self.position_m, (3,), "position_m"))
+        object.__setattr__(self, "quaternion_wxyz", frozen_array(quaternion / norm, (4,), "quaternion_wxyz"))
+
+    @classmethod
+    def at(cls, position_m: ArrayLike, yaw_rad: float = 0.0) -> Pose:
+        """A pose turned by `yaw_rad` about the vertical axis."""
+        return cls(np.asarray(position_m), np.array([math.cos(yaw_rad / 2), 0, 0, math.sin(yaw_rad / 2)]))
+
+    @property
+    def rotation(self) -> Array:
+        """Rotation matrix, shape (3, 3)."""
+        w, x, y, z = self.quaternion_wxyz
+        return np.array(
+            [
+                [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+                [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+                [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
+            ]
+        )
+
+    @property
+    def yaw_rad(self) -> float:
+        """Heading of the x axis about the vertical, counter-clockwise from above, in (-pi, pi]."""
+        matrix = self.rotation
+        return math.atan2(matrix[1, 0], matrix[0, 0])
+
+    def apply(self, points_m: ArrayLike) -> Array:
+        """Points given in this pose's frame, in its parent's frame, shape (N, 3)."""
+        return np.asarray(as_points(points_m, 3, "points_m") @ self.rotation.T + self.position_m)
+
+    def inverse(self) -> Pose:
+        w, x, y, z = self.quaternion_wxyz
+        return Pose(-self.rotation.T @ self.position_m, np.array([w, -x, -y, -z]))
+
+    def __matmul__(self, other: Pose) -> Pose:
+        w1, x1, y1, z1 = self.quaternion_wxyz
+        w2, x2, y2, z2 = other.quaternion_wxyz
+        product = np.array(
+            [
+                w1 * w2 - x1 * x2 - y1 * y2 - z1 * z2,
+                w1 * x2 + x1 * w2 + y1 * z2 - z1 * y2,
+                w1 * y2 - x1 * z2 + y1 * w2 + z1 * x2,
+                w1 * z2 + x1 * y2 - y1 * x2 + z1 * w2,
+            ]
+        )
+        return Pose(self.apply(other.position_m)[0], product)

@@ -1,0 +1,176 @@
+"""What outsiders implement: models, worlds, methods, detectors. Plain protocols: nothing to inherit from."""
+
+from __future__ import annotations
+
+from collections.abc import Awaitable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Protocol, TypeAlias, runtime_checkable
+
+from wonderful_team.actions import Action, Vocabulary
+from wonderful_team.types import (
+    Answer,
+    GateReport,
+    Instruction,
+    Limits,
+    Observation,
+    Plan,
+    PlannedAction,
+    Request,
+    StepReport,
+    SubgoalRun,
+    Verdict,
+)
+
+
+@runtime_checkable
+class Model(Protocol):
+    """Anything that answers requests. May return an Answer, a value of `request.output`, a dict, or JSON text;
+    may be a plain or an async function.
+    """
+
+    def answer(self, request: Request) -> Any | Awaitable[Any]: ...
+
+
+@runtime_checkable
+class World(Protocol):
+    """A robot or a simulator with one task set up in it."""
+
+    vocabulary: Vocabulary
+    limits: Limits
+    instruction: Instruction
+
+    def observe(self) -> Observation: ...
+
+    def execute(self, action: Action) -> StepReport: ...
+
+    def stop(self) -> None: ...
+
+    def close(self) -> None: ...
+
+
+@dataclass(frozen=True)
+class Score:
+    """A scorer's word: success, failure, or None when it could not judge."""
+
+    success: bool | None
+    stage: str | None = None
+    reason: str = ""
+
+
+@runtime_checkable
+class Privileged(Protocol):
+    """Truth of a simulator. Handed by the registry to scorers and simulated models only, never to a planner."""
+
+    def score(self) -> Score: ...
+
+    def truth(self) -> Mapping[str, Any]:
+        """True state for scorers, simulated models and the stage of a failure."""
+        ...
+
+    def oracle(self) -> Sequence[Action]:
+        """Actions that solve the scene from here."""
+        ...
+
+
+@dataclass(frozen=True, eq=False)
+class Situation:
+    """What a method is told each time it is asked what to do.
+
+    Attributes:
+        attempt: 0 for the first plan, then one more per replan.
+        executed: What ran since the last question, subgoal by subgoal.
+        refused: The gate's report when the last answer was refused.
+        plan: A plan that was read and approved beforehand and must be run as it is.
+    """
+
+    observation: Observation
+    instruction: Instruction
+    vocabulary: Vocabulary
+    limits: Limits
+    attempt: int = 0
+    replans_left: int = 0
+    executed: tuple[SubgoalRun, ...] = ()
+    refused: GateReport | None = None
+    plan: Plan | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Act:
+    """Run these actions. `plan` lets the gate check hash, picture and approval, and the page tell the story."""
+
+    actions: tuple[PlannedAction, ...]
+    plan: Plan | None = None
+    verdicts: tuple[Verdict, ...] = ()
+
+
+@dataclass(frozen=True)
+class Done:
+    """The method believes the instruction is fulfilled."""
+
+    reason: str = ""
+    verdicts: tuple[Verdict, ...] = ()
+
+
+@dataclass(frozen=True)
+class GaveUp:
+    """The method stops without success, with the stage at which it failed."""
+
+    reason: str
+    stage: str
+    plan: Plan | None = None
+    verdicts: tuple[Verdict, ...] = ()
+
+
+Decision: TypeAlias = Act | Done | GaveUp
+
+
+@runtime_checkable
+class Policy(Protocol):
+    """A method: observation and instruction to actions. The Team is one; rivals and learned policies are others.
+
+    `decide` may be plain or async.
+    """
+
+    name: str
+
+    def decide(self, situation: Situation) -> Decision | Awaitable[Decision]: ...
+
+
+class Subscriber(Protocol):
+    """Told of everything that happens, in order; the recorder and the progress line are two."""
+
+    def on_event(self, event: Event) -> None: ...
+
+
+@dataclass(frozen=True, eq=False)
+class Event:
+    """Something that happened.
+
+    Attributes:
+        kind: request | answer | invalid | stage | decision | observe | gate | execute | verdict | warning | done.
+        name: Which one, such as the request's id or the stage's name.
+        content: The value itself (a Request, an Answer, a Plan, a GateReport, …) or a small mapping.
+        round: Number of waiting rounds on the main line so far, where known.
+    """
+
+    kind: str
+    name: str
+    content: Any = None
+    round: int | None = None
+
+
+__all__ = [
+    "Act",
+    "Answer",
+    "Decision",
+    "Done",
+    "Event",
+    "GaveUp",
+    "Model",
+    "Policy",
+    "Privileged",
+    "Score",
+    "Situation",
+    "Subscriber",
+    "World",
+]

@@ -1,0 +1,166 @@
+"""Pictures as they travel to a model: clean pixels, where they were cut from, and marks as data.
+
+Nothing is drawn here. The door draws marks for models that look at pixels; models that read data get the data.
+All mark coordinates are pixels of the picture that carries them.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import Literal, TypeAlias
+
+import numpy as np
+
+from wonderful_team.geometry import Box, Frame
+from wonderful_team.geometry.arrays import Array
+
+Point: TypeAlias = tuple[float, float]
+BoxStyle: TypeAlias = Literal["target", "before", "after", "keep_out", "workspace"]
+
+
+def checked_rgb(rgb: Array, name: str = "rgb") -> Array:
+    """A read-only copy of an image, shape (H, W, 3), uint8, row 0 at the top.
+
+    Raises:
+        ValueError: Another shape or type, or no pixels.
+    """
+    array = np.asarray(rgb)
+    if array.ndim != 3 or array.shape[2] != 3 or array.dtype != np.uint8 or array.size == 0:
+        raise ValueError(
+            f"{name}: expected a non-empty uint8 image of shape (H, W, 3), got {array.dtype} {array.shape}"
+        )
+    if array.flags.writeable:
+        array = array.copy()
+        array.setflags(write=False)
+    return array
+
+
+def checked_depth(depth_m: Array | None, size: tuple[int, int], name: str = "depth_m") -> Array | None:
+    """A read-only float32 copy of a depth image, shape (H, W) [m]; NaN where unknown."""
+    if depth_m is None:
+        return None
+    array = np.asarray(depth_m, dtype=np.float32)
+    if array.shape != size:
+        raise ValueError(f"{name}: expected shape {size} like the image, got {array.shape}")
+    if array.flags.writeable:
+        array = array.copy()
+        array.setflags(write=False)
+    return array
+
+
+def picture_hash(rgb: Array) -> str:
+    """Hash of an image's size and pixels: 16 hex digits."""
+    digest = hashlib.sha256(repr(rgb.shape).encode())
+    digest.update(np.ascontiguousarray(rgb).tobytes())
+    return digest.hexdigest()[:16]
+
+
+@dataclass(frozen=True, eq=False)
+class Axes:
+    """Labelled axes along the edges; `reference` None labels the picture's own pixels.
+
+    Attributes:
+        reference: Frame whose pixels the labels name (a crop labelled in the whole view's pixels).
+    """
+
+    reference: Frame | None = None
+
+
+@dataclass(frozen=True)
+class BoxMark:
+    """A box, drawn in the colour of its style, with an optional label."""
+
+    box: Box
+    style: BoxStyle = "target"
+    label: str = ""
+
+
+@dataclass(frozen=True)
+class PointMark:
+    """One point with an optional label."""
+
+    point: Point
+    label: str = ""
+
+
+@dataclass(frozen=True)
+class Candidates:
+    """Numbered points to choose from: candidate k (1-based) stands at points[k - 1]."""
+
+    points: tuple[Point, ...]
+
+    def at(self, number: int) -> Point:
+        """The point with that number.
+
+        Raises:
+            ValueError: No such number.
+        """
+        if not 1 <= number <= len(self.points):
+            raise ValueError(f"candidate {number} does not exist; valid: 1 to {len(self.points)}")
+        return self.points[number - 1]
+
+
+@dataclass(frozen=True)
+class PathMark:
+    """A path through points, drawn with an arrow at its end."""
+
+    points: tuple[Point, ...]
+    label: str = ""
+
+
+@dataclass(frozen=True)
+class LineMark:
+    """A straight line, such as the edge of a box inside an edge strip."""
+
+    start: Point
+    end: Point
+
+
+Mark: TypeAlias = Axes | BoxMark | PointMark | Candidates | PathMark | LineMark
+
+
+@dataclass(frozen=True, eq=False)
+class Picture:
+    """One picture as a model is shown it, marks not yet drawn.
+
+    Attributes:
+        name: What the words call it ("top view", "crop before", "strip left outside").
+        rgb: Clean pixels, shape (H, W, 3), uint8.
+        frame: Maps this picture's pixels to the view it was cut from.
+        depth_m: Distance along the optical axis [m], shape (H, W); None without depth.
+        marks: What is to be drawn on it, in pixels of this picture.
+    """
+
+    name: str
+    rgb: Array
+    frame: Frame
+    depth_m: Array | None = None
+    marks: tuple[Mark, ...] = field(default=())
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "rgb", checked_rgb(self.rgb))
+        object.__setattr__(self, "depth_m", checked_depth(self.depth_m, self.rgb.shape[:2]))
+        if (self.rgb.shape[1], self.rgb.shape[0]) != self.frame.size_px:
+            raise ValueError(
+                f"picture {self.name!r}: {self.rgb.shape[1::-1]} px, but its frame says {self.frame.size_px}"
+            )
+
+    @property
+    def size_px(self) -> tuple[int, int]:
+        """Width, height."""
+        return self.frame.size_px
+
+    @cached_property
+    def hash(self) -> str:
+        """Hash of the clean pixels."""
+        return picture_hash(self.rgb)
+
+    def marked(self, *marks: Mark) -> Picture:
+        """The same picture with these marks added."""
+        return replace(self, marks=self.marks + marks)
+
+    def mark(self, kind: type[Mark]) -> list[Mark]:
+        """All marks of one kind, in order."""
+        return [mark for mark in self.marks if isinstance(mark, kind)]

@@ -261,6 +261,7 @@ class Plan:
         verified: Verification approved the plan and the steps.
         scene_hash: Hash of the observation it was made from.
         first_draft: Subgoals as first drafted, for the page's diff.
+        message, stage: Why it did not come to be planned, and where it failed; "" and None otherwise.
         parent: Id of the plan it replaces after a replan.
     """
 
@@ -279,6 +280,7 @@ class Plan:
     scene_hash: str = ""
     parent: str | None = None
     message: str = ""
+    stage: str | None = None
     choices: tuple[str, ...] = ()
     warnings: tuple[str, ...] = ()
 
@@ -328,6 +330,10 @@ class Limits:
     def __post_init__(self) -> None:
         if any(low >= high for low, high in zip(self.low_m, self.high_m, strict=True)):
             raise ValueError(f"workspace: every low must be below its high, got {self.low_m} and {self.high_m} m")
+
+
+NO_WORKSPACE = Limits((-100.0, -100.0, -100.0), (100.0, 100.0, 100.0))
+"""Limits of a photo without a robot: nobody has said where the workspace ends."""
 
 
 @dataclass(frozen=True, eq=False)

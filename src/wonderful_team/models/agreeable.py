@@ -1,0 +1,144 @@
+"""Answers for measuring the loops: every question gets the first plausible answer, whatever the pictures show.
+
+It sees nothing and is no planner; it exists so that waiting rounds, calls and bytes can be counted without a model.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from wonderful_team import contracts as c
+from wonderful_team.models.scripted import ScriptedModel
+from wonderful_team.types import Request
+
+_TARGETS = [
+    {"id": "T1", "kind": "object", "words": "the first thing", "part": None, "where": "", "like": [], "use": ["pick"]},
+    {
+        "id": "T2",
+        "kind": "object",
+        "words": "the second thing",
+        "part": None,
+        "where": "",
+        "like": [],
+        "use": ["place"],
+    },
+]
+
+
+def agreeable_script() -> dict[str, Any]:
+    """A script for ScriptedModel: one subgoal, two targets, no doubt, every first box accepted."""
+    answers: dict[str, Callable[[Request], Any]] = {
+        "DraftPlan": lambda request: _draft(request.question.with_targets),
+        "ReviewPlan": lambda _: {"reasoning": "", "approved": True, "doubt": None},
+        "RevisePlan": lambda _: {"reasoning": "", "decision": "keep", "answer": "It stands.", "plan": None},
+        "ExtractTargets": lambda _: {
+            "reasoning": "",
+            "targets": _TARGETS,
+            "needs": [{"subgoal": "G1", "targets": ["T1", "T2"]}],
+        },
+        "LocatePoints": lambda request: {"reasoning": "", "found": True, "points": [_centre(request)]},
+        "ChooseMark": lambda _: {"reasoning": "", "number": 1},
+        "GiveBox": lambda request: {"reasoning": "", "box": _box(request)},
+        "ReadScene": _reading,
+        "Presence": lambda _: {
+            "reasoning": "",
+            "edges": [{"edge": edge, "inside": True, "outside": False} for edge in c.EDGES],
+        },
+        "JudgeBox": lambda _: {"reasoning": "", "decision": "accept", "problem": ""},
+        "JudgeRevision": lambda _: {"reasoning": "", "decision": "take_after_stop"},
+        "MoveBox": lambda _: {
+            "reasoning": "",
+            "action": "move",
+            "right_px": 1,
+            "down_px": 0,
+            "grow_left_px": 0,
+            "grow_top_px": 0,
+            "grow_right_px": 0,
+            "grow_bottom_px": 0,
+            "cut_edges": [],
+        },
+        "ChoosePoint": lambda _: {"reasoning": "", "number": 1},
+        "WriteSteps": _steps,
+        "ReviewSteps": lambda _: {"reasoning": "", "approved": True, "doubt": None},
+        "WriteFunction": lambda _: {
+            "reasoning": "",
+            "code": "def path(boxes):\n    x0, y0, x1, y1 = next(iter(boxes.values()))\n    return [(x0, y0), (x1, y1)]",
+        },
+        "ReviewPath": lambda _: {"reasoning": "", "accepted": True, "problem": ""},
+        "Remember": lambda request: {
+            "keep": True,
+            "key": request.question.role,
+            "summary": request.question.answered[:600],
+        },
+        "JudgeOutcome": lambda request: {
+            "reasoning": "",
+            "verdicts": [
+                {"subgoal": s.id, "status": "done", "cause": None, "evidence": "taken for granted"}
+                for s in request.question.subgoals
+            ],
+        },
+        "Replan": lambda _: {"reasoning": "", "decision": "done", "cause": "", "advice": ""},
+    }
+    return dict(answers)
+
+
+def agreeable_model(delay_s: float = 0.0) -> ScriptedModel:
+    """A model that agrees with everything and takes a fixed time per answer."""
+    return ScriptedModel(agreeable_script(), delay_s=delay_s, name="agreeable")
+
+
+def _draft(with_targets: bool) -> dict[str, Any]:
+    targets = _TARGETS if with_targets else []
+    subgoal = {
+        "id": "G1",
+        "text": "put the first thing into the second thing",
+        "after": [],
+        "targets": [target["id"] for target in targets],
+        "function": None,
+    }
+    return {"reasoning": "", "subgoals": [subgoal], "targets": targets, "mode": "one_step", "clarification": None}
+
+
+def _place(number: int, request: Request) -> tuple[float, float]:
+    width, height = request.question.view.size_px
+    return width * (0.3 if number == 0 else 0.7), height * 0.5
+
+
+def _number(request: Request) -> int:
+    return 0 if request.question.target.id == "T1" else 1
+
+
+def _centre(request: Request) -> dict[str, float]:
+    x, y = _place(_number(request), request)
+    return {"x": x, "y": y}
+
+
+def _around(x: float, y: float, request: Request) -> dict[str, float]:
+    half = 0.06 * request.question.view.size_px[0]
+    return {"x0": x - half, "y0": y - half, "x1": x + half, "y1": y + half}
+
+
+def _box(request: Request) -> dict[str, float]:
+    return _around(*_place(_number(request), request), request)
+
+
+def _reading(request: Request) -> dict[str, Any]:
+    items = []
+    for number, target in enumerate(request.question.targets):
+        x, y = _place(number, request)
+        points = [{"role": role, "point": {"x": x, "y": y}} for role in target.roles]
+        items.append({"id": target.id, "found": True, "box": _around(x, y, request), "points": points})
+    return {"reasoning": "", "targets": items}
+
+
+def _steps(request: Request) -> dict[str, Any]:
+    target = request.question.targets[-1].id
+    step = {
+        "subgoal": "G1",
+        "kind": "pick_place",
+        "pick": request.question.targets[0].id,
+        "place": {"target": target, "how": "at", "side": None},
+        "rotate_deg": 0,
+    }
+    return {"reasoning": "", "steps": [step]}

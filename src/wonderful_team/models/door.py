@@ -1,0 +1,193 @@
+"""The door: every question of every method goes through here to a model, and only valid answers come back.
+
+It picks the role's model, enforces the budget and the concurrency limit, validates the answer against the question,
+sends the validation text back when it does not fit, and tells subscribers what happened.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import inspect
+import json
+import time
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+from pydantic import BaseModel, ValidationError
+
+from wonderful_team.contracts import Question
+from wonderful_team.errors import BudgetReached, ConfigError, ModelOutputError, ModelUnavailableError
+from wonderful_team.interfaces import Event, Model, Subscriber
+from wonderful_team.models.budget import Budget
+from wonderful_team.types import Answer, Request, Usage
+
+DEFAULT = "*"
+"""Key of the model that serves every role without one of its own."""
+
+
+class Door:
+    """Ask models questions.
+
+    Args:
+        models: One model for all roles, or a mapping from role to model with "*" for the rest.
+        attempts: How often an answer may be tried, the first try included.
+        concurrency: Most requests in flight at once.
+        deadline_s: Longest time for one whole request.
+
+    Raises:
+        ConfigError: No model serves some role, or a number is not positive.
+    """
+
+    def __init__(
+        self,
+        models: Model | Mapping[str, Model],
+        *,
+        budget: Budget | None = None,
+        subscribers: Sequence[Subscriber] = (),
+        attempts: int = 3,
+        concurrency: int = 8,
+        deadline_s: float = 300.0,
+    ) -> None:
+        if attempts < 1 or concurrency < 1 or deadline_s <= 0:
+            raise ConfigError(
+                f"attempts, concurrency and deadline_s must be positive, got {attempts}, {concurrency}, {deadline_s}"
+            )
+        self._models: Mapping[str, Model] = models if isinstance(models, Mapping) else {DEFAULT: models}
+        for role, model in self._models.items():
+            if not hasattr(model, "answer"):
+                raise ConfigError(f"the model for {role!r} is a {type(model).__name__} without answer(request)")
+        self.budget = budget or Budget()
+        self._subscribers = tuple(subscribers)
+        self._attempts = attempts
+        self._deadline_s = deadline_s
+        self._concurrency = concurrency
+        self._places: asyncio.Semaphore | None = None
+        self._loop: asyncio.AbstractEventLoop | None = None
+
+    def model_for(self, role: str) -> Model:
+        """The model that serves a role."""
+        model = self._models.get(role, self._models.get(DEFAULT))
+        if model is None:
+            raise ConfigError(f"no model for role {role!r}; models are set for: {', '.join(self._models)}")
+        return model
+
+    def tell(self, kind: str, name: str, content: Any = None) -> None:
+        """Pass an event to every subscriber."""
+        for subscriber in self._subscribers:
+            subscriber.on_event(Event(kind, name, content))
+
+    async def ask(self, request: Request) -> Answer:
+        """The validated answer to a request.
+
+        Raises:
+            ModelOutputError: No attempt gave a valid answer.
+            ModelUnavailableError: The deadline passed or the provider failed.
+            BudgetReached: A cap was met before sending.
+        """
+        model = self.model_for(request.role)
+        total = Usage()
+        for attempt in range(self._attempts):
+            sent = replace(request, attempt=attempt)
+            answer = await self._send(model, sent)
+            total = total + answer.usage
+            try:
+                value, repairs = settle_answer(sent, answer.value)
+            except ValueError as error:
+                text = _explain(error)
+                self.tell("invalid", sent.id, (sent, answer.raw or _as_text(answer.value), text))
+                request = replace(request, feedback=text, previous=_plain(answer.value))
+                continue
+            settled = replace(answer, value=value, usage=total, tries=attempt + 1, repairs=answer.repairs + repairs)
+            self.tell("answer", sent.id, (sent, settled))
+            for repair in repairs:
+                self.tell("warning", sent.id, f"{sent.id}: {repair}")
+            return settled
+        raise ModelOutputError(
+            f"{_name(model)} gave no valid answer to {request.contract} in {self._attempts} attempts; "
+            f"the last problem: {request.feedback}",
+            stage=request.stage,
+        )
+
+    async def _send(self, model: Model, request: Request) -> Answer:
+        async with self._place():
+            self.budget.reserve()
+            usage = Usage(calls=1, pictures=len(request.pictures), usd=None)
+            started = time.monotonic()
+            try:
+                self.tell("request", request.id, request)
+                left = self.budget.seconds_left
+                deadline = self._deadline_s if left is None else max(0.001, min(self._deadline_s, left))
+                try:
+                    answer = as_answer(await asyncio.wait_for(_call(model, request), deadline), model)
+                except TimeoutError as error:
+                    if left is not None and deadline < self._deadline_s:
+                        raise BudgetReached(f"the cap of {self.budget.caps.seconds:g} s is reached") from error
+                    raise ModelUnavailableError(
+                        f"{_name(model)} did not answer {request.contract} within {self._deadline_s:g} s"
+                    ) from error
+                seconds = time.monotonic() - started
+                usage = replace(
+                    answer.usage, calls=max(1, answer.usage.calls), pictures=len(request.pictures), seconds=seconds
+                )
+                return replace(answer, usage=usage)
+            finally:
+                self.budget.settle(request.role, usage)
+
+    def _place(self) -> asyncio.Semaphore:
+        # A semaphore belongs to one event loop; each synchronous entry may bring a new one.
+        loop = asyncio.get_running_loop()
+        if self._places is None or self._loop is not loop:
+            self._places, self._loop = asyncio.Semaphore(self._concurrency), loop
+        return self._places
+
+
+async def _call(model: Model, request: Request) -> Any:
+    if inspect.iscoroutinefunction(model.answer):
+        return await model.answer(request)
+    # A plain function would block every other request: it runs in a thread.
+    result = await asyncio.to_thread(model.answer, request)
+    return await result if inspect.isawaitable(result) else result
+
+
+def as_answer(result: Any, model: Model) -> Answer:
+    """What a model returned, as an Answer; values that are no Answer are taken as its value."""
+    if isinstance(result, Answer):
+        return result if result.model_id else replace(result, model_id=_name(model))
+    raw = result if isinstance(result, str) else ""
+    return Answer(value=result, model_id=_name(model), raw=raw, usage=Usage(calls=1, usd=None))
+
+
+def settle_answer(request: Request, value: Any) -> tuple[Any, tuple[str, ...]]:
+    """Validate a value against the request's type and question. Raises ValueError with text for the model."""
+    output: type[BaseModel] = request.output
+    if isinstance(value, str):
+        parsed = output.model_validate_json(value)
+    else:
+        parsed = output.model_validate(_plain(value))
+    question = request.question
+    return question.settle(parsed) if isinstance(question, Question) else (parsed, ())
+
+
+def _plain(value: Any) -> Any:
+    return value.model_dump() if isinstance(value, BaseModel) else value
+
+
+def _as_text(value: Any) -> str:
+    try:
+        return json.dumps(_plain(value))
+    except (TypeError, ValueError):
+        return repr(value)
+
+
+def _explain(error: ValueError) -> str:
+    if not isinstance(error, ValidationError):
+        return str(error)
+    lines = (
+        f"{'.'.join(map(str, item['loc'])) or 'answer'}: {item['msg']}" for item in error.errors(include_url=False)
+    )
+    return "; ".join(lines)
+
+
+def _name(model: Model) -> str:
+    return str(getattr(model, "name", type(model).__name__))

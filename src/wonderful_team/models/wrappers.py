@@ -1,0 +1,128 @@
+"""Models around a model. Injecting plants a labelled fault, so that one can watch the team catch it."""
+
+from __future__ import annotations
+
+import asyncio
+import inspect
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+from wonderful_team.contracts import BoxPx, PlanDraft, PointPx, SceneReading
+from wonderful_team.contracts.give_box import BoxAnswer
+from wonderful_team.interfaces import Model
+from wonderful_team.models.door import as_answer, settle_answer
+from wonderful_team.types import Answer, Request
+
+
+@dataclass
+class Injection:
+    """One planted fault.
+
+    Attributes:
+        contracts: Kinds of question that it may strike.
+        change: Takes a right answer's value and the request; gives the wrong value, or None to wait for a better chance.
+        label: What it is, for the record and the page.
+        times: How often it strikes.
+    """
+
+    contracts: tuple[str, ...]
+    change: Callable[[Any, Request], Any | None]
+    label: str
+    times: int = 1
+    struck: int = field(default=0, init=False)
+
+
+class Injecting:
+    """Passes requests to `model` and spoils the answers that the injections name; those are labelled `injected`."""
+
+    def __init__(self, model: Model, injections: Sequence[Injection]) -> None:
+        self.model = model
+        self.injections = tuple(injections)
+        self.name = f"{getattr(model, 'name', type(model).__name__)}+injected"
+
+    async def answer(self, request: Request) -> Answer:
+        """The model's answer, perhaps spoiled."""
+        if inspect.iscoroutinefunction(self.model.answer):
+            result = await self.model.answer(request)
+        else:
+            result = await asyncio.to_thread(self.model.answer, request)
+        answer = as_answer(result, self.model)
+        for injection in self.injections:
+            if injection.struck < injection.times and request.contract in injection.contracts:
+                value, _ = settle_answer(request, answer.value)
+                spoiled = injection.change(value, request)
+                if spoiled is not None:
+                    injection.struck += 1
+                    return replace(
+                        answer, value=spoiled, raw="", provenance="injected", repairs=(f"injected: {injection.label}",)
+                    )
+        return answer
+
+
+def swap_targets(draft: PlanDraft, request: Request) -> PlanDraft | None:
+    """A plan that does it the wrong way round: the first two targets exchange their places in the first subgoal."""
+    if not isinstance(draft, PlanDraft) or not draft.subgoals:
+        return None
+    first = draft.subgoals[0]
+    if len(draft.targets) < 2:
+        return None
+    one, two = (_name_in(first.text, target.words, target.like) for target in draft.targets[:2])
+    if one not in first.text or two not in first.text:
+        return None
+    mark = "\0"
+    text = first.text.replace(one, mark).replace(two, one).replace(mark, two)
+    wrong = first.model_copy(update={"text": text, "targets": list(reversed(first.targets))})
+    return draft.model_copy(update={"subgoals": [wrong, *draft.subgoals[1:]]})
+
+
+def _name_in(text: str, words: str, like: Sequence[str]) -> str:
+    """How a subgoal's text calls a target: by its words, or by the mark of its picture."""
+    if words in text:
+        return words
+    return next((f"{{{name}}}" for name in like if f"{{{name}}}" in text), words)
+
+
+def drop_subgoal(draft: PlanDraft, request: Request) -> PlanDraft | None:
+    """A plan without its last subgoal."""
+    if not isinstance(draft, PlanDraft) or len(draft.subgoals) < 2:
+        return None
+    last = draft.subgoals[-1].id
+    return draft.model_copy(update={"subgoals": [s for s in draft.subgoals if s.id != last]})
+
+
+def shift_box(radii: float = 1.2) -> Callable[[Any, Request], Any | None]:
+    """A change that shifts the first found box by `radii` half-widths towards the middle of the picture."""
+
+    def change(value: Any, request: Request) -> Any | None:
+        middle = request.question.view.size_px[0] / 2
+        if isinstance(value, BoxAnswer) and value.box is not None:
+            return value.model_copy(update={"box": _shifted(value.box, radii, middle)})
+        if isinstance(value, SceneReading):
+            for position, item in enumerate(value.targets):
+                if item.box is None:
+                    continue
+                box = _shifted(item.box, radii, middle)
+                dx = box.x0 - item.box.x0
+                points = [p.model_copy(update={"point": PointPx(x=p.point.x + dx, y=p.point.y)}) for p in item.points]
+                wrong = item.model_copy(update={"box": box, "points": points})
+                return value.model_copy(
+                    update={"targets": [*value.targets[:position], wrong, *value.targets[position + 1 :]]}
+                )
+        return None
+
+    return change
+
+
+def _shifted(box: BoxPx, radii: float, middle: float) -> BoxPx:
+    radius = (box.x1 - box.x0) / 2
+    dx = radii * radius * (1 if (box.x0 + box.x1) / 2 < middle else -1)
+    return BoxPx(x0=box.x0 + dx, y0=box.y0, x1=box.x1 + dx, y1=box.y1)
+
+
+def demo_injections() -> tuple[Injection, ...]:
+    """The two faults of `demo`: a plan the wrong way round, and a first box beside its object."""
+    return (
+        Injection(("DraftPlan",), swap_targets, "a plan that does it the wrong way round"),
+        Injection(("GiveBox", "ReadScene"), shift_box(), "a first box beside its object"),
+    )

@@ -1,0 +1,177 @@
+"""Refining one box: Checker and Mover over crops, until it is accepted, rejected, or the bound is met.
+
+Source: Wang, Shen & Stadie 2024, arXiv:2407.19094, Algorithm 2 (inner loop).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Literal, TypeAlias
+
+from wonderful_team.contracts import (
+    BoxMove,
+    BoxVerdict,
+    JudgeBox,
+    JudgeRevision,
+    MoveBox,
+    Presence,
+    PresenceAnswer,
+    RevisionVerdict,
+    ShownSlot,
+    Strip,
+)
+from wonderful_team.geometry import Box
+from wonderful_team.images import crop, edge_strips
+from wonderful_team.pictures import Axes, BoxMark, Picture, Point
+from wonderful_team.planning.desk import Desk
+from wonderful_team.planning.scene import SceneShown
+from wonderful_team.planning.together import together
+from wonderful_team.types import Answer, GroundingEvent, Provenance, Target
+
+BoxFate: TypeAlias = Literal["accepted", "rejected", "exhausted"]
+
+
+@dataclass
+class Job:
+    """The grounding of one target: what is known, and its story so far.
+
+    Attributes:
+        number: Place of the target among all, which orders what Memory keeps.
+        avoid: Centres that were tried and rejected, in view pixels.
+    """
+
+    desk: Desk
+    scene: SceneShown
+    target: Target
+    number: int
+    plan: tuple[str, ...]
+    examples: tuple[ShownSlot, ...]
+    history: list[GroundingEvent] = field(default_factory=list)
+    avoid: list[Point] = field(default_factory=list)
+
+    @property
+    def view_box(self) -> Box:
+        return Box(0, 0, *self.scene.view.size_px)
+
+    def tell(
+        self,
+        what: str,
+        text: str,
+        box: Box | None = None,
+        points: tuple[Point, ...] = (),
+        provenance: Provenance = "model",
+    ) -> None:
+        """Add a line to the target's story; coordinates are view pixels."""
+        self.history.append(GroundingEvent(what, text, box, points, provenance))
+
+    def crop_with(self, name: str, window: Box, box: Box, style: Literal["target", "before", "after"]) -> Picture:
+        """A crop round `window` with `box` marked on it (both view pixels) and labelled axes."""
+        picture = crop(self.scene.view, window, name)
+        return picture.marked(Axes(), BoxMark(picture.frame.box_to_picture(box), style))
+
+    def strips(self, box: Box) -> tuple[Strip, ...]:
+        return tuple(Strip(edge, side, cut) for (edge, side), cut in edge_strips(self.scene.view, box).items())
+
+
+async def first_judgement(job: Job, box: Box) -> tuple[BoxVerdict, PresenceAnswer | None]:
+    """The Checker's first word; in `paper` the edge strips are read at the same time."""
+    crop_shown = job.crop_with("crop", box, box, "target")
+    ask_judge = job.desk.ask_whole(JudgeBox(job.target, crop_shown, job.examples), stage="ground", branch=job.target.id)
+    presence: PresenceAnswer | None = None
+    if job.desk.config.way == "paper":
+        ask_strips = job.desk.ask_whole(
+            Presence(job.target, job.strips(box), job.examples), stage="ground", branch=job.target.id
+        )
+        judged, strips = await together([ask_judge, ask_strips])
+        presence = strips.value
+    else:
+        judged = await ask_judge
+    verdict: BoxVerdict = judged.value
+    text = f"Checker: {verdict.decision}" + (f" - {verdict.problem}" if verdict.problem else "")
+    job.tell("verdict", text, box, provenance=judged.provenance)
+    return verdict, presence
+
+
+async def refine(job: Job, box: Box) -> tuple[BoxFate, Box]:
+    """Judge a first box and improve it. Returns its fate and the best box so far, in view pixels."""
+    members = job.desk.members
+    problem, presence = "", None
+    if members.checker:
+        verdict, presence = await first_judgement(job, box)
+        if verdict.decision != "revise":
+            return ("accepted" if verdict.decision == "accept" else "rejected"), box
+        problem = verdict.problem
+    if not members.mover:
+        # Nobody can move it: the first box stands.
+        return "accepted", box
+    return await _move_until_right(job, box, problem, presence)
+
+
+async def _move_until_right(job: Job, box: Box, problem: str, presence: PresenceAnswer | None) -> tuple[BoxFate, Box]:
+    lines = [_presence_line(presence)] if presence else []
+    for _ in range(job.desk.config.bounds.refinements):
+        move, after = await _propose(job, box, problem, tuple(lines))
+        if move.action == "stop":
+            job.tell("verdict", "Mover: it is right as it is", box)
+            return "accepted", box
+        if after is None:
+            lines.append(f"{_move_line(move)}: would leave the picture")
+            continue
+        if not job.desk.members.checker:
+            box = after
+            lines.append(_move_line(move))
+            continue
+        decision = await _judge_revision(job, box, after)
+        lines.append(f"{_move_line(move)}: {decision}")
+        if decision != "keep_before":
+            box, problem = after, ""
+        if decision == "take_after_stop":
+            return "accepted", box
+    job.tell("verdict", f"not settled after {job.desk.config.bounds.refinements} revisions", box)
+    # Without a Checker nobody calls the box wrong: the Mover's last one stands.
+    return ("exhausted" if job.desk.members.checker else "accepted"), box
+
+
+async def _propose(job: Job, box: Box, problem: str, lines: tuple[str, ...]) -> tuple[BoxMove, Box | None]:
+    shown = job.crop_with("crop", box, box, "target")
+    question = MoveBox(job.target, shown, job.strips(box), problem, lines, not job.desk.members.checker, job.examples)
+    answer: Answer = await job.desk.ask_whole(question, stage="ground", branch=job.target.id)
+    move: BoxMove = answer.value
+    after = shown.frame.box_to_view(move.apply(question.box)).intersection(job.view_box)
+    if move.action != "stop" and after is not None:
+        job.tell("move", f"Mover: {_move_line(move)}", after, provenance=answer.provenance)
+    return move, after
+
+
+async def _judge_revision(job: Job, before: Box, after: Box) -> str:
+    both = Box.bounding([*before.corners, *after.corners])
+    question = JudgeRevision(
+        job.target,
+        job.crop_with("before", both, before, "before"),
+        job.crop_with("after", both, after, "after"),
+        job.examples,
+    )
+    answer = await job.desk.ask_whole(question, stage="ground", branch=job.target.id)
+    verdict: RevisionVerdict = answer.value
+    said = {"keep_before": "keep the box before", "take_after_go_on": "better, go on", "take_after_stop": "right, stop"}
+    kept = before if verdict.decision == "keep_before" else after
+    job.tell("verdict", f"Checker: {said[verdict.decision]}", kept, provenance=answer.provenance)
+    return verdict.decision
+
+
+def _move_line(move: BoxMove) -> str:
+    if move.action == "move":
+        return f"moved {move.right_px:+.0f} px right, {move.down_px:+.0f} px down"
+    grown = (move.grow_left_px, move.grow_top_px, move.grow_right_px, move.grow_bottom_px)
+    names = ("left", "top", "right", "bottom")
+    parts = [f"{name} {amount:+.0f}" for name, amount in zip(names, grown, strict=True) if amount]
+    return f"edges outward by px: {', '.join(parts)}"
+
+
+def _presence_line(presence: PresenceAnswer) -> str:
+    inside = [item.edge for item in presence.edges if item.inside]
+    outside = [item.edge for item in presence.edges if item.outside]
+    return (
+        f"strips: target shows just inside {', '.join(inside) or 'no edge'}; "
+        f"just outside {', '.join(outside) or 'no edge'}"
+    )

@@ -1,0 +1,65 @@
+"""The Grounding Manager's proposals: several independent points and a choice among them."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from wonderful_team.contracts import BoxAnswer, ChooseMark, GiveBox, LocatePoints, MarkChoice, Points
+from wonderful_team.geometry import Box
+from wonderful_team.pictures import Candidates, Picture, Point, PointMark
+from wonderful_team.planning.boxes import Job
+from wonderful_team.planning.together import together
+
+
+async def propose(job: Job, purpose: Literal["centre", "place"]) -> list[Point]:
+    """Independent proposals in view pixels; empty when most samples say that the target is not there."""
+    view = with_avoided(job)
+    question = LocatePoints(job.target, purpose, job.plan, view, job.scene.views[1:], job.examples, count=1)
+    samples: list[Points] = await together(
+        [
+            job.desk.ask(question, stage="ground", branch=job.target.id, sample=number)
+            for number in range(job.desk.config.bounds.samples)
+        ]
+    )
+    found = [view.frame.point_to_view(point.as_tuple) for sample in samples for point in sample.points]
+    if 2 * len(found) < len(samples):
+        job.tell("absent", f"{len(samples) - len(found)} of {len(samples)} samples say it is not there")
+        return []
+    job.tell("centre" if purpose == "centre" else "point", f"{len(found)} proposals", points=tuple(found))
+    return found
+
+
+async def choose(job: Job, proposals: list[Point], purpose: Literal["centre", "place"]) -> Point | None:
+    """The best of the proposals, in view pixels; None when none is on the target."""
+    view = job.scene.labelled
+    marked = view.marked(Candidates(tuple(view.frame.point_to_picture(point) for point in proposals)))
+    choice: MarkChoice = await job.desk.ask(
+        ChooseMark(job.target, purpose, job.plan, marked, job.examples), stage="ground", branch=job.target.id
+    )
+    if choice.number is None:
+        job.tell("chosen", "no proposal is on the target", points=tuple(proposals))
+        return None
+    job.tell("chosen", f"proposal {choice.number} chosen", points=(proposals[choice.number - 1],))
+    return proposals[choice.number - 1]
+
+
+async def give_box(job: Job, centre: Point) -> Box | None:
+    """A first box round a centre, in view pixels; None when the Manager finds nothing there."""
+    view = with_avoided(job)
+    marked = view.marked(PointMark(view.frame.point_to_picture(centre), "centre"))
+    answer = await job.desk.ask_whole(
+        GiveBox(job.target, job.plan, marked, job.examples), stage="ground", branch=job.target.id
+    )
+    given: BoxAnswer = answer.value
+    if given.box is None:
+        job.tell("absent", "no box: the Manager finds nothing at this centre", points=(centre,))
+        return None
+    box = view.frame.box_to_view(given.box.as_box)
+    job.tell("box", "Manager's first box", box, (centre,), provenance=answer.provenance)
+    return box
+
+
+def with_avoided(job: Job) -> Picture:
+    """The labelled view with rejected centres marked."""
+    view = job.scene.labelled
+    return view.marked(*(PointMark(view.frame.point_to_picture(point), "rejected") for point in job.avoid))

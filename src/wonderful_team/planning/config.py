@@ -1,0 +1,90 @@
+"""How the team works: which members take part, which way of working, and every bound."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Literal, TypeAlias
+
+from wonderful_team.agents import Prompts
+from wonderful_team.errors import ConfigError, UnknownNameError
+
+Way: TypeAlias = Literal["lean", "paper"]
+
+
+@dataclass(frozen=True)
+class Members:
+    """Which members take part. `manager` False switches the whole grounding team off."""
+
+    verification: bool = True
+    manager: bool = True
+    checker: bool = True
+    mover: bool = True
+    memory: bool = True
+
+
+SETTINGS: dict[str, Members] = {
+    "full": Members(),
+    "s1": Members(verification=False),
+    "s2": Members(checker=False),
+    "s3": Members(verification=False, checker=False),
+    "s4": Members(checker=False, mover=False),
+    "s5": Members(verification=False, checker=False, mover=False),
+    "s6": Members(manager=False, checker=False, mover=False),
+    "s7": Members(verification=False, manager=False, checker=False, mover=False),
+    "s8": Members(memory=False),
+}
+"""The paper's settings (Wang, Shen & Stadie 2024, arXiv:2407.19094, table "Settings Summary")."""
+
+
+@dataclass(frozen=True)
+class Bounds:
+    """Every loop's bound (DESIGN, section 5).
+
+    Attributes:
+        questions: Doubts that Verification may raise over one plan, its steps included.
+        refinements: Revisions of one box.
+        new_centres: Fresh starts for one target after its box was rejected or its revisions ran out.
+        returns: How often a target that is not there sends the plan back to the Supervisor.
+        functions: Versions of one helper function.
+        samples: Independent proposals of a centre or a spot.
+    """
+
+    questions: int = 10
+    refinements: int = 5
+    new_centres: int = 3
+    returns: int = 2
+    functions: int = 5
+    samples: int = 3
+
+
+@dataclass(frozen=True)
+class TeamConfig:
+    """Configuration of a Team.
+
+    Attributes:
+        way: `lean` (fewest waiting rounds) or `paper` (the algorithms as published).
+        setting: A name of SETTINGS.
+        strict: A plan that Verification did not approve is refused.
+        axes: Label the axes of whole views in `lean` too (for models that point badly).
+
+    Raises:
+        UnknownNameError: No such setting.
+        ConfigError: No such way of working.
+    """
+
+    way: Way = "lean"
+    setting: str = "full"
+    strict: bool = False
+    axes: bool = False
+    bounds: Bounds = field(default_factory=Bounds)
+    prompts: Prompts = field(default_factory=Prompts.default)
+
+    def __post_init__(self) -> None:
+        if self.way not in ("lean", "paper"):
+            raise ConfigError(f"way of working {self.way!r}: valid are lean, paper")
+        if self.setting not in SETTINGS:
+            raise UnknownNameError("setting", self.setting, SETTINGS)
+
+    @property
+    def members(self) -> Members:
+        return SETTINGS[self.setting]

@@ -1,0 +1,103 @@
+"""The desk: where questions become requests. It holds one trial's notebooks and memory, and numbers what is sent."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+from dataclasses import dataclass, field
+from typing import Any
+
+from wonderful_team.agents import build_request
+from wonderful_team.agents.request import role_for
+from wonderful_team.contracts import MemoryEntry, Question, Remember
+from wonderful_team.errors import ModelOutputError
+from wonderful_team.models.door import Door
+from wonderful_team.planning.config import Members, TeamConfig
+from wonderful_team.planning.memory import Notebooks, SystemMemory
+from wonderful_team.types import Answer, Note
+
+STAGES = ("plan", "ground", "act", "replan", "memory")
+"""Order in which memory entries of one attempt stand."""
+
+
+@dataclass
+class Desk:
+    """Ask on behalf of the roles.
+
+    Attributes:
+        attempt: Number of the plan within the trial; part of every request's id.
+    """
+
+    door: Door
+    config: TeamConfig
+    instruction: str
+    notebooks: Notebooks = field(default_factory=Notebooks)
+    memory: SystemMemory = field(default_factory=SystemMemory)
+    attempt: int = 0
+    _counts: dict[tuple[str, str, str], int] = field(default_factory=dict)
+
+    @property
+    def members(self) -> Members:
+        return self.config.members
+
+    async def ask(
+        self, question: Question, *, stage: str, branch: str = "", role: str | None = None, sample: int = 0
+    ) -> Any:
+        """The validated value that answers the question."""
+        return (await self.ask_whole(question, stage=stage, branch=branch, role=role, sample=sample)).value
+
+    async def ask_whole(
+        self, question: Question, *, stage: str, branch: str = "", role: str | None = None, sample: int = 0
+    ) -> Answer:
+        """Like ask, with provenance and cost."""
+        asker = role_for(question, role).name
+        key = (stage, branch, question.contract)
+        self._counts[key] = number = self._counts.get(key, 0) + 1
+        request = build_request(
+            question,
+            id=f"{self.attempt}/{stage}/{branch or 'main'}/{question.contract}/{number}",
+            stage=stage,
+            role=asker,
+            notes=(*(self.memory.notes if self.members.memory else ()), *self.notebooks.read(asker, branch)),
+            sample=sample,
+            prompts=self.config.prompts,
+        )
+        answer = await self.door.ask(request)
+        self.notebooks.write(asker, branch, Note(question.contract, _short(answer.value), "notebook"))
+        return answer
+
+    def remember(self, role: str, stage: str, asked: str, answered: str, *, target: int = 0, branch: str = "") -> None:
+        """Let Memory keep what matters of an answer, beside the main line; nothing when Memory is switched off."""
+        if not self.members.memory:
+            return
+        question = Remember(self.instruction, role, asked, answered, self.memory.keys)
+        order = (self.attempt * len(STAGES) + STAGES.index(stage), target)
+        self.memory.submit(order, self._remember(question, f"{stage}.{branch}" if branch else stage))
+
+    async def _remember(self, question: Remember, branch: str) -> MemoryEntry | None:
+        try:
+            value = await self.ask(question, stage="memory", branch=branch)
+        except ModelOutputError as error:
+            # A lost note must not lose the plan; the page shows the warning.
+            self.door.tell("warning", "memory", f"nothing remembered: {error}")
+            return None
+        assert isinstance(value, MemoryEntry)
+        return value
+
+    def stage(self, name: str, text: str) -> None:
+        """Tell subscribers that a stage is finished, in one line."""
+        self.door.tell("stage", name, {"text": text, "attempt": self.attempt})
+
+    def warn(self, text: str) -> None:
+        self.door.tell("warning", "planning", text)
+
+
+def _short(value: Any) -> str:
+    """An answer in one line for a notebook, without its reasoning."""
+    content = value.model_dump(mode="json", exclude={"reasoning"})
+    return json.dumps(content, ensure_ascii=False)[:400]
+
+
+async def settle(desk: Desk) -> None:
+    """Drop what is still under way when planning ends early."""
+    await asyncio.shield(desk.memory.cancel())

@@ -1,0 +1,67 @@
+"""Helper functions: the Supervisor asks for a path, writes it as code, sees it drawn, and rewrites it if it is wrong.
+
+The code runs in the sandbox only. Source: Wang, Shen & Stadie 2024, arXiv:2407.19094, Appendix C.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from wonderful_team.contracts import FunctionCode, PathReview, ReviewPath, WriteFunction
+from wonderful_team.errors import PlanError
+from wonderful_team.pictures import BoxMark, PathMark, Point
+from wonderful_team.planning.desk import Desk
+from wonderful_team.planning.scene import SceneShown
+from wonderful_team.planning.together import together
+from wonderful_team.sandbox import SandboxError, run_path
+from wonderful_team.types import GroundedTarget, Subgoal
+
+
+async def write_functions(
+    desk: Desk, scene: SceneShown, subgoals: Sequence[Subgoal], grounded: Mapping[str, GroundedTarget]
+) -> dict[str, tuple[Point, ...]]:
+    """A path in view pixels for every subgoal that asks for one.
+
+    Raises:
+        PlanError: No version of a function was accepted within the bound.
+    """
+    asking = [subgoal for subgoal in subgoals if subgoal.function]
+    if asking and "follow" not in scene.vocabulary.step_kinds:
+        desk.warn(f"subgoal {asking[0].id} asks for a helper function, but this world follows no paths")
+        return {}
+    paths = await together([_write_one(desk, scene, subgoal, grounded) for subgoal in asking])
+    return {subgoal.id: path for subgoal, path in zip(asking, paths, strict=True)}
+
+
+async def _write_one(
+    desk: Desk, scene: SceneShown, subgoal: Subgoal, grounded: Mapping[str, GroundedTarget]
+) -> tuple[Point, ...]:
+    view = scene.labelled
+    boxes = {
+        name: view.frame.box_to_picture(box)
+        for name in subgoal.targets
+        if name in grounded and (box := grounded[name].box) is not None
+    }
+    shown = view.marked(*(BoxMark(box, "target", name) for name, box in boxes.items()))
+    error, code = "", ""
+    for _ in range(desk.config.bounds.functions):
+        written: FunctionCode = await desk.ask(
+            WriteFunction(subgoal, shown, boxes, error, code), stage="act", branch=subgoal.id
+        )
+        code = written.code
+        try:
+            path = run_path(code, boxes)
+        except SandboxError as problem:
+            error = str(problem)
+            continue
+        review: PathReview = await desk.ask(
+            ReviewPath(subgoal, view.marked(PathMark(path, subgoal.id))), stage="act", branch=subgoal.id
+        )
+        if review.accepted:
+            return tuple(view.frame.point_to_view(point) for point in path)
+        error = f"the path was drawn and refused: {review.problem}"
+    raise PlanError(
+        f"no helper function for {subgoal.id} was accepted in {desk.config.bounds.functions} versions; "
+        f"the last problem: {error}",
+        stage="function",
+    )

@@ -1,0 +1,77 @@
+"""After execution: the Replanner compares before and after, says what became of each subgoal, and gives advice."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from wonderful_team.agents import step_words
+from wonderful_team.contracts import Advice, JudgeOutcome, Outcome, Replan
+from wonderful_team.planning.acting import mark_targets
+from wonderful_team.planning.desk import Desk
+from wonderful_team.planning.scene import SceneShown, show_views
+from wonderful_team.types import Observation, Plan, StepReport, SubgoalRun, Verdict
+
+
+async def judge_outcome(
+    desk: Desk, scene: SceneShown, plan: Plan, now: Observation, executed: Sequence[SubgoalRun]
+) -> tuple[Verdict, ...]:
+    """A verdict per subgoal of the plan. `scene` is the one the plan was made from."""
+    before = mark_targets(scene.views[0], scene.view, plan.grounded)
+    task = replace(scene.task, views=(before, *scene.views[1:]))
+    question = JudgeOutcome(
+        task,
+        plan.subgoals,
+        plan.targets,
+        tuple(step_words(step) for step in plan.steps),
+        show_views(now),
+        measured_lines(executed),
+    )
+    outcome: Outcome = await desk.ask(question, stage="replan")
+    verdicts = outcome.to_verdicts()
+    desk.remember(
+        "replanner",
+        "replan",
+        "What became of the subgoals?",
+        "; ".join(f"{v.subgoal} {v.status}" + (f" ({v.cause})" if v.cause else "") for v in verdicts),
+    )
+    desk.stage("judge", ", ".join(f"{v.subgoal} {v.status.replace('_', ' ')}" for v in verdicts))
+    return verdicts
+
+
+async def advise(
+    desk: Desk,
+    scene_now: SceneShown,
+    plan: Plan,
+    verdicts: tuple[Verdict, ...],
+    executed: Sequence[SubgoalRun],
+    replans_left: int,
+) -> Advice:
+    """Whether to stop, and what the next plan should do differently."""
+    await desk.memory.border()
+    question = Replan(scene_now.task, plan.subgoals, verdicts, measured_lines(executed), replans_left)
+    advice: Advice = await desk.ask(question, stage="replan")
+    desk.stage("replan", f"{advice.decision.replace('_', ' ')}: {advice.cause or 'all subgoals are done'}")
+    return advice
+
+
+def measured_lines(executed: Sequence[SubgoalRun]) -> tuple[str, ...]:
+    """What the robot reported, one line per action."""
+    return tuple(f"{run.subgoal}: {_measured(report)}" for run in executed for report in run.reports)
+
+
+def _measured(report: StepReport) -> str:
+    values = ", ".join(f"{name} = {_short(value)}" for name, value in report.measured.items())
+    state = "executed" if report.executed else "not executed"
+    fault = f", fault: {report.fault}" if report.fault else ""
+    return f"{report.action.kind} {state}{': ' + values if values else ''}{fault}"
+
+
+def _short(value: object) -> str:
+    match value:
+        case float():
+            return f"{value:.3f}"
+        case list() | tuple():
+            return "(" + ", ".join(_short(item) for item in value) + ")"
+        case _:
+            return str(value)

@@ -1,0 +1,76 @@
+"""Notebooks of the roles and the system memory of one trial, both deterministic.
+
+System memory updates run beside the main line. They become visible only at stage borders and in order of stage and
+target, never of finishing, so that requests do not depend on races.
+"""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Coroutine
+from typing import Any
+
+from wonderful_team.contracts import MemoryEntry
+from wonderful_team.types import Note
+
+NOTEBOOK_LINES = 12
+"""Most lines of a notebook that a request carries: the newest ones."""
+
+
+class Notebooks:
+    """One notebook per role. Work on one target writes to a branch, which only that target's requests see."""
+
+    def __init__(self) -> None:
+        self._lines: dict[tuple[str, str], list[Note]] = {}
+
+    def write(self, role: str, branch: str, note: Note) -> None:
+        self._lines.setdefault((role, branch), []).append(note)
+
+    def read(self, role: str, branch: str) -> tuple[Note, ...]:
+        """The role's own lines on the main line, then those of this branch; the newest NOTEBOOK_LINES of them."""
+        lines = [*self._lines.get((role, ""), ())]
+        if branch:
+            lines += self._lines.get((role, branch), ())
+        return tuple(lines[-NOTEBOOK_LINES:])
+
+
+class SystemMemory:
+    """What the Memory agent chose to keep."""
+
+    def __init__(self) -> None:
+        self._visible: list[Note] = []
+        self._pending: list[tuple[tuple[int, int], asyncio.Task[MemoryEntry | None]]] = []
+
+    def submit(self, order: tuple[int, int], job: Coroutine[Any, Any, MemoryEntry | None]) -> None:
+        """Start an update; `order` is (stage, target) and decides where its entry will stand."""
+        self._pending.append((order, asyncio.ensure_future(job)))
+
+    async def border(self) -> None:
+        """Wait for all updates under way and make their entries visible, in order."""
+        pending, self._pending = sorted(self._pending, key=lambda item: item[0]), []
+        try:
+            entries = await asyncio.gather(*(task for _, task in pending))
+        except BaseException:
+            for _, task in pending:
+                task.cancel()
+            await asyncio.gather(*(task for _, task in pending), return_exceptions=True)
+            raise
+        for entry in entries:
+            if entry is not None and entry.keep:
+                self._visible = [note for note in self._visible if note.key != entry.key]
+                self._visible.append(Note(entry.key, entry.summary, "memory"))
+
+    async def cancel(self) -> None:
+        """Drop updates under way."""
+        pending, self._pending = self._pending, []
+        for _, task in pending:
+            task.cancel()
+        await asyncio.gather(*(task for _, task in pending), return_exceptions=True)
+
+    @property
+    def notes(self) -> tuple[Note, ...]:
+        return tuple(self._visible)
+
+    @property
+    def keys(self) -> tuple[str, ...]:
+        return tuple(note.key for note in self._visible)

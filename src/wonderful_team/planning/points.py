@@ -1,0 +1,55 @@
+"""Action points: chosen among numbered candidates inside and beside a box, once coarse and once fine."""
+
+from __future__ import annotations
+
+from wonderful_team.contracts import ChoosePoint, PointChoice
+from wonderful_team.geometry import Box
+from wonderful_team.images import beside_points, crop, inside_points
+from wonderful_team.pictures import Axes, BoxMark, Candidates, Picture, Point
+from wonderful_team.planning.boxes import Job
+from wonderful_team.planning.together import together
+from wonderful_team.types import PointRole
+
+GRID = 3
+"""Candidates per side of the box in each round (nine inside)."""
+BESIDE_SHARE = 0.25
+"""How far beside a box push candidates lie, as a share of its longer side."""
+FINE_SHARE = 1.0 / GRID
+"""Side of the second round's neighbourhood, as a share of the box: one cell of the first grid."""
+
+
+async def choose_points(job: Job, box: Box) -> dict[str, Point]:
+    """The point for each role of the target, in view pixels; roles are asked at once."""
+    roles = job.target.roles
+    points = await together([_choose(job, box, role) for role in roles])
+    return dict(zip(roles, points, strict=True))
+
+
+async def _choose(job: Job, box: Box, role: PointRole) -> Point:
+    shown = crop(job.scene.view, box, "crop")
+    shown_box = shown.frame.box_to_picture(box)
+    candidates = inside_points(shown_box, GRID, GRID)
+    if role in ("push_start", "push_end"):
+        beside = beside_points(shown_box, BESIDE_SHARE * max(shown_box.width, shown_box.height))
+        candidates = (*candidates, *(point for point in beside if shown.frame.valid.contains(point)))
+    coarse = await _ask(job, shown, shown_box, candidates, role, fine=False)
+    cell = Box.around(coarse, box.width * FINE_SHARE, box.height * FINE_SHARE)
+    near = crop(job.scene.view, box, "crop")
+    fine_points = tuple(
+        point
+        for point in inside_points(near.frame.box_to_picture(cell), GRID, GRID)
+        if near.frame.valid.contains(point)
+    )
+    chosen = await _ask(job, near, shown_box, fine_points, role, fine=True)
+    job.tell("point", f"{role.replace('_', ' ')} point chosen", box, (chosen,))
+    return chosen
+
+
+async def _ask(
+    job: Job, shown: Picture, shown_box: Box, candidates: tuple[Point, ...], role: PointRole, *, fine: bool
+) -> Point:
+    marked = shown.marked(Axes(), BoxMark(shown_box), Candidates(candidates))
+    choice: PointChoice = await job.desk.ask(
+        ChoosePoint(job.target, role, job.plan, marked, fine, job.examples), stage="ground", branch=job.target.id
+    )
+    return shown.frame.point_to_view(candidates[choice.number - 1])

@@ -1,0 +1,315 @@
+"""The Team: plan, check, ground, act; then look, judge and replan. One of several methods behind `Policy`."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Literal, TypeAlias
+
+from wonderful_team.actions import Vocabulary
+from wonderful_team.errors import (
+    ActionRefusedError,
+    BudgetReached,
+    ConfigError,
+    ModelOutputError,
+    NeedsClarification,
+    NotFoundError,
+    NotUnderstoodError,
+    PlanError,
+    WonderfulTeamError,
+)
+from wonderful_team.interfaces import Act, Decision, Done, GaveUp, Model, Situation, Subscriber
+from wonderful_team.models.budget import Budget, Caps
+from wonderful_team.models.door import Door
+from wonderful_team.pictures import Point
+from wonderful_team.planning import acting, grounding, judging, plan_loop
+from wonderful_team.planning.config import TeamConfig
+from wonderful_team.planning.desk import Desk, settle
+from wonderful_team.planning.functions import write_functions
+from wonderful_team.planning.plan_loop import PlanState
+from wonderful_team.planning.scene import SceneShown
+from wonderful_team.planning.together import both
+from wonderful_team.types import NO_WORKSPACE, GroundedTarget, Instruction, KeepOut, Limits, Observation, Plan, Usage, Verdict
+
+Until: TypeAlias = Literal["draft", "checked", "grounded", "actions"]
+UNTIL: tuple[Until, ...] = ("draft", "checked", "grounded", "actions")
+
+
+@dataclass
+class _Progress:
+    """The best so far: what a bound or a cap leaves behind."""
+
+    plan: Plan
+
+
+class Team:
+    """A team of agents over one model, or over one model per role.
+
+    Args:
+        model: A model, or a mapping from role to model with "*" for the rest.
+        config: Way of working, setting, bounds, words.
+        caps: Upper limits on calls, tokens, seconds and money, per trial.
+        subscribers: Told of everything that happens.
+    """
+
+    def __init__(
+        self,
+        model: Model | Mapping[str, Model],
+        config: TeamConfig | None = None,
+        *,
+        caps: Caps | None = None,
+        subscribers: Sequence[Subscriber] = (),
+        concurrency: int = 8,
+        deadline_s: float = 300.0,
+    ) -> None:
+        self.config = config or TeamConfig()
+        self.name = "team" if self.config.way == "lean" else "team:paper"
+        if self.config.setting != "full":
+            self.name += f":{self.config.setting}"
+        self._caps = caps or Caps()
+        self._door = Door(
+            model,
+            budget=Budget(self._caps),
+            subscribers=subscribers,
+            concurrency=concurrency,
+            deadline_s=deadline_s,
+        )
+        self._desk: Desk | None = None
+        self._last: tuple[SceneShown, Plan] | None = None
+
+    @property
+    def usage_by_role(self) -> Mapping[str, Usage]:
+        """What this trial cost so far."""
+        return dict(self._door.budget.by_role)
+
+    @property
+    def usage(self) -> Usage:
+        return self._door.budget.spent
+
+    def reset(self) -> None:
+        """Forget the trial: notebooks, memory, budget."""
+        self._door.budget = Budget(self._caps)
+        self._desk = self._last = None
+
+    async def make_plan(
+        self,
+        observation: Observation,
+        instruction: Instruction,
+        vocabulary: Vocabulary,
+        limits: Limits = NO_WORKSPACE,
+        *,
+        until: Until = "actions",
+        keep_out: Sequence[KeepOut] = (),
+        advice: Sequence[str] = (),
+        parent: str | None = None,
+    ) -> Plan:
+        """A plan for what is seen now. Failures of the method come back as the plan's status, with the best so far.
+
+        Raises:
+            ModelUnavailableError: The provider did not answer.
+            ConfigError: Wrong use.
+        """
+        if until not in UNTIL:
+            raise ConfigError(f"until {until!r}: valid are {', '.join(UNTIL)}")
+        scene = SceneShown(observation, instruction, vocabulary, limits)
+        desk = self._desk or Desk(self._door, self.config, instruction.text)
+        self._desk = desk
+        start = Plan(instruction, "failed", keep_out=tuple(keep_out), scene_hash=observation.hash, parent=parent)
+        progress = _Progress(start)
+        try:
+            plan = await self._plan(desk, scene, progress, until, tuple(advice))
+        except (
+            PlanError,
+            NotFoundError,
+            ModelOutputError,
+            BudgetReached,
+            NotUnderstoodError,
+            NeedsClarification,
+        ) as error:
+            plan = _failed(progress.plan, error)
+        finally:
+            await settle(desk)
+        desk.attempt += 1
+        self._last = (scene, plan)
+        self._door.tell("plan", plan.id, plan)
+        return plan
+
+    async def _plan(
+        self, desk: Desk, scene: SceneShown, progress: _Progress, until: Until, advice: tuple[str, ...]
+    ) -> Plan:
+        absent: list[GroundedTarget] = []
+        for _ in range(1 + self.config.bounds.returns):
+            state = await plan_loop.draft(desk, scene, advice)
+            progress.plan = _with_state(progress.plan, state, "draft")
+            if until == "draft":
+                return progress.plan
+            state = await plan_loop.verify(desk, scene, state)
+            progress.plan = _with_state(progress.plan, state, "checked")
+            if self.config.strict and not state.verified:
+                return _refused(progress.plan, "plan")
+            if until == "checked":
+                return progress.plan
+            state = await plan_loop.extract_targets(desk, scene, state)
+            if absent and not _asks_anew(state, absent):
+                break
+            progress.plan = _with_state(progress.plan, state, "checked")
+            self._remember_plan(desk, state)
+            if not state.subgoals:
+                return replace(
+                    progress.plan, status="planned", message="nothing to do: the instruction is already fulfilled"
+                )
+            plan, absent = await self._ground_and_act(desk, scene, progress, state, until)
+            if not absent:
+                return plan
+            advice = tuple(f"{item.target.id} ({item.target.words}) was not found in the picture." for item in absent)
+            desk.warn("; ".join(advice) + " The plan goes back to the Supervisor.")
+        raise NotFoundError("; ".join(f"{item.target.id} not found: {item.target.words}" for item in absent))
+
+    async def _ground_and_act(
+        self, desk: Desk, scene: SceneShown, progress: _Progress, state: PlanState, until: Until
+    ) -> tuple[Plan, list[GroundedTarget]]:
+        jobs = grounding.make_jobs(desk, scene, state.targets, state.subgoals)
+        lean = self.config.way == "lean" and desk.members.manager
+        needs_paths = any(subgoal.function for subgoal in state.subgoals)
+        steps = None
+        if lean:
+            reading, provenance = await grounding.read_scene(jobs)
+            await desk.memory.border()
+            settling = grounding.settle_reading(jobs, reading, provenance)
+            if until == "actions" and not needs_paths and all(item.found for item in reading.targets):
+                # Steps name targets, not numbers: they are written while the boxes are judged.
+                grounded, steps = await both(settling, acting.write_steps(desk, scene, state, ()))
+            else:
+                grounded = await settling
+        elif desk.members.manager:
+            grounded = await grounding.ground_paper(jobs)
+        else:
+            grounded = await grounding.ground_by_supervisor(jobs)
+        progress.plan = replace(progress.plan, grounded=grounded, status="grounded")
+        desk.stage("grounded", "   ".join(f"{name} {_named(item)}" for name, item in grounded.items()))
+        absent = [item for item in grounded.values() if item.status != "found"]
+        if absent or until == "grounded":
+            return progress.plan, absent
+        if not lean:
+            await desk.memory.border()
+        paths: dict[str, tuple[Point, ...]] = await write_functions(desk, scene, state.subgoals, grounded)
+        if steps is None:
+            steps = await acting.write_steps(desk, scene, state, tuple(paths))
+        progress.plan = replace(progress.plan, steps=steps)
+        state, steps, actions = await acting.check_steps(desk, scene, state, steps, grounded, paths)
+        plan = replace(_with_state(progress.plan, state, "planned"), steps=steps, actions=actions)
+        if self.config.strict and not state.verified:
+            plan = _refused(plan, "steps")
+        pixels = " (no camera given: pixels only)" if any(item.action is None for item in actions) else ""
+        desk.stage("actions", f"{len(actions)} action{'s' * (len(actions) != 1)}{pixels}")
+        return plan, []
+
+    def _remember_plan(self, desk: Desk, state: PlanState) -> None:
+        plan = "; ".join(f"{subgoal.id}: {subgoal.text}" for subgoal in state.subgoals) or "nothing to do"
+        desk.remember("supervisor", "plan", "Which plan was approved?", plan)
+
+    async def decide(self, situation: Situation) -> Decision:
+        """Policy: plan at first; after execution judge, and replan while allowed."""
+        if situation.attempt == 0 and not situation.executed and situation.refused is None:
+            self.reset()
+            if situation.plan is not None:
+                return self._take_over(situation, situation.plan)
+            return await self._next_plan(situation, (), None)
+        if self._last is None:
+            raise ConfigError("the team is asked to go on with a trial that it did not begin")
+        scene, plan = self._last
+        if situation.refused is not None:
+            return await self._after_refusal(situation, plan)
+        assert self._desk is not None
+        verdicts = await judging.judge_outcome(self._desk, scene, plan, situation.observation, situation.executed)
+        if all(verdict.status == "done" for verdict in verdicts):
+            return Done("every subgoal is done", verdicts)
+        causes = "; ".join(
+            f"{v.subgoal} {v.status.replace('_', ' ')}: {v.cause or v.evidence}" for v in verdicts if v.status != "done"
+        )
+        if situation.replans_left <= 0:
+            return GaveUp(f"no replans left; {causes}", "execution", plan, verdicts)
+        now = SceneShown(situation.observation, situation.instruction, situation.vocabulary, situation.limits)
+        advice = await judging.advise(self._desk, now, plan, verdicts, situation.executed, situation.replans_left)
+        if advice.decision == "done":
+            return Done(advice.reasoning, verdicts)
+        if advice.decision == "give_up":
+            return GaveUp(advice.cause or causes, "execution", plan, verdicts)
+        return await self._next_plan(situation, (f"{advice.cause} {advice.advice}".strip(),), plan, verdicts)
+
+    async def _after_refusal(self, situation: Situation, plan: Plan) -> Decision:
+        assert situation.refused is not None
+        reasons = situation.refused.reasons
+        if situation.replans_left <= 0:
+            return GaveUp(str(ActionRefusedError(reasons)), "gate", plan)
+        return await self._next_plan(situation, tuple(f"The safety gate refused: {reason}" for reason in reasons), plan)
+
+    def _take_over(self, situation: Situation, plan: Plan) -> Decision:
+        self._desk = Desk(self._door, self.config, situation.instruction.text, attempt=1)
+        scene = SceneShown(situation.observation, situation.instruction, situation.vocabulary, situation.limits)
+        self._last = (scene, plan)
+        return Act(plan.actions, plan)
+
+    async def _next_plan(
+        self,
+        situation: Situation,
+        advice: tuple[str, ...],
+        before: Plan | None,
+        verdicts: tuple[Verdict, ...] = (),
+    ) -> Decision:
+        plan = await self.make_plan(
+            situation.observation,
+            situation.instruction,
+            situation.vocabulary,
+            situation.limits,
+            keep_out=situation.limits.keep_out,
+            advice=advice,
+            parent=before.id if before is not None else None,
+        )
+        if plan.status != "planned":
+            return GaveUp(plan.message, plan.stage or "plan", plan, verdicts)
+        if not plan.actions:
+            return Done(plan.message, verdicts)
+        return Act(plan.actions, plan, verdicts)
+
+
+def _with_state(plan: Plan, state: PlanState, status: str) -> Plan:
+    return replace(
+        plan,
+        status=status,
+        subgoals=state.subgoals,
+        targets=state.targets,
+        mode=state.mode,
+        verified=state.verified,
+        questions=state.questions,
+        first_draft=plan.first_draft or state.first_draft,
+    )
+
+
+_STATUS: tuple[tuple[type[WonderfulTeamError], str], ...] = (
+    (NotFoundError, "not_found"),
+    (NotUnderstoodError, "not_understood"),
+    (NeedsClarification, "needs_clarification"),
+    (BudgetReached, "budget"),
+)
+
+
+def _refused(plan: Plan, what: str) -> Plan:
+    return replace(plan, status="refused", message=f"Verification did not approve the {what} (strict)", stage="plan")
+
+
+def _failed(plan: Plan, error: WonderfulTeamError) -> Plan:
+    status = next((name for kind, name in _STATUS if isinstance(error, kind)), "failed")
+    choices = error.choices if isinstance(error, NeedsClarification) else ()
+    return replace(plan, status=status, message=str(error), stage=error.stage or "plan", choices=choices)
+
+
+def _asks_anew(state: PlanState, absent: Sequence[GroundedTarget]) -> bool:
+    """Whether a revised plan looks for something else than what was not found."""
+    missing = {(item.target.words, item.target.where, item.target.like) for item in absent}
+    return not missing & {(target.words, target.where, target.like) for target in state.targets}
+
+
+def _named(item: GroundedTarget) -> str:
+    state = {"found": "found", "absent": "not here", "gave_up": "gave up"}[item.status]
+    return f"{item.target.words} ({state})"

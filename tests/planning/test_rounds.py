@@ -1,0 +1,102 @@
+"""The waiting chain of both ways of working, in virtual time: what users wait for must not grow unnoticed."""
+
+from __future__ import annotations
+
+import pytest
+
+from benchmarks.waiting_rounds import measure
+from wonderful_team.planning import SETTINGS, TeamConfig
+
+
+def chain(config: TeamConfig) -> list[dict[str, int]]:
+    _, watch, _ = measure(config)
+    return [dict(kinds) for kinds in watch.rounds()]
+
+
+def test_paper_waits_twelve_rounds():
+    plan, watch, seconds = measure(TeamConfig(way="paper"))
+    assert plan.status == "planned"
+    assert round(seconds) == 12
+    assert [dict(kinds) for kinds in watch.rounds()] == [
+        {"DraftPlan": 1},
+        {"ReviewPlan": 1},
+        {"ExtractTargets": 1},
+        {"LocatePoints": 6, "Remember": 1},
+        {"ChooseMark": 2},
+        {"GiveBox": 2},
+        {"JudgeBox": 2, "Presence": 2},
+        {"ChoosePoint": 2},
+        {"ChoosePoint": 2},
+        {"Remember": 2},
+        {"WriteSteps": 1},
+        {"ReviewSteps": 1},
+    ]
+
+
+def test_lean_waits_five_rounds():
+    plan, watch, seconds = measure(TeamConfig(way="lean"))
+    assert plan.status == "planned"
+    assert round(seconds) == 5
+    main_line = [{k: n for k, n in kinds.items() if k != "Remember"} for kinds in watch.rounds()]
+    assert main_line == [
+        {"DraftPlan": 1},
+        {"ReviewPlan": 1},
+        {"ReadScene": 1},
+        {"JudgeBox": 2, "WriteSteps": 1},
+        {"ReviewSteps": 1},
+    ]
+
+
+GONE = {
+    "s1": {"ReviewPlan", "ReviewSteps"},
+    "s2": {"JudgeBox", "JudgeRevision", "Presence"},
+    "s3": {"ReviewPlan", "ReviewSteps", "JudgeBox", "JudgeRevision", "Presence"},
+    "s4": {"JudgeBox", "MoveBox", "Presence"},
+    "s5": {"ReviewPlan", "ReviewSteps", "JudgeBox", "MoveBox", "Presence"},
+    "s6": {"ChooseMark", "GiveBox", "JudgeBox", "MoveBox", "ChoosePoint", "ReadScene", "Presence"},
+    "s7": {"ReviewPlan", "ReviewSteps", "ChooseMark", "GiveBox", "JudgeBox", "MoveBox", "ChoosePoint", "ReadScene"},
+    "s8": {"Remember"},
+}
+ROLES_GONE = {
+    "s1": {"verification"},
+    "s2": {"checker"},
+    "s3": {"verification", "checker"},
+    "s4": {"checker", "mover"},
+    "s5": {"verification", "checker", "mover"},
+    "s6": {"manager", "checker", "mover"},
+    "s7": {"verification", "manager", "checker", "mover"},
+    "s8": {"memory"},
+}
+
+
+@pytest.mark.parametrize("setting", sorted(set(SETTINGS) - {"full"}))
+@pytest.mark.parametrize("way", ["paper", "lean"])
+def test_a_switched_off_member_sends_nothing(setting, way):
+    plan, watch, _ = measure(TeamConfig(way=way, setting=setting))
+    requests = [request for _, request in watch.sent]
+    assert plan.status == "planned"
+    assert not GONE[setting] & {request.contract for request in requests}
+    assert not ROLES_GONE[setting] & {request.role for request in requests}
+
+
+def test_without_memory_no_request_carries_its_notes():
+    def sources(setting: str) -> set[str]:
+        _, watch, _ = measure(TeamConfig(way="paper", setting=setting))
+        return {note.source for _, request in watch.sent for note in request.notes}
+
+    assert "memory" in sources("full")
+    assert "memory" not in sources("s8")
+
+
+def test_with_the_checker_off_the_mover_may_stop():
+    _, watch, _ = measure(TeamConfig(way="paper", setting="s2"))
+    moves = [request.question for _, request in watch.sent if request.contract == "MoveBox"]
+    assert moves
+    assert all(question.may_stop for question in moves)
+
+
+def test_with_grounding_off_the_supervisor_points():
+    _, watch, _ = measure(TeamConfig(way="lean", setting="s6"))
+    pointing = [request for _, request in watch.sent if request.contract == "LocatePoints"]
+    assert {request.role for request in pointing} == {"supervisor"}
+    assert len(pointing) == 2

@@ -5,6 +5,7 @@ The code runs in the sandbox only. Source: Wang, Shen & Stadie 2024, arXiv:2407.
 
 from __future__ import annotations
 
+import asyncio
 from collections.abc import Mapping, Sequence
 
 from wonderful_team.contracts import FunctionCode, PathReview, ReviewPath, WriteFunction
@@ -50,7 +51,7 @@ async def _write_one(
         )
         code = written.code
         try:
-            path = run_path(code, boxes)
+            path = await asyncio.to_thread(run_path, code, boxes)
         except SandboxError as problem:
             error = str(problem)
             continue

@@ -1,0 +1,177 @@
+"""Grounding Manager: finds targets in the main view: points, boxes, action points, or "not here".
+
+Source of the role: Wang, Shen & Stadie 2024, arXiv:2407.19094; the words are ours.
+"""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from wonderful_team.agents.common import ANSWER, DATA, EXAMPLES, PICTURES, system_words
+from wonderful_team.agents.rendering import (
+    answer_in,
+    example_parts,
+    listed,
+    picture_parts,
+    target_parts,
+    target_words,
+    view_parts,
+    words,
+)
+from wonderful_team.agents.role import Ask, role
+from wonderful_team.agents.strips import strip_parts
+from wonderful_team.contracts import ChooseMark, ChoosePoint, GiveBox, LocatePoints, Presence, ReadScene
+from wonderful_team.types import Part, Target
+
+SYSTEM = system_words(
+    """
+You are the Grounding Manager of a team that plans for a robot. You find the plan's targets in the main view and say
+where they are. A Checker and a Mover refine your boxes; you choose the points at which the robot acts.
+
+You see the whole main view, the plan and the target. Do not change the plan, and do not swap a target for a thing that
+merely resembles it. If a target is not in the picture, say so: "not here" is a useful answer, a guess is not.
+""",
+    PICTURES + "\n" + EXAMPLES,
+    DATA,
+    ANSWER,
+)
+
+LOCATE_POINTS = """
+Point at the target in the picture that is named for the answer.
+- Wanted the centre: give the middle of the visible target (of its part, if one is named). Several points only for
+  several places where this one target could be, the most likely first.
+- Wanted a place: give points at which something can be put down so that it lies in the middle of free, suitable
+  space, clear of other things and of the edges.
+- Points that are labelled on the picture as tried or rejected were wrong: choose elsewhere.
+- found is false, without points, when you cannot see the target or no such space exists. Do not guess.
+"""
+
+CHOOSE_MARK = """
+Several independent guesses are numbered on the picture. Choose the number whose point fits the target best.
+- Wanted the centre: the point must lie on the target itself; of several that do, the one nearest to its middle.
+- Wanted a place: the point with the most free, suitable space around it.
+- number is null when no numbered point is on the target. Look at the scene, not at the numbers' order.
+"""
+
+GIVE_BOX = """
+Draw a box round the target whose centre is marked by a point.
+- Tight: each edge touches the outermost visible pixel of the target. The whole target, but not its shadow, and nothing
+  that merely touches it. If a part is named, box only that part.
+- For an area, box the free or described region.
+- If the marked point is off but the target is near, box the target where it really is.
+- box is null when the target is not in the picture.
+"""
+
+READ_SCENE = """
+Find every target in the picture that is named for the answer: for each one a box and one point for each use it lists.
+- Box: tight round the visible target, without its shadow (only the part, if one is named). For an area: round the free
+  or described region.
+- Point for pick or grasp: on the solid surface of the target itself, near its middle. For ring-shaped or L-shaped
+  things, the middle of the box may be a hole: stay on the material.
+- Point for place: the middle of the container's inside, of the surface, or of the free space.
+- push_start: beside the thing, on the side away from where it should go. push_end: where the push should stop.
+- Two targets are the same spot only if the plan means the same thing.
+- found is false, with a null box and no points, when a target is not in the picture. Do not guess.
+Answer every target once, by its id.
+"""
+
+PRESENCE = """
+For each edge of the target's box you see up to two thin strips of the scene: one just inside the edge, one just
+outside. Say for each whether any of the target shows in it.
+- Only the target itself counts: not its shadow, not another thing, not the background.
+- A strip that is missing lies outside the view: answer false for it.
+Answer all four edges, each once.
+"""
+
+CHOOSE_POINT = """
+Choose the numbered point at which the robot should act on the target. The final box is drawn on the crop.
+- pick or grasp: on the solid surface of the target, near its middle, where nothing else covers it. Never a hole, never
+  the background inside the box.
+- place: the middle of the container's inside, of the surface, or of the free space.
+- push_start: just beside the thing, on the side away from where it should go. push_end: where the push should stop.
+- Second round: the points lie close together; choose the one that is most precisely right.
+"""
+
+_WANTED: dict[Literal["centre", "place"], str] = {
+    "centre": "the centre of the target",
+    "place": "a place at which something can be put down",
+}
+
+
+def _target_parts(target: Target) -> list[Part]:
+    return words(f"Target {target_words(target)}")
+
+
+def _plan_parts(plan: tuple[str, ...]) -> list[Part]:
+    return listed("The plan", plan, "not stated")
+
+
+def render_locate_points(question: LocatePoints) -> list[Part]:
+    count = "exactly one point" if question.count == 1 else f"at most {question.count} points"
+    return [
+        *picture_parts(question.view, "the main view"),
+        *view_parts("Other views", question.context, "another view, for understanding only"),
+        *_plan_parts(question.plan),
+        *example_parts(question.examples),
+        *_target_parts(question.target),
+        *words(f"Wanted: {_WANTED[question.purpose]}; {count} if it is there."),
+        *answer_in(question.view),
+    ]
+
+
+def _render_choose_mark(question: ChooseMark) -> list[Part]:
+    return [
+        *picture_parts(question.view, "the main view"),
+        *_plan_parts(question.plan),
+        *example_parts(question.examples),
+        *_target_parts(question.target),
+        *words(f"Wanted: {_WANTED[question.purpose]}."),
+    ]
+
+
+def _render_give_box(question: GiveBox) -> list[Part]:
+    return [
+        *picture_parts(question.view, "the main view"),
+        *_plan_parts(question.plan),
+        *example_parts(question.examples),
+        *_target_parts(question.target),
+        *answer_in(question.view),
+    ]
+
+
+def _render_read_scene(question: ReadScene) -> list[Part]:
+    return [
+        *picture_parts(question.view, "the main view"),
+        *view_parts("Other views", question.context, "another view, for understanding only"),
+        *_plan_parts(question.plan),
+        *example_parts(question.examples),
+        *target_parts(question.targets),
+        *answer_in(question.view),
+    ]
+
+
+def _render_presence(question: Presence) -> list[Part]:
+    return [*example_parts(question.examples), *_target_parts(question.target), *strip_parts(question.strips)]
+
+
+def _render_choose_point(question: ChoosePoint) -> list[Part]:
+    turn = "second round, fine" if question.fine else "first round, coarse"
+    return [
+        *picture_parts(question.crop, "the neighbourhood of the target"),
+        *_plan_parts(question.plan),
+        *example_parts(question.examples),
+        *_target_parts(question.target),
+        *words(f"Wanted: the point for {question.role} ({turn})."),
+    ]
+
+
+MANAGER = role(
+    "manager",
+    SYSTEM,
+    Ask(LocatePoints, LOCATE_POINTS, render_locate_points),
+    Ask(ChooseMark, CHOOSE_MARK, _render_choose_mark),
+    Ask(GiveBox, GIVE_BOX, _render_give_box),
+    Ask(ReadScene, READ_SCENE, _render_read_scene),
+    Ask(Presence, PRESENCE, _render_presence),
+    Ask(ChoosePoint, CHOOSE_POINT, _render_choose_point),
+)

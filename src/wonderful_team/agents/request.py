@@ -1,0 +1,73 @@
+"""A question becomes a request: the role's words, the question rendered into words and pictures, the notes."""
+
+from __future__ import annotations
+
+from wonderful_team.agents.prompts import ROLES, Prompts
+from wonderful_team.agents.rendering import note_parts
+from wonderful_team.agents.role import Role
+from wonderful_team.contracts import Question
+from wonderful_team.errors import ConfigError, UnknownNameError
+from wonderful_team.types import Note, Part, Request, Words
+
+
+def build_request(
+    question: Question,
+    *,
+    id: str,  # noqa: A002  the request's field has this name
+    stage: str,
+    role: str | None = None,
+    notes: tuple[Note, ...] = (),
+    sample: int = 0,
+    prompts: Prompts | None = None,
+) -> Request:
+    """Render a question as a request.
+
+    The question's own content comes first, then the notes, then the words of the ask: requests of one role about one
+    task so share a long prefix, and the ask stands next to the answer.
+
+    Args:
+        question: What is asked; every field of it is shown, and nothing else.
+        id: The request's id.
+        stage: plan | ground | act | memory | replan | other.
+        role: Who asks; None for the role that normally asks this kind of question.
+        notes: The role's notebook and the system memory; shown as lines.
+        sample: Number of this independent sample.
+        prompts: Words to use; None for the built-in ones.
+
+    Raises:
+        ConfigError: No such role, or the role does not ask this kind of question.
+    """
+    texts = Prompts.default() if prompts is None else prompts
+    asker = role_for(question, role)
+    ask = asker.asks[question.contract]
+    parts: list[Part] = [
+        *ask.render(question),
+        *note_parts(notes),
+        Words(texts.ask(asker.name, question.contract)),
+    ]
+    return Request(
+        id=id,
+        stage=stage,
+        role=asker.name,
+        question=question,
+        parts=tuple(parts),
+        output=question.output(),
+        system=texts.system(asker.name),
+        notes=notes,
+        sample=sample,
+    )
+
+
+def role_for(question: Question, role: str | None = None) -> Role:
+    """The role that asks: the named one, or the one that normally asks this kind of question."""
+    if role is not None:
+        if role not in ROLES:
+            raise UnknownNameError("role", role, ROLES)
+        if question.contract not in ROLES[role].asks:
+            raise ConfigError(f"role {role!r} does not ask {question.contract}; it asks {', '.join(ROLES[role].asks)}")
+        return ROLES[role]
+    askers = [asker for asker in ROLES.values() if question.contract in asker.asks]
+    if not askers:
+        raise ConfigError(f"no role asks {question.contract}")
+    # Both the Manager and, with grounding switched off, the Supervisor point; normally it is the Manager.
+    return askers[-1]

@@ -1,0 +1,53 @@
+"""What a role is: its standing words, and for every contract it asks, the words of the ask and the rendering.
+
+`system` and the words of each ask are plain text without holes, so that users can read and replace them as files;
+everything that changes from request to request is rendered as data by the ask's `render`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import Any
+
+from wonderful_team.contracts import Question
+from wonderful_team.types import Part
+
+
+@dataclass(frozen=True, eq=False)
+class Ask:
+    """How one contract is asked.
+
+    Attributes:
+        contract: The kind of question.
+        words: What is asked for, shown after the rendered question.
+        render: Turns a question of that kind into words and pictures, every field of it.
+    """
+
+    contract: type[Question]
+    words: str
+    render: Callable[[Any], list[Part]]
+
+
+@dataclass(frozen=True, eq=False)
+class Role:
+    """One member of the team.
+
+    Attributes:
+        system: The standing words: scope, what it sees, what it must not do; the same for every request of the role.
+        asks: By the contract's name.
+    """
+
+    name: str
+    system: str
+    asks: Mapping[str, Ask]
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "asks", MappingProxyType(dict(self.asks)))
+
+
+def role(name: str, system: str, *asks: Ask) -> Role:
+    """A role with its asks, its words trimmed."""
+    trimmed = (Ask(ask.contract, ask.words.strip(), ask.render) for ask in asks)
+    return Role(name, system.strip(), {ask.contract.__name__: ask for ask in trimmed})

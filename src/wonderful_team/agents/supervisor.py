@@ -1,0 +1,207 @@
+"""Supervisor: drafts and revises the plan, lists targets, writes steps and helper functions.
+
+Source of the role: Wang, Shen & Stadie 2024, arXiv:2407.19094; the words are ours.
+"""
+
+from __future__ import annotations
+
+from wonderful_team.agents.common import ANSWER, DATA, EXAMPLES, INSTRUCTION, PICTURES, TARGETS, system_words
+from wonderful_team.agents.manager import LOCATE_POINTS, render_locate_points
+from wonderful_team.agents.rendering import (
+    ability_parts,
+    fenced,
+    listed,
+    picture_parts,
+    subgoal_parts,
+    subgoal_words,
+    target_parts,
+    task_parts,
+    words,
+)
+from wonderful_team.agents.role import Ask, role
+from wonderful_team.contracts import (
+    DraftPlan,
+    ExtractTargets,
+    LocatePoints,
+    ReviewPath,
+    RevisePlan,
+    WriteFunction,
+    WriteSteps,
+)
+from wonderful_team.types import Doubt, Part
+
+SYSTEM = system_words(
+    """
+You are the Supervisor of a team that plans for a robot. You decide what is to be done and in which order: you write
+the plan, you answer doubts about it, you name what has to be found, and you write the robot's steps.
+
+You see the instruction, the views of the scene and the notes of the team. Other agents find positions and check your
+work; code turns your steps into motion. So plan in words: no coordinates in plans or steps. Ask for nothing that the
+robot is not said to be able to do, and do not invent things that neither the pictures nor the instruction show.
+""",
+    PICTURES + "\n" + EXAMPLES,
+    DATA + "\n" + INSTRUCTION,
+    ANSWER,
+)
+
+PLAN_RULES = """
+How to write the plan
+- A subgoal states one result that a later picture can show, such as "the red block lies in the bowl". Ids G1, G2, and
+  so on, in the order in which they are carried out. No coordinates.
+- As few subgoals as the instruction needs: as a rule one for each thing that moves. "All" or "every" means one subgoal
+  for each thing that you count in the main view.
+- Look at the scene before you write: what covers, blocks or closes something has to be dealt with first, in a subgoal
+  of its own. Things that the instruction does not concern stay where they are.
+- If the instruction asks for a sequence, an order or going back to how things were, each stage is a subgoal.
+- An object's picture in the instruction shows what to look for. A picture of a scene, a frame or a before and after
+  pair shows an arrangement or a motion to reproduce: work out from it which thing goes where.
+- after: only the subgoals without which this one cannot be reached. function: null, unless a subgoal needs a path of
+  its own shape, such as a circle or a zigzag, and the robot can follow paths; then say what is to be computed.
+- mode: one_step for a short plan without obstacles; full when many subgoals depend on each other.
+- Empty subgoals only when the main view shows that the instruction is already fulfilled.
+- clarification: null, unless two or more readings remain after looking closely, they lead to different results, and
+  nothing you see decides between them. Then ask one question and list the choices. Never ask what a picture answers.
+""".strip()
+
+DRAFT = f"""
+Write the plan that fulfils the instruction in the scene that is shown.
+
+{PLAN_RULES}
+
+{TARGETS}
+"""
+
+REVISE = f"""
+Verification raised the doubt above about your plan. Look at the scene again with its eyes.
+- decision revise: the doubt is right. Give the whole new plan, not only the changed part, and say in `answer` what
+  changed. Keep what was not in doubt as it was.
+- decision keep: the plan is right as it stands. Give null for the plan, and say in `answer` what in the pictures or
+  the instruction settles the doubt.
+
+{PLAN_RULES}
+
+{TARGETS}
+"""
+
+EXTRACT = f"""
+The plan above is approved. List every target that has to be found in the main view to carry it out, and in `needs`,
+for each subgoal, the ids of its targets: at least one for each subgoal.
+
+{TARGETS}
+"""
+
+STEPS = """
+Write the steps that carry out the plan, in order. Code computes every position from the targets, so name targets by
+id and give no coordinates.
+- Each step names the subgoal it serves, and every subgoal is served. Use only what the robot can do, and no step that
+  the plan does not need.
+- A place is "at" a target (the point chosen on it), "beside" a target (then give the side, as the main view shows it),
+  or the "origin" of a target (where it stood at first; for putting things back).
+- rotate_deg: only what the instruction or its pictures state; clockwise seen from above is positive, anticlockwise
+  negative; 0 when nothing is said.
+- With a gripper: open, move above, move at, close, move clear, then move above the place, move at, open, move clear.
+- A subgoal with a helper function is carried out with a follow step that names it.
+- If Verification asked about the last version, mend what it found and keep the rest.
+"""
+
+FUNCTION = """
+Write a Python function path(boxes) for the subgoal above: it returns the points of the tool's path, in order, as a
+list of (x, y) in pixels of the picture, whose width and height are stated with it.
+- boxes maps a target's id to its box (x0, y0, x1, y1) in the same pixels. Compute the points from these boxes, so that
+  the path fits the things; do not type positions that you read off the picture.
+- Plain Python with functions, loops and the math module. Nothing else can be imported; there are no files, no input,
+  no yield and no classes that inherit.
+- At least two points and at most as many as stated; all inside the picture. The first is where the path begins.
+- If an error or a criticism of the last version is shown, mend its cause and return the whole function again.
+"""
+
+REVIEW_PATH = """
+The path that your helper function computed is drawn on the picture. Does it do what the subgoal asks: right place,
+right shape, right order, away from things it must not touch?
+- accepted true: it will do; problem is empty.
+- accepted false: name the one thing that is most wrong and how it should be, in one sentence.
+"""
+
+
+def _render_draft(question: DraftPlan) -> list[Part]:
+    return [
+        *task_parts(question.task),
+        *ability_parts(question.step_kinds),
+        *listed("What went wrong before, to be avoided now", question.advice),
+        *_targets_wanted(question.with_targets),
+    ]
+
+
+def _render_revise(question: RevisePlan) -> list[Part]:
+    return [
+        *task_parts(question.task),
+        *ability_parts(question.step_kinds),
+        *subgoal_parts(question.subgoals, "Your plan"),
+        *target_parts(question.targets),
+        *_doubt_parts(question.doubt),
+        *_targets_wanted(question.with_targets),
+    ]
+
+
+def _doubt_parts(doubt: Doubt) -> list[Part]:
+    lines = [f"Verification's doubt about {doubt.about} ({doubt.kind}): {doubt.question}"]
+    if doubt.answer:
+        lines.append(f"What was answered before: {doubt.answer}" + (" (the plan was changed)" if doubt.changed else ""))
+    elif doubt.changed:
+        lines.append("The plan was changed for it before.")
+    return words(*lines)
+
+
+def _targets_wanted(with_targets: bool) -> list[Part]:
+    if with_targets:
+        return words("Targets: list them with the plan; each subgoal names at least one.")
+    return words("Targets: leave `targets` empty, for the plan and for every subgoal; they are listed later.")
+
+
+def _render_extract(question: ExtractTargets) -> list[Part]:
+    return [*task_parts(question.task), *subgoal_parts(question.subgoals, "The approved plan")]
+
+
+def _render_steps(question: WriteSteps) -> list[Part]:
+    return [
+        *task_parts(question.task),
+        *ability_parts(question.step_kinds),
+        *subgoal_parts(question.subgoals),
+        *target_parts(question.targets),
+        *listed("Subgoals with a helper function to follow", question.functions),
+        *(words(f"Verification asked about the last version: {question.doubt}") if question.doubt else []),
+    ]
+
+
+def _render_function(question: WriteFunction) -> list[Part]:
+    boxes = [
+        f"{name}: ({box.x0:.1f}, {box.y0:.1f}, {box.x1:.1f}, {box.y1:.1f})" for name, box in question.boxes.items()
+    ]
+    return [
+        *words(f"Subgoal {subgoal_words(question.subgoal)}"),
+        *picture_parts(question.view, "the main view"),
+        *listed("boxes, as (x0, y0, x1, y1) in pixels of this picture", boxes, "none"),
+        *words(f"At most {question.max_points} points."),
+        *(words("Your last version:", fenced("code", question.last_code)) if question.last_code else []),
+        *(words("What was wrong with it:", fenced("error", question.error)) if question.error else []),
+    ]
+
+
+def _render_review_path(question: ReviewPath) -> list[Part]:
+    return [
+        *words(f"Subgoal {subgoal_words(question.subgoal)}"),
+        *picture_parts(question.view, "the main view"),
+    ]
+
+
+SUPERVISOR = role(
+    "supervisor",
+    SYSTEM,
+    Ask(DraftPlan, DRAFT, _render_draft),
+    Ask(RevisePlan, REVISE, _render_revise),
+    Ask(ExtractTargets, EXTRACT, _render_extract),
+    Ask(WriteSteps, STEPS, _render_steps),
+    Ask(WriteFunction, FUNCTION, _render_function),
+    Ask(ReviewPath, REVIEW_PATH, _render_review_path),
+    Ask(LocatePoints, LOCATE_POINTS, render_locate_points),
+)

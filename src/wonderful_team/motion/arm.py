@@ -1,0 +1,181 @@
+"""Steps of an arm with a gripper: move, open, close, turn, follow a path, go home; and driving a mobile base."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from wonderful_team.actions import (
+    At,
+    CloseStep,
+    FollowStep,
+    Gripper,
+    Home,
+    HomeStep,
+    MoveStep,
+    MoveTo,
+    Navigate,
+    NavigateStep,
+    OpenStep,
+    RotateGripper,
+    RotateGripperStep,
+    Trajectory,
+)
+from wonderful_team.geometry import Pose
+from wonderful_team.motion.heights import above_z_m, clear_z_m, grasp_z_m
+from wonderful_team.motion.lift import Spot
+from wonderful_team.motion.pick_place import put_spot
+from wonderful_team.motion.places import TO_GRASP, Places
+from wonderful_team.motion.progress import Held, Moved, Progress
+from wonderful_team.motion.sources import source
+from wonderful_team.motion.turns import yaw_of
+from wonderful_team.types import PlannedAction
+
+
+def ground_move(step: MoveStep, places: Places, progress: Progress) -> tuple[PlannedAction, Progress]:
+    """Move the tool; a held thing is carried such that its centre arrives at the place."""
+    spot, gripping = _tool_goal(step, places, progress)
+    tool = _at_height(step, spot, gripping, places, progress)
+    action = None if tool.position_m is None else MoveTo(Pose.at(tool.position_m, progress.yaw_rad))
+    planned = PlannedAction(step, action, (source("waypoint", step.to.target, tool),))
+    return planned, replace(progress, tool=tool, height=step.height, over=step.to.target)
+
+
+def _tool_goal(step: MoveStep, places: Places, progress: Progress) -> tuple[Spot, bool]:
+    """Where the tool goes, still on the surface, and whether it goes there to grip a thing."""
+    held = progress.held
+    if held is None:
+        if isinstance(step.to, At):
+            role, spot = places.spot(step.to.target, TO_GRASP, progress)
+            return spot, role in ("grasp", "pick")
+        return places.destination(step.to, progress, None), False
+    if step.to == At(held.target) and progress.tool is not None:
+        resting = held.support_z_m
+        tool = progress.tool
+        if tool.position_m is None:
+            return Spot(tool.px, None, f"over where {held.target} was gripped"), False
+        x, y, _ = tool.position_m
+        return Spot(tool.px, np.array([x, y, resting]), f"where the tool holds {held.target}"), False
+    yaw_rad = progress.yaw_rad - held.yaw_rad
+    goal = places.destination(step.to, progress, held.target, yaw_rad)
+    return put_spot(held.tool, held.centre, goal, yaw_rad, held.target), False
+
+
+def _at_height(step: MoveStep, spot: Spot, gripping: bool, places: Places, progress: Progress) -> Spot:
+    if spot.position_m is None:
+        return spot
+    x, y, surface = (float(value) for value in spot.position_m)
+    hanging = progress.held.hanging_m if progress.held is not None else 0.0
+    match step.height:
+        case "at" if gripping:
+            z, rule = grasp_z_m(surface, _support_now(places, step.to.target, progress)), "to grip it"
+        case "at":
+            z, rule = surface + hanging, "down to it"
+        case "above":
+            z, rule = above_z_m(surface, places.limits, hanging), "just above"
+        case "clear":
+            z, rule = clear_z_m([surface, *_surfaces(places)], places.limits, hanging), "clear of everything"
+    return Spot(spot.px, np.array([x, y, z]), f"{spot.how}; z = {z:.3f} m, {rule}")
+
+
+def _support_now(places: Places, name: str, progress: Progress) -> float:
+    resting = places.resting(name, progress).position_m
+    assert resting is not None
+    return float(resting[2])
+
+
+def _surfaces(places: Places) -> list[float]:
+    """Heights of all surfaces at the points that were found."""
+    heights = []
+    for name, target in places.grounded.items():
+        for px in target.points.values():
+            position = places.lift.surface(px, name).position_m if places.lift.inside(px) else None
+            if position is not None:
+                heights.append(float(position[2]))
+    return heights
+
+
+def ground_close(step: CloseStep, places: Places, progress: Progress) -> tuple[PlannedAction, Progress]:
+    """Close the gripper; what it was moved down to is held from now on."""
+    planned = PlannedAction(step, Gripper("tight" if step.tight else "close"))
+    name = progress.over
+    if progress.held is not None or progress.height != "at" or name is None or progress.tool is None:
+        return planned, progress
+    held = Held(
+        name,
+        progress.tool,
+        places.centre(name, progress),
+        _support_z_m(places, name, progress),
+        progress.yaw_rad,
+    )
+    return planned, replace(progress, held=held)
+
+
+def _support_z_m(places: Places, name: str, progress: Progress) -> float:
+    return 0.0 if places.lift.camera is None else _support_now(places, name, progress)
+
+
+def ground_open(step: OpenStep, places: Places, progress: Progress) -> tuple[PlannedAction, Progress]:
+    """Open the gripper; what it held lies where the tool is now."""
+    planned = PlannedAction(step, Gripper("open"))
+    held, tool = progress.held, progress.tool
+    if held is None or tool is None:
+        return planned, replace(progress, held=None)
+    moved = Moved(
+        places.step,
+        held.tool.px,
+        tool.px,
+        held.tool.position_m,
+        tool.position_m,
+        progress.yaw_rad - held.yaw_rad,
+    )
+    return planned, replace(progress.with_move(held.target, moved), held=None)
+
+
+def ground_rotate(step: RotateGripperStep, places: Places, progress: Progress) -> tuple[PlannedAction, Progress]:
+    """Turn the gripper; later moves keep the turn."""
+    yaw_rad = yaw_of(step.rotate_deg)
+    return PlannedAction(step, RotateGripper(yaw_rad)), replace(progress, yaw_rad=progress.yaw_rad + yaw_rad)
+
+
+def ground_follow(step: FollowStep, places: Places, progress: Progress) -> tuple[PlannedAction, Progress]:
+    """Follow a path: along the surface after the tool was moved down to something, else at the clearance."""
+    if step.function not in places.paths:
+        known = ", ".join(places.paths) or "none"
+        raise places.fail(f"there is no path for function {step.function!r}; paths: {known}")
+    points = places.paths[step.function]
+    hanging = progress.held.hanging_m if progress.held is not None else 0.0
+    width, height = places.lift.view.size_px
+    spots = []
+    for number, px in enumerate(points, start=1):
+        if not places.lift.inside(px):
+            raise places.fail(
+                f"point {number} of path {step.function!r} at ({px[0]:.0f}, {px[1]:.0f}) px lies outside the view of "
+                f"{width} x {height} px"
+            )
+        seen = places.lift.surface(px, f"point {number} of the path of {step.function}")
+        if seen.position_m is None:
+            spots.append(seen)
+            continue
+        x, y, surface = (float(value) for value in seen.position_m)
+        touching = progress.height == "at"
+        z = surface + hanging if touching else clear_z_m([surface, *_surfaces(places)], places.limits, hanging)
+        rule = "on the surface" if touching else "clear of everything"
+        spots.append(Spot(px, np.array([x, y, z]), f"{seen.how}; z = {z:.3f} m, {rule}"))
+    positions = [spot.position_m for spot in spots if spot.position_m is not None]
+    action = Trajectory(np.array(positions)) if positions and len(positions) == len(spots) else None
+    planned = PlannedAction(step, action, tuple(source("waypoint", step.function, spot) for spot in spots))
+    return planned, replace(progress, tool=spots[-1] if spots else progress.tool, over=None)
+
+
+def ground_home(step: HomeStep, places: Places, progress: Progress) -> tuple[PlannedAction, Progress]:
+    """Go home; the gripper keeps what it holds, at no place of the picture."""
+    return PlannedAction(step, Home()), replace(progress, tool=None, height="clear", over=None)
+
+
+def ground_navigate(step: NavigateStep, places: Places, progress: Progress) -> tuple[PlannedAction, Progress]:
+    """Drive straight to a place on the floor."""
+    spot = places.destination(step.to, progress, None)
+    action = None if spot.position_m is None else Navigate(spot.position_m[None, :2])
+    return PlannedAction(step, action, (source("waypoint", step.to.target, spot),)), progress

@@ -1,0 +1,119 @@
+"""Pixels to metres: onto the visible surface where depth is known, else onto the table plane."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from wonderful_team.geometry import Box, PlanarCamera
+from wonderful_team.geometry.arrays import Array
+from wonderful_team.geometry.cameras import Camera
+from wonderful_team.pictures import Point
+from wonderful_team.types import View
+
+TABLE_Z_M = 0.0
+"""Height of the table in the base frame [m]."""
+RING_SHARE = 0.15
+"""How far round a box its surroundings are measured (share of its smaller side)."""
+DEPTH_NOISE_M = 0.01
+"""Surfaces seen less than this below the table are the table; what lies deeper is beside it [m]."""
+_WINDOW_PER_PX = 1 / 150
+"""Half width of the depth window per pixel of the view's smaller side: 1 px in a 128 px view, 5 px in a 720 px one."""
+
+
+@dataclass(frozen=True, eq=False)
+class Spot:
+    """A pixel of the main view, the point in the base frame that it stands for, and the rule that made it one.
+
+    Attributes:
+        position_m: Shape (3,) [m]; None without a camera.
+    """
+
+    px: Point
+    position_m: Array | None
+    how: str
+
+
+@dataclass(frozen=True, eq=False)
+class Lift:
+    """Turns pixels of one view into points of the base frame."""
+
+    view: View
+
+    @property
+    def camera(self) -> Camera | None:
+        return self.view.camera
+
+    def inside(self, px: Point) -> bool:
+        """Whether a pixel lies in the view."""
+        width, height = self.view.size_px
+        return 0 <= px[0] <= width and 0 <= px[1] <= height
+
+    def surface(self, px: Point, name: str) -> Spot:
+        """The visible surface at a pixel: by depth where there is any near it, else on the table plane."""
+        if self.camera is None:
+            return Spot(px, None, f"{name}, no camera: pixels only")
+        depth_m = None if isinstance(self.camera, PlanarCamera) else self._depth_near(px)
+        if depth_m is None:
+            return self.at_height(px, self._plane_z_m, f"{name}, on the table plane (no depth there)")
+        position = np.asarray(self.camera.deproject([px], [depth_m])[0])
+        how = f"{name}, depth {depth_m:.3f} m"
+        if TABLE_Z_M - DEPTH_NOISE_M <= position[2] < TABLE_Z_M:
+            return self.at_height(px, TABLE_Z_M, f"{how}, on the table")
+        return Spot(px, position, how)
+
+    def at_height(self, px: Point, z_m: float, how: str) -> Spot:
+        """Where a pixel's ray meets a height."""
+        if self.camera is None:
+            return Spot(px, None, how)
+        return Spot(px, np.asarray(self.camera.on_plane([px], z_m)[0]), how)
+
+    def support_z_m(self, box: Box | None) -> float:
+        """Height of what a boxed thing stands on, measured just round its box; the table's without a box or depth.
+
+        Neighbours stand higher than the support, so a low quantile of the heights is taken; what lies lower than the
+        table is beside it and supports nothing.
+        """
+        if self.camera is None or box is None or isinstance(self.camera, PlanarCamera):
+            return self._plane_z_m
+        margin = max(2.0, RING_SHARE * min(box.width, box.height))
+        spots = [self.surface(px, "round the box") for px in _outline(box.grown(*[margin] * 4)) if self.inside(px)]
+        heights = [float(spot.position_m[2]) for spot in spots if spot.position_m is not None]
+        supports = [height for height in heights if height >= TABLE_Z_M]
+        return float(np.quantile(supports, 0.25)) if supports else self._plane_z_m
+
+    def to_px(self, position_m: Array) -> Point:
+        """The pixel at which a point of the base frame shows; only with a camera."""
+        assert self.camera is not None
+        x, y = self.camera.project([position_m])[0]
+        return float(x), float(y)
+
+    @property
+    def _plane_z_m(self) -> float:
+        return self.camera.plane_z_m if isinstance(self.camera, PlanarCamera) else TABLE_Z_M
+
+    def _depth_near(self, px: Point) -> float | None:
+        """Median of the valid depths in a small window; the window grows up to three times when there is none."""
+        depth = self.view.depth_m
+        if depth is None:
+            return None
+        height, width = depth.shape
+        column, row = min(int(px[0]), width - 1), min(int(px[1]), height - 1)
+        reach = max(1, round(min(width, height) * _WINDOW_PER_PX))
+        for radius in (reach, 2 * reach, 3 * reach):
+            window = depth[max(0, row - radius) : row + radius + 1, max(0, column - radius) : column + radius + 1]
+            valid = window[np.isfinite(window) & (window > 0)]
+            if valid.size:
+                return float(np.median(valid))
+        return None
+
+
+def _outline(box: Box) -> list[Point]:
+    """Sixteen points along a box's outline."""
+    corners = [*box.corners, box.corners[0]]
+    return [
+        (a[0] + (b[0] - a[0]) * share, a[1] + (b[1] - a[1]) * share)
+        for a, b in zip(corners, corners[1:], strict=False)
+        for share in (0.0, 0.25, 0.5, 0.75)
+    ]

@@ -1,0 +1,64 @@
+"""PickPlace: from a thing's pick point to where its centre is to lie, turned on the way."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from wonderful_team.actions import PickPlace, PickPlaceStep
+from wonderful_team.geometry.arrays import Array
+from wonderful_team.motion.lift import Spot
+from wonderful_team.motion.places import TO_PICK, Places
+from wonderful_team.motion.progress import Moved, Progress
+from wonderful_team.motion.sources import source
+from wonderful_team.motion.turns import turned_m, turned_px, yaw_of
+from wonderful_team.types import PlannedAction
+
+
+def ground_pick_place(step: PickPlaceStep, places: Places, progress: Progress) -> tuple[PlannedAction, Progress]:
+    """The action for one step.
+
+    A robot that picks at P and puts down at Q moves the thing's centre C to Q + R(yaw)(C - P). So Q is chosen such that
+    the centre, not the pick point, lands on the place; a thing that is turned in place turns about its own centre.
+    """
+    yaw_rad = yaw_of(step.rotate_deg)
+    pick = places.spot(step.pick, TO_PICK, progress)[1]
+    centre = places.centre(step.pick, progress)
+    goal = places.destination(step.place, progress, step.pick, yaw_rad)
+    put = put_spot(pick, centre, goal, yaw_rad, step.pick)
+    moved = Moved(places.step, pick.px, put.px, _on_support(pick, places, step.pick, progress), put.position_m, yaw_rad)
+    action = None
+    if pick.position_m is not None and put.position_m is not None:
+        action = PickPlace(pick.position_m, put.position_m, yaw_rad)
+    turned = f"; turned {step.rotate_deg:g} degrees clockwise, as the step states" if step.rotate_deg else ""
+    planned = PlannedAction(
+        step,
+        action,
+        (
+            source("pick", step.pick, pick),
+            source("place", step.place.target, Spot(goal.px, put.position_m, put.how + turned)),
+        ),
+    )
+    return planned, progress.with_move(step.pick, moved)
+
+
+def put_spot(tool: Spot, centre: Spot, goal: Spot, yaw_rad: float, name: str) -> Spot:
+    """Where the tool has to end so that the thing's centre ends at `goal`; heights are left to the caller's goal."""
+    dx, dy = turned_px((centre.px[0] - tool.px[0], centre.px[1] - tool.px[1]), yaw_rad)
+    px = (goal.px[0] - dx, goal.px[1] - dy)
+    if tool.position_m is None or centre.position_m is None or goal.position_m is None:
+        return Spot(px, None, goal.how)
+    shift = -turned_m(centre.position_m - tool.position_m, yaw_rad)
+    position = goal.position_m + np.array([shift[0], shift[1], 0.0])
+    how = goal.how
+    if np.hypot(shift[0], shift[1]) > 5e-4:
+        how += f"; shifted ({shift[0]:+.3f}, {shift[1]:+.3f}) m so that the centre of {name} lands there"
+    return Spot(px, position, how)
+
+
+def _on_support(pick: Spot, places: Places, name: str, progress: Progress) -> Array | None:
+    """The pick point at the height of what the thing stands on now."""
+    if pick.position_m is None:
+        return None
+    resting = places.resting(name, progress).position_m
+    assert resting is not None
+    return np.array([pick.position_m[0], pick.position_m[1], resting[2]])

@@ -1,0 +1,165 @@
+"""Places that steps name, as spots: at a target, beside it, or where it stood at first."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from wonderful_team.actions import At, Beside, OriginOf, Place
+from wonderful_team.errors import PlanError
+from wonderful_team.geometry import Box
+from wonderful_team.motion.beside import beside_px, half_extents
+from wonderful_team.motion.lift import Lift, Spot
+from wonderful_team.motion.progress import Progress
+from wonderful_team.pictures import Point
+from wonderful_team.types import GroundedTarget, Limits, PointRole
+
+TO_PICK: tuple[PointRole, ...] = ("pick", "grasp")
+TO_PLACE: tuple[PointRole, ...] = ("place", "push_end", "pick", "grasp")
+ANY: tuple[PointRole, ...] = ("pick", "grasp", "place", "push_end", "push_start")
+TO_GRASP: tuple[PointRole, ...] = ("grasp", "pick", "place", "push_start", "push_end")
+
+
+@dataclass(frozen=True, eq=False)
+class Places:
+    """The grounded targets of a plan in their view.
+
+    Attributes:
+        step: Number of the step that is being computed, from 1; for messages.
+    """
+
+    grounded: Mapping[str, GroundedTarget]
+    lift: Lift
+    limits: Limits
+    paths: Mapping[str, tuple[Point, ...]]
+    step: int = 1
+
+    def fail(self, message: str) -> PlanError:
+        """The error to raise, naming the step."""
+        return PlanError(f"step {self.step}: {message}")
+
+    def target(self, name: str) -> GroundedTarget:
+        """A grounded target that was found, in this view.
+
+        Raises:
+            PlanError: It was not grounded, is not in the picture, or was found in another view.
+        """
+        if name not in self.grounded:
+            known = ", ".join(self.grounded) or "none"
+            raise self.fail(f"target {name!r} was not grounded; grounded targets: {known}")
+        found = self.grounded[name]
+        if found.status == "absent":
+            raise self.fail(f"target {name!r} ({found.target.words}) is not in the picture")
+        if found.view_id != self.lift.view.id:
+            raise self.fail(f"target {name!r} was found in view {found.view_id!r}, not in {self.lift.view.id!r}")
+        return found
+
+    def point(self, name: str, roles: tuple[PointRole, ...]) -> tuple[PointRole, Point]:
+        """The target's chosen point for the first of these roles that it has.
+
+        Raises:
+            PlanError: It has none of them, or the point lies outside the view.
+        """
+        found = self.target(name)
+        for role in roles:
+            if role in found.points:
+                px = found.points[role]
+                if not self.lift.inside(px):
+                    width, height = self.lift.view.size_px
+                    raise self.fail(
+                        f"the {role} point of {name!r} at ({px[0]:.0f}, {px[1]:.0f}) px lies outside the view "
+                        f"of {width} x {height} px"
+                    )
+                return role, px
+        has = ", ".join(found.points) or "none"
+        raise self.fail(f"target {name!r} has no point for {' or '.join(roles)}; it has: {has}")
+
+    def box(self, name: str) -> Box:
+        """The target's box in view pixels.
+
+        Raises:
+            PlanError: It has none.
+        """
+        box = self.target(name).box
+        if box is None:
+            raise self.fail(f"target {name!r} has no box, which a place beside it or a push needs")
+        return box
+
+    def spot(self, name: str, roles: tuple[PointRole, ...], progress: Progress) -> tuple[PointRole, Spot]:
+        """Where the target's chosen point lies now, on the surface that is seen there."""
+        role, px = self.point(name, roles)
+        return role, progress.carry(name, self.lift.surface(px, f"{name} {role} point"), self.lift)
+
+    def support_z_m(self, name: str) -> float:
+        """Height of what the target stood on in the picture [m]."""
+        return self.lift.support_z_m(self.target(name).box)
+
+    def centre(self, name: str, progress: Progress) -> Spot:
+        """Where the target's centre lies now: that of its box, at the height of the point chosen on it.
+
+        Without a box it is the point itself, without a point the surface at the box's centre.
+        """
+        found = self.target(name)
+        if not found.points:
+            seen = self.lift.surface(self.box(name).centre, f"centre of {name}'s box")
+        else:
+            role, px = self.point(name, ANY)
+            seen = self.lift.surface(px, f"{name} {role} point")
+            if found.box is not None:
+                z_m = 0.0 if seen.position_m is None else float(seen.position_m[2])
+                seen = self.lift.at_height(found.box.centre, z_m, f"centre of {name}'s box")
+        return progress.carry(name, seen, self.lift)
+
+    def origin(self, name: str) -> Spot:
+        """Where the target's centre stood at first, at the height of what it stood on."""
+        spot = self.centre(name, Progress())
+        how = f"origin of {name}: {spot.how}"
+        if spot.position_m is None:
+            return Spot(spot.px, None, how)
+        x, y, _ = spot.position_m
+        return Spot(spot.px, np.array([x, y, self.support_z_m(name)]), how)
+
+    def resting(self, name: str, progress: Progress) -> Spot:
+        """Where the target's centre is now, at the height of what it stands on now."""
+        return progress.carry(name, self.origin(name), self.lift)
+
+    def box_now(self, name: str, progress: Progress) -> Box:
+        """The target's box in view pixels, after the moves so far."""
+        box = self.box(name)
+        if not progress.moved.get(name):
+            return box
+        half = half_extents(box, progress.turn_of(name))
+        centre = self.centre(name, progress).px
+        return Box.around(centre, 2 * half[0], 2 * half[1])
+
+    def destination(self, place: Place, progress: Progress, thing: str | None, yaw_rad: float = 0.0) -> Spot:
+        """Where the centre of `thing` is to be put; its height is the surface it will rest on.
+
+        Args:
+            place: As the step says.
+            progress: What earlier steps have changed.
+            thing: Target that is put there; None for the bare tool.
+            yaw_rad: How far the thing is turned on the way.
+        """
+        match place:
+            case At(target) if target == thing:
+                # A thing that is put down where it is, such as one that is only turned.
+                return self.resting(target, progress)
+            case At(target):
+                return self.spot(target, TO_PLACE, progress)[1]
+            case OriginOf(target):
+                return self.origin(target)
+            case Beside():
+                return self._beside(place, progress, thing, yaw_rad)
+
+    def _beside(self, place: Beside, progress: Progress, thing: str | None, yaw_rad: float) -> Spot:
+        half = (0.0, 0.0)
+        if thing is not None:
+            half = half_extents(self.target(thing).box, progress.turn_of(thing) + yaw_rad)
+        try:
+            px = beside_px(self.box_now(place.target, progress), place.side, half, self.lift.view.size_px)
+        except ValueError as error:
+            raise self.fail(f"no room for {thing or 'the tool'} {place.side} of {place.target!r}: {error}") from error
+        return self.lift.surface(px, f"{place.side} of {place.target}'s box")

@@ -1,0 +1,15 @@
+"""Number sources: every number of an action with the pixel and the rule that it came from."""
+
+from __future__ import annotations
+
+from wonderful_team.motion.lift import Spot
+from wonderful_team.types import NumberSource
+
+
+def source(role: str, target: str, spot: Spot) -> NumberSource:
+    """The record of one point of an action."""
+    position = None
+    if spot.position_m is not None:
+        x, y, z = (float(value) for value in spot.position_m)
+        position = (x, y, z)
+    return NumberSource(role, target, spot.px, position, spot.how)

@@ -1,0 +1,115 @@
+"""One full example of every question: no field is left at its default, so that nothing can hide."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from wonderful_team.actions import Beside, MoveStep, OriginOf, PickPlaceStep
+from wonderful_team.contracts import (
+    EDGES,
+    ChooseMark,
+    ChoosePoint,
+    DraftPlan,
+    ExtractTargets,
+    GiveBox,
+    JudgeBox,
+    JudgeOutcome,
+    JudgeRevision,
+    LocatePoints,
+    MoveBox,
+    Presence,
+    Question,
+    ReadScene,
+    Remember,
+    Replan,
+    ReviewPath,
+    ReviewPlan,
+    ReviewSteps,
+    RevisePlan,
+    ShownSlot,
+    ShownTask,
+    Strip,
+    WriteFunction,
+    WriteSteps,
+)
+from wonderful_team.geometry import Box, Frame
+from wonderful_team.pictures import Axes, BoxMark, Candidates, Mark, PathMark, Picture, PointMark
+from wonderful_team.types import Doubt, Subgoal, Target, Verdict
+
+KINDS = ("pick_place", "push", "move", "open", "close", "rotate_gripper", "follow", "home", "navigate")
+
+
+def picture(name: str, *marks: Mark, width: int = 64, height: int = 32) -> Picture:
+    rgb = np.full((height, width, 3), len(name) * 7 % 255, dtype=np.uint8)
+    return Picture(name, rgb, Frame.whole("top", (width, height)), marks=marks)
+
+
+TASK = ShownTask(
+    "Put the {dragged_obj} into the {base_obj}, then the {dragged_obj} back like in {scene_1}.",
+    (picture("top view", Axes()), picture("front view")),
+    (
+        ShownSlot("dragged_obj", "object", (picture("dragged_obj top"), picture("dragged_obj front"))),
+        ShownSlot("base_obj", "object", (picture("base_obj top"),)),
+        ShownSlot("scene_1", "frame", (picture("scene_1 top"),), 3),
+    ),
+)
+EXAMPLES = (ShownSlot("base_obj", "object", (picture("example of base_obj"),)),)
+TARGET = Target("T7", "object", "striped mug", "handle", "left of the plate", "slot", ("base_obj",), ("grasp", "pick"))
+AREA = Target("T8", "area", "free space", None, "beside the lamp")
+SUBGOALS = (
+    Subgoal("G1", "the mug stands on the tray", (), ("T7", "T8"), "a circle round the tray"),
+    Subgoal("G2", "the mug is back", ("G1",), ("T7",)),
+)
+DOUBT = Doubt("G1", "collision", "will the mug hit the lamp?", "it passes behind it", True)
+PLAN = ("G1: the mug stands on the tray", "G2: the mug is back")
+STEPS = (PickPlaceStep("G1", "T7", Beside("T8", "left"), -90.0), MoveStep("G2", OriginOf("T7"), "clear"))
+BOX = BoxMark(Box(10, 5, 30, 20), label="T7")
+MARKS = Candidates(((5.0, 5.0), (20.0, 10.0), (40.0, 20.0)))
+STRIPS = tuple(
+    Strip(edge, side, picture(f"strip {edge} {side}"))  # type: ignore[arg-type]
+    for edge in EDGES
+    for side in ("inside", "outside")
+)
+
+SAMPLES: tuple[Question, ...] = (
+    DraftPlan(TASK, KINDS, True, ("the lid was closed",)),
+    ReviewPlan(TASK, KINDS, SUBGOALS, (TARGET, AREA), "G2", ("G1 was asked about the lid",)),
+    RevisePlan(TASK, KINDS, SUBGOALS, (TARGET, AREA), DOUBT, True),
+    ExtractTargets(TASK, SUBGOALS),
+    LocatePoints(
+        TARGET,
+        "centre",
+        PLAN,
+        picture("main view", Axes(), PointMark((3, 4), "tried 1")),
+        (picture("side"),),
+        EXAMPLES,
+        3,
+    ),
+    ChooseMark(TARGET, "place", PLAN, picture("guesses", Axes(), MARKS), EXAMPLES),
+    GiveBox(TARGET, PLAN, picture("centred", Axes(), PointMark((20, 10))), EXAMPLES),
+    ReadScene((TARGET, AREA), PLAN, picture("whole", Axes()), (picture("other side"),), EXAMPLES),
+    Presence(TARGET, STRIPS, EXAMPLES),
+    JudgeBox(TARGET, picture("crop", BOX, Axes()), EXAMPLES),
+    JudgeRevision(TARGET, picture("crop before", BOX), picture("crop after", BOX), EXAMPLES),
+    MoveBox(
+        TARGET,
+        picture("crop now", BOX, Axes()),
+        STRIPS,
+        "the right edge cuts it",
+        ("moved 4 right: kept",),
+        True,
+        EXAMPLES,
+    ),
+    ChoosePoint(TARGET, "grasp", PLAN, picture("crop points", BOX, MARKS), True, EXAMPLES),
+    WriteSteps(TASK, KINDS, SUBGOALS, (TARGET, AREA), ("G1",), "step 2 turns the wrong way"),
+    ReviewSteps(TASK, SUBGOALS, (TARGET, AREA), STEPS, picture("overview", BOX), ("step 1 was asked about",)),
+    WriteFunction(
+        SUBGOALS[0], picture("view for path"), {"T7": Box(1.5, 2, 3, 4)}, "NameError: x", "def path(boxes): ...", 17
+    ),
+    ReviewPath(SUBGOALS[0], picture("view with path", PathMark(((1, 2), (3, 4)), "G1"))),
+    Remember("put it there", "checker", "is the box right?", "it is on the lamp", ("which mug",)),
+    JudgeOutcome(
+        TASK, SUBGOALS, (TARGET, AREA), ("[G1] pick T7",), (picture("top now"), picture("front now")), ("ok",)
+    ),
+    Replan(TASK, SUBGOALS, (Verdict("G2", "not_done", "it slipped", "mug on the floor"),), ("suction failed",), 2),
+)

@@ -29,7 +29,17 @@ from wonderful_team.planning.functions import write_functions
 from wonderful_team.planning.plan_loop import PlanState
 from wonderful_team.planning.scene import SceneShown
 from wonderful_team.planning.together import both
-from wonderful_team.types import NO_WORKSPACE, GroundedTarget, Instruction, KeepOut, Limits, Observation, Plan, Usage, Verdict
+from wonderful_team.types import (
+    NO_WORKSPACE,
+    GroundedTarget,
+    Instruction,
+    KeepOut,
+    Limits,
+    Observation,
+    Plan,
+    Usage,
+    Verdict,
+)
 
 Until: TypeAlias = Literal["draft", "checked", "grounded", "actions"]
 UNTIL: tuple[Until, ...] = ("draft", "checked", "grounded", "actions")

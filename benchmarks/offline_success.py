@@ -1,0 +1,125 @@
+"""How often `offline` solves our own tabletop tasks: single attempt, open loop, from pixels and words alone.
+
+    python -m benchmarks.offline_success                       # seeds from 1000: 50 per VIMA task, 20 per fruit variation
+    python -m benchmarks.offline_success --first 0 --seeds 10  # development seeds, only for working on it
+
+`offline` is classical vision and a grammar, not a vision-language model; the figures say nothing about any VLM.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import time
+from collections import Counter
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import asdict, dataclass
+from multiprocessing import get_context
+from pathlib import Path
+from typing import Any
+
+from wonderful_team.evals import Rate
+
+VIMA = ("visual_manipulation", "scene_understanding", "rotate")
+FRUIT = tuple(f"fruit_placement/{name}" for name in ("all_match", "no_area", "misplaced", "both"))
+
+
+@dataclass(frozen=True)
+class Job:
+    """One trial to run."""
+
+    task: str
+    seed: int
+    way: str = "lean"
+    setting: str = "full"
+    recolour: int | None = None
+    instruction: str | None = None
+
+
+@dataclass(frozen=True)
+class Result:
+    """What came of it."""
+
+    job: Job
+    outcome: str
+    stage: str | None
+    reason: str
+    calls: int
+    seconds: float
+
+
+def run(job: Job) -> Result:
+    """Run one trial in this process."""
+    # Imported here: a worker of a spawned pool pays for it once, the parent never.
+    from wonderful_team.models.offline import OfflineModel
+    from wonderful_team.planning import Team, TeamConfig
+    from wonderful_team.runtime import rollout
+    from wonderful_team.sims.tabletop import make_world
+    from wonderful_team.types import Instruction
+
+    options: dict[str, Any] = {} if job.recolour is None else {"recolour": job.recolour}
+    world = make_world(job.task, seed=job.seed, **options)
+    if job.instruction is not None:
+        slots = {name: slot for name, slot in world.instruction.slots.items() if f"{{{name}}}" in job.instruction}
+        world.instruction = Instruction(job.instruction, slots)
+    team = Team(OfflineModel(), TeamConfig(way=job.way, setting=job.setting))  # type: ignore[arg-type]
+    started = time.perf_counter()
+    try:
+        trial = rollout(team, world, scorer=world.privileged, seed=job.seed, scene=job.task)
+    finally:
+        world.close()
+    seconds = time.perf_counter() - started
+    return Result(job, trial.outcome, trial.stage, trial.reason, team.usage.calls, seconds)
+
+
+def run_all(jobs: list[Job], workers: int) -> list[Result]:
+    """Run trials on several processes; results in the order of the jobs."""
+    if workers == 1:
+        return [run(job) for job in jobs]
+    with ProcessPoolExecutor(workers, mp_context=get_context("spawn")) as pool:
+        return list(pool.map(run, jobs, chunksize=4))
+
+
+def report(results: list[Result]) -> None:
+    """Print the rate per task with its interval, and every failure with its stage."""
+    for task in dict.fromkeys(result.job.task for result in results):
+        mine = [result for result in results if result.job.task == task]
+        scored = [result for result in mine if result.outcome in ("success", "failure")]
+        rate = Rate(sum(result.outcome == "success" for result in scored), len(scored))
+        others = Counter(result.outcome for result in mine if result not in scored)
+        seeds = [result.job.seed for result in mine]
+        extra = f"  not scored: {dict(others)}" if others else ""
+        mean_s = sum(result.seconds for result in mine) / len(mine)
+        print(f"{task:32s} {rate}  seeds {min(seeds)}-{max(seeds)}  {mean_s:.2f} s a trial{extra}")
+        for result in mine:
+            if result.outcome != "success":
+                print(f"    seed {result.job.seed}: {result.outcome} at {result.stage}: {result.reason[:200]}")
+
+
+def main() -> None:
+    """Parse arguments, run, print, and optionally write JSON."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--tasks", nargs="*", default=[*VIMA, *FRUIT])
+    parser.add_argument("--first", type=int, default=1000, help="first seed")
+    parser.add_argument("--seeds", type=int, help="seeds per task (default: 50 per VIMA task, 20 per fruit variation)")
+    parser.add_argument("--way", default="lean", choices=["lean", "paper"])
+    parser.add_argument("--setting", default="full")
+    parser.add_argument("--recolour", type=int, help="redraw every scene with other colours, from this seed")
+    parser.add_argument("--workers", type=int, default=2)
+    parser.add_argument("--json", type=Path, help="write every result to this file")
+    options = parser.parse_args()
+    jobs = [
+        Job(task, options.first + number, options.way, options.setting, options.recolour)
+        for task in options.tasks
+        for number in range(options.seeds or (20 if task.startswith("fruit") else 50))
+    ]
+    print(f"model: offline (classical vision and a grammar)   method: team, {options.way}, {options.setting}")
+    print("single attempt, open loop; simulated tabletop; 95 % Wilson intervals")
+    results = run_all(jobs, options.workers)
+    report(results)
+    if options.json:
+        options.json.write_text(json.dumps([asdict(result) for result in results], indent=1), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()

@@ -16,6 +16,9 @@ BESIDE_SHARE = 0.25
 """How far beside a box push candidates lie, as a share of its longer side."""
 FINE_SHARE = 1.0 / GRID
 """Side of the second round's neighbourhood, as a share of the box: one cell of the first grid."""
+FINE_MARGIN = 0.15
+FINE_SIDE_PX = 640
+"""The second round shows the box closer, so that its nine candidates stand apart."""
 
 
 async def choose_points(job: Job, box: Box) -> dict[str, Point]:
@@ -34,13 +37,13 @@ async def _choose(job: Job, box: Box, role: PointRole) -> Point:
         candidates = (*candidates, *(point for point in beside if shown.frame.valid.contains(point)))
     coarse = await _ask(job, shown, shown_box, candidates, role, fine=False)
     cell = Box.around(coarse, box.width * FINE_SHARE, box.height * FINE_SHARE)
-    near = crop(job.scene.view, box, "crop")
+    near = crop(job.scene.view, box, "crop", margin=FINE_MARGIN, min_side_px=FINE_SIDE_PX)
     fine_points = tuple(
         point
         for point in inside_points(near.frame.box_to_picture(cell), GRID, GRID)
         if near.frame.valid.contains(point)
     )
-    chosen = await _ask(job, near, shown_box, fine_points, role, fine=True)
+    chosen = await _ask(job, near, near.frame.box_to_picture(box), fine_points, role, fine=True)
     job.tell("point", f"{role.replace('_', ' ')} point chosen", box, (chosen,))
     return chosen
 

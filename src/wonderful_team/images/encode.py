@@ -1,0 +1,26 @@
+"""Pictures to bytes."""
+
+from __future__ import annotations
+
+import cv2
+import numpy as np
+
+from wonderful_team.geometry.arrays import Array
+from wonderful_team.pictures import checked_rgb
+
+
+def to_png(rgb: Array, *, compression: int = 3) -> bytes:
+    """PNG file bytes of an image.
+
+    Args:
+        rgb: Shape (H, W, 3), uint8.
+        compression: 0 (fast) to 9 (small); 3 is quick and close to the smallest.
+
+    Raises:
+        ValueError: Another shape or type.
+    """
+    image = np.ascontiguousarray(checked_rgb(rgb)[..., ::-1])
+    done, data = cv2.imencode(".png", image, [cv2.IMWRITE_PNG_COMPRESSION, compression])
+    if not done:
+        raise RuntimeError(f"cv2 could not write a PNG of shape {rgb.shape}")
+    return bytes(data.tobytes())

@@ -1,0 +1,180 @@
+"""One picture of a whole plan, for the page and the README: numbered targets, points, arrows, keep-out, workspace."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from wonderful_team.geometry import Box, Camera
+from wonderful_team.geometry.arrays import Array
+from wonderful_team.images.canvas import (
+    BLUE,
+    GREEN,
+    INK,
+    ORANGE,
+    PURPLE,
+    SKY,
+    VERMILLION,
+    WHITE,
+    YELLOW,
+    Canvas,
+    Colour,
+)
+from wonderful_team.images.cut import whole
+from wonderful_team.images.draw import candidate_radius, draw_box, point_reach
+from wonderful_team.images.lettering import plain
+from wonderful_team.images.placing import PointLabel, label_box, label_points, paint_plates
+from wonderful_team.pictures import BoxStyle, Picture, Point
+from wonderful_team.types import GroundedTarget, KeepOut, Limits, PlannedAction, View
+
+TARGET_COLOURS: tuple[Colour, ...] = (ORANGE, SKY, YELLOW, PURPLE, GREEN, VERMILLION)
+"""Taken in turn by the targets of a plan."""
+_ARC = 0.14  # how far an arrow bows out, as a share of its length
+
+
+def overview(
+    shown: View | Picture,
+    grounded: Mapping[str, GroundedTarget] | Iterable[GroundedTarget] = (),
+    *,
+    arrows: Sequence[Sequence[Point]] = (),
+    keep_out: Sequence[KeepOut] = (),
+    workspace: Limits | Box | None = None,
+    camera: Camera | None = None,
+) -> Array:
+    """A picture of what a plan is about. All coordinates are pixels of the view, whatever is shown.
+
+    Args:
+        shown: The main view, or a picture cut from it.
+        grounded: Targets with boxes and points; those that were not found are left out.
+        arrows: Moves in order, each through two or more points; `action_arrows` makes them from actions.
+        keep_out: Regions nothing may enter.
+        workspace: Limits in metres, or a box in view px, to outline.
+        camera: Turns metres into pixels when `shown` is a Picture; a View brings its own. Without one, outlines that
+            are given in metres are left out: they have no place in the picture.
+
+    Returns:
+        Shape (H, W, 3), uint8: a small view is enlarged, a huge one shrunk.
+    """
+    picture = whole(shown, "overview", min_side_px=480) if isinstance(shown, View) else shown
+    eye = shown.camera if isinstance(shown, View) else camera
+    canvas = Canvas.over(picture.rgb)
+    named: list[_Named] = []
+    for region, style, name, z_m in _regions(keep_out, workspace):
+        corners = _outline(region, eye, z_m)
+        if corners is not None:
+            on_picture = _points(picture, corners)
+            draw_box(canvas, on_picture, style)
+            named += [_Named(Box.bounding(on_picture), name, VERMILLION, WHITE)] if name else []
+    targets = grounded.values() if isinstance(grounded, Mapping) else grounded
+    found = [(item, TARGET_COLOURS[k % len(TARGET_COLOURS)]) for k, item in enumerate(_found(targets))]
+    for item, colour in found:
+        if item.box is not None:
+            box = picture.frame.box_to_picture(item.box)
+            draw_box(canvas, box.corners, "target", colour)
+            named.append(_Named(box, f"{item.target.id} {item.target.words}", colour, INK))
+    _draw_arrows(canvas, [_arc(_points(picture, arrow)) for arrow in arrows if len(arrow) > 1])
+    labels = [label for item, colour in found for label in _draw_points(canvas, picture, item, colour)]
+    paint_plates(canvas, label_points(canvas, labels))
+    for entry in named:
+        label_box(canvas, entry.box, plain(entry.text), back=entry.back, colour=entry.colour)
+    return canvas.rgb
+
+
+def action_arrows(actions: Iterable[PlannedAction]) -> tuple[tuple[Point, ...], ...]:
+    """One arrow per action that goes somewhere, through the pixels its numbers came from, in order [view px]."""
+    paths = (tuple(source.point_px for source in action.sources) for action in actions)
+    return tuple(path for path in paths if len(path) > 1)
+
+
+class _Named(NamedTuple):
+    """A box [picture px] and the plate that names it."""
+
+    box: Box
+    text: str
+    back: Colour
+    colour: Colour
+
+
+def _found(targets: Iterable[GroundedTarget]) -> list[GroundedTarget]:
+    return [item for item in targets if item.status == "found"]
+
+
+def _regions(
+    keep_out: Sequence[KeepOut], workspace: Limits | Box | None
+) -> Iterator[tuple[KeepOut, BoxStyle, str, float]]:
+    """Regions to outline: what, in which style, under which name, at which height [m]; the workspace first."""
+    if isinstance(workspace, Limits):
+        table = KeepOut("", Box(*workspace.low_m[:2], *workspace.high_m[:2]), "m")
+        yield table, "workspace", "", max(0.0, workspace.low_m[2])
+        keep_out = (*keep_out, *(item for item in workspace.keep_out if item not in keep_out))
+    elif workspace is not None:
+        yield KeepOut("", workspace), "workspace", "", 0.0
+    for item in keep_out:
+        yield item, "keep_out", item.name, 0.0
+
+
+def _draw_arrows(canvas: Canvas, paths: Sequence[Sequence[Point]]) -> None:
+    """All arrows, then their numbers, each in the middle of its arrow."""
+    for path in paths:
+        canvas.polyline(path, GREEN, width_px=canvas.stroke_px + 1, halo=WHITE)
+        canvas.arrow_head(path[-2], path[-1], GREEN, 6.5 * canvas.stroke_px)
+        for point in path[::2]:
+            canvas.keep_clear(point, canvas.stroke_px)
+    for number, path in enumerate(paths, start=1):
+        width, height = canvas.plate_size(str(number))
+        x, y = path[len(path) // 2] if len(path) > 2 else ((path[0][0] + path[1][0]) / 2, (path[0][1] + path[1][1]) / 2)
+        canvas.plate(str(number), round(x - width / 2), round(y - height / 2), back=GREEN, alpha=1.0)
+
+
+def _draw_points(canvas: Canvas, picture: Picture, item: GroundedTarget, colour: Colour) -> list[PointLabel]:
+    """Where something is taken: a dot. Where something goes: a cross. A target without a box is named at its points."""
+    labels = []
+    for role, point in item.points.items():
+        (at,) = _points(picture, [point])
+        if role in ("place", "push_end"):
+            canvas.cross(at, point_reach(canvas), colour)
+        else:
+            canvas.disc(at, candidate_radius(canvas) * 1.2, BLUE, WHITE)
+        canvas.keep_clear(at, candidate_radius(canvas) * 1.4)
+        if item.box is None:
+            text = plain(f"{item.target.id} {item.target.words}")
+            labels.append(PointLabel(at, text, point_reach(canvas), colour, INK))
+    return labels
+
+
+def _outline(region: KeepOut, camera: Camera | None, z_m: float) -> tuple[Point, ...] | None:
+    """Corners of a region in view px; None for metres without a camera, or behind it."""
+    if region.unit == "px":
+        return region.box.corners
+    if camera is None:
+        return None
+    seen = camera.project([(x, y, z_m) for x, y in region.box.corners])
+    return tuple((float(x), float(y)) for x, y in seen) if np.isfinite(seen).all() else None
+
+
+def _points(picture: Picture, points: Sequence[Point]) -> list[Point]:
+    return [(float(x), float(y)) for x, y in picture.frame.to_picture(np.asarray(points, dtype=np.float64))]
+
+
+def _arc(points: Sequence[Point]) -> list[Point]:
+    """Two points become a gentle bow, which leaves what lies between them to be seen; longer paths stay."""
+    if len(points) != 2:
+        return list(points)
+    (xa, ya), (xb, yb) = points
+    dx, dy = xb - xa, yb - ya
+    if math.hypot(dx, dy) < 1e-6:
+        return list(points)
+    # Bow upwards in the picture, whichever way the arrow goes.
+    side = -1.0 if dx < 0 else 1.0
+    control = ((xa + xb) / 2 + dy * _ARC * 2 * side, (ya + yb) / 2 - dx * _ARC * 2 * side)
+    steps = np.linspace(0.0, 1.0, 25)
+    return [
+        (
+            float((1 - t) ** 2 * xa + 2 * t * (1 - t) * control[0] + t**2 * xb),
+            float((1 - t) ** 2 * ya + 2 * t * (1 - t) * control[1] + t**2 * yb),
+        )
+        for t in steps
+    ]

@@ -1,0 +1,105 @@
+"""Pixels of a window of an image, enlarged or shrunk by whole amounts, padded where the window leaves the image."""
+
+from __future__ import annotations
+
+import cv2
+import numpy as np
+
+from wonderful_team.geometry import Box, Frame
+from wonderful_team.geometry.arrays import Array
+from wonderful_team.pictures import Picture
+from wonderful_team.types import View
+
+_PAD_LIGHT, _PAD_DARK = 150, 118  # the two greys of the padding's stripes
+_PAD_PERIOD_PX = 16  # width of a light and a dark stripe together
+
+
+def picture_of(view: View, frame: Frame, name: str) -> Picture:
+    """The picture that shows `frame` of a view, without marks.
+
+    Args:
+        view: Where the pixels come from.
+        frame: An upright frame (no turn, no mirror) whose window has whole view pixels as its edges.
+        name: What the words call the picture.
+
+    Raises:
+        ValueError: The frame is turned, mirrored or not on whole pixels.
+    """
+    rgb = resampled(view.rgb, frame)
+    depth_m = None if view.depth_m is None else resampled_depth(view.depth_m, frame)
+    return Picture(name, rgb, frame, depth_m)
+
+
+def resampled(rgb: Array, frame: Frame) -> Array:
+    """Colours of the frame's window, shape (height, width, 3), uint8; padding is striped grey."""
+    cut, zoom_x, zoom_y = _cut(rgb, frame)
+    size = frame.size_px
+    if zoom_x >= 1 and zoom_y >= 1:
+        image = _enlarged(cut, size)
+    else:
+        image = np.asarray(cv2.resize(cut, size, interpolation=cv2.INTER_AREA))
+    real = valid_mask(frame)
+    if not real.all():
+        image = np.where(real[..., None], image, _padding(size))
+    return image
+
+
+def resampled_depth(depth_m: Array, frame: Frame) -> Array:
+    """Depth of the frame's window [m], shape (height, width), nearest pixel; NaN in the padding."""
+    cut, _, _ = _cut(depth_m, frame)
+    image = np.asarray(cv2.resize(cut, frame.size_px, interpolation=cv2.INTER_NEAREST_EXACT))
+    return np.where(valid_mask(frame), image, np.float32(np.nan))
+
+
+def valid_mask(frame: Frame) -> Array:
+    """Which picture pixels show the view (their centre lies in `frame.valid`), shape (height, width), bool."""
+    width, height = frame.size_px
+    across, down = np.arange(width) + 0.5, np.arange(height) + 0.5
+    valid = frame.valid
+    columns = (across >= valid.x0 - 1e-6) & (across <= valid.x1 + 1e-6)
+    rows = (down >= valid.y0 - 1e-6) & (down <= valid.y1 + 1e-6)
+    return np.asarray(rows[:, None] & columns[None, :])
+
+
+def _cut(image: Array, frame: Frame) -> tuple[Array, float, float]:
+    """The window's own pixels, the image's border repeated outside, and the zoom along x and y."""
+    matrix = frame.T_view_picture
+    if matrix[0, 1] or matrix[1, 0] or matrix[0, 0] <= 0 or matrix[1, 1] <= 0:
+        raise ValueError("picture frames must be upright: neither turned nor mirrored")
+    window = frame.box_to_view(frame.whole_box)
+    edges = [round(value) for value in window.as_tuple]
+    if any(abs(edge - value) > 1e-3 for edge, value in zip(edges, window.as_tuple, strict=True)):
+        raise ValueError(f"window {window.as_tuple} must have whole view pixels as its edges")
+    x0, y0, x1, y1 = edges
+    height, width = image.shape[:2]
+    columns = np.clip(np.arange(x0, x1), 0, width - 1)
+    rows = np.clip(np.arange(y0, y1), 0, height - 1)
+    if x0 >= 0 and y0 >= 0 and x1 <= width and y1 <= height:
+        cut = np.ascontiguousarray(image[y0:y1, x0:x1])
+    else:
+        cut = np.ascontiguousarray(image[np.ix_(rows, columns)])
+    return cut, 1 / matrix[0, 0], 1 / matrix[1, 1]
+
+
+def _enlarged(cut: Array, size: tuple[int, int]) -> Array:
+    """Cubic enlargement held between the darkest and lightest neighbour, so that edges get no false halo."""
+    if (cut.shape[1], cut.shape[0]) == size:
+        return cut
+    smooth = cv2.resize(cut, size, interpolation=cv2.INTER_CUBIC)
+    around = np.ones((3, 3), np.uint8)
+    low = cv2.resize(cv2.erode(cut, around), size, interpolation=cv2.INTER_NEAREST_EXACT)
+    high = cv2.resize(cv2.dilate(cut, around), size, interpolation=cv2.INTER_NEAREST_EXACT)
+    return np.asarray(np.clip(smooth, low, high))
+
+
+def _padding(size: tuple[int, int]) -> Array:
+    across, down = np.arange(size[0])[None, :, None], np.arange(size[1])[:, None, None]
+    dark = (across + down) % _PAD_PERIOD_PX < _PAD_PERIOD_PX // 2
+    return np.where(dark, np.uint8(_PAD_DARK), np.uint8(_PAD_LIGHT)).repeat(3, axis=2)
+
+
+def whole_pixels(box: Box) -> Box:
+    """The smallest box with whole-pixel edges that holds `box`; tiny excesses are rounded off."""
+    low_x, low_y = np.floor(box.x0 + 1e-6), np.floor(box.y0 + 1e-6)
+    high_x, high_y = np.ceil(box.x1 - 1e-6), np.ceil(box.y1 - 1e-6)
+    return Box(low_x, low_y, max(high_x, low_x + 1), max(high_y, low_y + 1))

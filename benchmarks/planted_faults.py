@@ -25,7 +25,7 @@ import numpy as np
 
 from benchmarks.offline_success import VIMA
 from wonderful_team.actions import PICK_PLACE
-from wonderful_team.contracts import DraftPlan, JudgeBox, PlanDraft, ReviewPlan, SceneReading
+from wonderful_team.contracts import DraftPlan, JudgeBox, PlanDraft, PlanReview, Question, ReviewPlan, SceneReading
 from wonderful_team.contracts.plans import SubgoalDraft, TargetDraft
 from wonderful_team.errors import WonderfulTeamError
 from wonderful_team.evals import Confusion, Rate
@@ -62,9 +62,6 @@ class Scene:
         rows, columns = np.nonzero(self.masks[name])
         return Box(columns.min(), rows.min(), columns.max() + 1, rows.max() + 1)
 
-    def movable(self) -> list[str]:
-        return [name for name, thing in self.truth["things"].items() if thing["kind"] in ("kit", "fruit")]
-
 
 @lru_cache(maxsize=8)
 def scene(task: str, seed: int) -> Scene:
@@ -85,6 +82,23 @@ def scenes(first: int) -> Iterator[Scene]:
 
 def desk_for(shown: SceneShown) -> Desk:
     return Desk(Door(OfflineModel()), TeamConfig(setting="s8"), shown.instruction.text)
+
+
+async def objection(desk: Desk, question: Question, stage: str) -> str | None:
+    """What the member objects, or None when it lets the thing pass. A member that refuses to judge objects."""
+    try:
+        answer = await desk.ask(question, stage=stage)
+    except WonderfulTeamError as error:
+        return f"refused: {str(error)[:160]}"
+    if isinstance(answer, PlanReview):
+        return answer.doubt.question[:160] if answer.doubt else None
+    return None if answer.decision == "accept" else f"{answer.decision}: {answer.problem[:160]}"
+
+
+def unasked(where: Scene) -> list[str]:
+    """Things that the instruction asks nobody to move and to put nothing on."""
+    asked = {name for goal in where.truth["goals"] for name in (goal["thing"], *goal["near"])}
+    return [name for name, thing in where.truth["things"].items() if name not in asked and thing["kind"] != "area"]
 
 
 # --- plans ---------------------------------------------------------------------------------------------------------
@@ -115,9 +129,7 @@ def swapped(plan: PlanDraft, where: Scene, rng: np.random.Generator) -> PlanDraf
 
 def wrong_target(plan: PlanDraft, where: Scene, rng: np.random.Generator) -> PlanDraft | None:
     """Another thing of the scene takes the place of what is moved."""
-    goals = {goal["thing"] for goal in where.truth["goals"]}
-    others = [name for name in where.movable() if name not in goals]
-    others = others or [name for name, thing in where.truth["things"].items() if thing["kind"] == "base"]
+    others = unasked(where)
     if not plan.subgoals or not others:
         return None
     subgoal, other = plan.subgoals[0], others[int(rng.integers(len(others)))]
@@ -133,8 +145,7 @@ def wrong_target(plan: PlanDraft, where: Scene, rng: np.random.Generator) -> Pla
 
 def needless(plan: PlanDraft, where: Scene, rng: np.random.Generator) -> PlanDraft | None:
     """A further subgoal moves something that nobody asked for."""
-    goals = {goal["thing"] for goal in where.truth["goals"]}
-    others = [name for name in where.movable() if name not in goals]
+    others = unasked(where)
     if not plan.subgoals or not others:
         return None
     thing, place = others[0], plan.targets[-1]
@@ -161,6 +172,14 @@ def _with_subgoal(plan: PlanDraft, number: int, subgoal: SubgoalDraft) -> PlanDr
     return plan.model_copy(update={"subgoals": [*plan.subgoals[:number], subgoal, *plan.subgoals[number + 1 :]]})
 
 
+def _spoil(right: PlanDraft, where: Scene, rng: np.random.Generator, kinds: list[str]) -> tuple[str, PlanDraft] | None:
+    for kind in kinds:
+        plan = PLAN_FAULTS[kind](right, where, rng)
+        if plan is not None:
+            return kind, plan
+    return None
+
+
 async def check_plans(n: int, first: int) -> dict[str, Confusion]:
     """Half of the plans are spoiled; Verification looks at each whole plan once."""
     rng = np.random.default_rng(first)
@@ -175,20 +194,19 @@ async def check_plans(n: int, first: int) -> dict[str, Confusion]:
         except WonderfulTeamError as error:
             print(f"    {where.task} seed {where.seed}: no draft to spoil: {error}")
             continue
-        for kind in ("none", kinds[done // 2 % len(kinds)]):
-            plan = right if kind == "none" else PLAN_FAULTS[kind](right, where, rng)
-            if plan is None:
-                continue
-            review = await desk.ask(
-                ReviewPlan(where.shown.task, PICK_PLACE.step_kinds, plan.to_subgoals(), plan.to_targets()),
-                stage="plan",
-            )
+        spoiled = _spoil(right, where, rng, kinds)
+        if spoiled is None:
+            continue
+        # The kind that was used goes to the end, so that all kinds come up as often as the scenes allow.
+        kinds.sort(key=lambda kind: kind == spoiled[0])
+        for kind, plan in (("none", right), spoiled):
+            question = ReviewPlan(where.shown.task, PICK_PLACE.step_kinds, plan.to_subgoals(), plan.to_targets())
+            said = await objection(desk, question, "plan")
             bad = kind != "none"
-            by_kind[kind] = by_kind.get(kind, Confusion()).add(bad=bad, objected=not review.approved)
+            by_kind[kind] = by_kind.get(kind, Confusion()).add(bad=bad, objected=said is not None)
             done += 1
-            if bad == review.approved:
-                said = review.doubt.question if review.doubt else "approved"
-                print(f"    {where.task} seed {where.seed}, fault {kind}: {said[:160]}")
+            if bad != (said is not None):
+                print(f"    {where.task} seed {where.seed}, fault {kind}: {said or 'approved'}")
     return by_kind
 
 
@@ -253,16 +271,13 @@ async def check_boxes(n: int, first: int) -> dict[str, Confusion]:
             if box is None:
                 continue
             job = Job(desk, where.shown, target, 0, (), where.shown.examples([target]))
-            verdict = await desk.ask(
-                JudgeBox(target, job.crop_with("crop", box, box, "target"), job.examples), stage="ground"
-            )
-            bad, objected = kind != "none", verdict.decision != "accept"
-            by_kind[kind] = by_kind.get(kind, Confusion()).add(bad=bad, objected=objected)
+            crop_shown = job.crop_with("crop", box, box, "target")
+            said = await objection(desk, JudgeBox(target, crop_shown, job.examples), "ground")
+            bad = kind != "none"
+            by_kind[kind] = by_kind.get(kind, Confusion()).add(bad=bad, objected=said is not None)
             done += 1
-            if bad != objected:
-                print(
-                    f"    {where.task} seed {where.seed}, {name}, fault {kind}: {verdict.decision}: {verdict.reasoning[:140]}"
-                )
+            if bad != (said is not None):
+                print(f"    {where.task} seed {where.seed}, {name}, fault {kind}: {said or 'accepted'}")
     return by_kind
 
 

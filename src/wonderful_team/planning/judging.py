@@ -29,12 +29,6 @@ async def judge_outcome(
     )
     outcome: Outcome = await desk.ask(question, stage="replan")
     verdicts = outcome.to_verdicts()
-    desk.remember(
-        "replanner",
-        "replan",
-        "What became of the subgoals?",
-        "; ".join(f"{v.subgoal} {v.status}" + (f" ({v.cause})" if v.cause else "") for v in verdicts),
-    )
     desk.stage("judge", ", ".join(f"{v.subgoal} {v.status.replace('_', ' ')}" for v in verdicts))
     return verdicts
 
@@ -48,6 +42,12 @@ async def advise(
     replans_left: int,
 ) -> Advice:
     """Whether to stop, and what the next plan should do differently."""
+    desk.remember(
+        "replanner",
+        "replan",
+        "What became of the subgoals?",
+        "; ".join(f"{v.subgoal} {v.status}" + (f" ({v.cause})" if v.cause else "") for v in verdicts),
+    )
     await desk.memory.border()
     question = Replan(scene_now.task, plan.subgoals, verdicts, measured_lines(executed), replans_left)
     advice: Advice = await desk.ask(question, stage="replan")

@@ -96,6 +96,17 @@ class Team:
     def usage(self) -> Usage:
         return self._door.budget.spent
 
+    @property
+    def model_name(self) -> str:
+        """Which model serves the team, or which role has which."""
+        return self._door.model_name
+
+    @property
+    def setting(self) -> Mapping[str, str]:
+        """How the team is set up, for the record."""
+        config = self.config
+        return {"way": config.way, "members": config.setting, "prompts": config.prompts.hash}
+
     def reset(self) -> None:
         """Forget the trial: notebooks, memory, budget."""
         self._door.budget = Budget(self._caps)

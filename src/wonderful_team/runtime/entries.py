@@ -1,0 +1,163 @@
+"""What a record says of each thing that happened: plain JSON values, no clock times, no pixels."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from wonderful_team.jsonable import to_jsonable
+from wonderful_team.pictures import Picture
+from wonderful_team.runtime.picture_store import PictureStore
+from wonderful_team.types import (
+    Answer,
+    GateReport,
+    Instruction,
+    Observation,
+    PlannedAction,
+    Request,
+    StepReport,
+    SubgoalRun,
+    Target,
+    Usage,
+)
+
+
+def request_key(request: Request) -> str:
+    """Names one attempt at one request."""
+    return f"{request.id} try {request.attempt + 1}"
+
+
+def request_entry(request: Request, store: PictureStore) -> dict[str, Any]:
+    """One request: words, pictures as hashes of what was drawn, and what a right answer is."""
+    return {
+        "key": request_key(request),
+        "id": request.id,
+        "stage": request.stage,
+        "role": request.role,
+        "contract": request.contract,
+        "targets": _targets(request.question),
+        "system": request.system,
+        "notes": to_jsonable(request.notes),
+        "parts": [_part(part, store) for part in request.parts],
+        "output": request.output.__name__,
+        "sample": request.sample,
+        "attempt": request.attempt,
+        "feedback": request.feedback,
+        "answer": None,
+        "invalid": None,
+    }
+
+
+def _part(part: Any, store: PictureStore) -> dict[str, Any]:
+    if isinstance(part, Picture):
+        return {
+            "picture": part.name,
+            "drawn": store.keep_sent(part),
+            "clean": part.hash,
+            "size_px": list(part.size_px),
+            "view": part.frame.view_id,
+            "marks": to_jsonable(part.marks),
+        }
+    return {"words": part.text}
+
+
+def _targets(question: Any) -> list[str]:
+    one, many = getattr(question, "target", None), getattr(question, "targets", ())
+    found = [one] if isinstance(one, Target) else [item for item in many if isinstance(item, Target)]
+    return [target.id for target in found]
+
+
+def answer_entry(answer: Answer) -> dict[str, Any]:
+    """One answer without its duration, which belongs to the clock."""
+    usage = to_jsonable(answer.usage)
+    usage.pop("seconds")
+    usage.pop("type")
+    return {
+        "parsed": plain(answer.value),
+        "raw": answer.raw,
+        "repairs": list(answer.repairs),
+        "provenance": answer.provenance,
+        "model_id": answer.model_id,
+        "tries": answer.tries,
+        "usage": usage,
+    }
+
+
+def usage_entry(usage: Usage, *, with_seconds: bool) -> dict[str, Any]:
+    """What calls cost; durations only where clock times belong."""
+    entry = to_jsonable(usage)
+    entry.pop("type")
+    if not with_seconds:
+        entry.pop("seconds")
+    return dict(entry)
+
+
+def observation_entry(where: str, observation: Observation, store: PictureStore) -> dict[str, Any]:
+    """What was seen, as hashes of the clean views."""
+    return {
+        "where": where,
+        "hash": observation.hash,
+        "time_s": observation.main.time_s,
+        "size_px": list(observation.main.size_px),
+        "main": observation.main.id,
+        "camera": observation.main.camera is not None,
+        "depth": observation.main.depth_m is not None,
+        "views": store.keep_observation(observation, where),
+        "cameras": {name: view.camera_name for name, view in observation.views.items()},
+    }
+
+
+def instruction_entry(instruction: Instruction, store: PictureStore) -> dict[str, Any]:
+    """The instruction with the hashes of its pictures."""
+    slots = {
+        name: {
+            "kind": slot.kind,
+            "index": slot.index,
+            "views": {key: store.keep_view(view, name) for key, view in slot.views.items()},
+        }
+        for name, slot in instruction.slots.items()
+    }
+    return {"text": instruction.text, "slots": slots}
+
+
+def gate_entry(where: str, report: GateReport) -> dict[str, Any]:
+    """One passage through the gate."""
+    checks = [{key: value for key, value in to_jsonable(check).items() if key != "type"} for check in report.checks]
+    return {"where": where, "admitted": report.admitted, "checks": checks}
+
+
+def execution_entry(number: int, planned: PlannedAction, report: StepReport) -> dict[str, Any]:
+    """One executed action with what the robot measured."""
+    return {
+        "number": number,
+        "step": to_jsonable(planned.step),
+        "action": to_jsonable(report.action),
+        "executed": report.executed,
+        "measured": plain(report.measured),
+        "fault": report.fault,
+    }
+
+
+def subgoal_entry(run: SubgoalRun, store: PictureStore) -> dict[str, Any]:
+    """One executed subgoal, as hashes of the views before and after."""
+    return {
+        "subgoal": run.subgoal,
+        "before": store.keep_observation(run.before, f"before {run.subgoal}"),
+        "after": store.keep_observation(run.after, f"after {run.subgoal}"),
+        "main": run.after.main.id,
+        "actions": len(run.reports),
+        "executed": sum(report.executed for report in run.reports),
+    }
+
+
+def plain(value: Any) -> Any:
+    """JSON values of anything: what has no JSON form is shown as text."""
+    match value:
+        case Mapping():
+            return {str(key): plain(item) for key, item in value.items()}
+        case list() | tuple():
+            return [plain(item) for item in value]
+    try:
+        return to_jsonable(value)
+    except TypeError:
+        return str(value)

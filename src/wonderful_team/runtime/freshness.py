@@ -1,0 +1,172 @@
+"""Is the picture that the plan was made from still true where the plan is going to touch something?"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+
+from wonderful_team.actions import PickPlace, Push, places_of
+from wonderful_team.geometry import Box
+from wonderful_team.geometry.arrays import Array
+from wonderful_team.images import CHANGED, region_change
+from wonderful_team.pictures import Point
+from wonderful_team.types import GateCheck, Observation, Plan, PlannedAction, View
+
+NOISE_LEVELS = 14
+"""A pixel counts as changed when a channel, smoothed over 3 x 3 pixels, differs by more than this (of 255).
+
+Sensor noise of 4 levels leaves differences of about 2 after smoothing, so this is seven times the noise."""
+MAX_AGE_S = 600.0
+"""Oldest picture that may be acted upon [s]; ten minutes lets a person read and approve a plan."""
+_POINT_REACH_PX_SHARE = 0.06
+"""Half-width of the window round a point without a box, as a share of the picture's shorter side."""
+
+
+@dataclass(frozen=True)
+class Region:
+    """A part of the main view that an action relies on, and which action (from 0)."""
+
+    name: str
+    box: Box
+    action: int
+
+
+def changed_boxes(then: View, now: View) -> tuple[Box, ...]:
+    """Boxes round everything that differs between two pictures, a few pixels wider than the change."""
+    if then.size_px != now.size_px:
+        return (Box(0, 0, *now.size_px),)
+    changed = _changed_pixels(then.rgb, now.rgb).astype(np.uint8)
+    grown = cv2.dilate(changed, np.ones((5, 5), np.uint8))
+    count, _, stats, _ = cv2.connectedComponentsWithStats(grown)
+    return tuple(Box(x, y, x + w, y + h) for x, y, w, h, _ in stats[1:count].tolist())
+
+
+def _changed_pixels(then: Array, now: Array) -> Array:
+    difference = cv2.blur(now.astype(np.float32), (3, 3)) - cv2.blur(then.astype(np.float32), (3, 3))
+    return np.asarray(np.abs(difference).max(axis=2) > NOISE_LEVELS)
+
+
+def points_px(planned: PlannedAction, view: View) -> tuple[tuple[str, Point], ...]:
+    """Points of an action as (role, pixel of the main view); projected when no sources name them."""
+    if planned.sources or view.camera is None:
+        return tuple((source.role, source.point_px) for source in planned.sources)
+    match planned.action:
+        case PickPlace() as action:
+            named = (("pick", action.pick_m), ("place", action.place_m))
+        case Push() as action:
+            named = (("push_start", action.start_m), ("push_end", action.end_m))
+        case _:
+            return ()
+    try:
+        pixels = view.camera.project(np.array([point_m for _, point_m in named]))
+    except ValueError:
+        return ()  # behind the camera: outside the picture, so there is nothing to watch
+    return tuple((role, (float(x), float(y))) for (role, _), (x, y) in zip(named, pixels, strict=True))
+
+
+def watched(actions: Sequence[PlannedAction], plan: Plan | None, view: View, first: int = 0) -> tuple[Region, ...]:
+    """The regions that actions rely on: the box of each object they touch, a window round each other point."""
+    return tuple(
+        _region(role, point, planned, plan, view, index)
+        for index, planned in enumerate(actions, start=first)
+        for role, point in points_px(planned, view)
+    )
+
+
+def _region(role: str, point: Point, planned: PlannedAction, plan: Plan | None, view: View, index: int) -> Region:
+    target = getattr(dict(places_of(planned.step)).get(role), "target", None)
+    name = f"{target} ({role})" if target else role
+    grounded = plan.grounded.get(target) if plan is not None and target is not None else None
+    if grounded is not None and grounded.target.kind == "object" and grounded.box is not None:
+        if grounded.box.contains(point):
+            return Region(name, grounded.box, index)
+    return Region(name, _window(point, _held_box(planned, plan), view), index)
+
+
+def touched(planned: PlannedAction, plan: Plan | None, before: View, after: View) -> tuple[Box, ...]:
+    """The parts of the main view that an executed action was meant to change.
+
+    A pick and place changes where the object stood and where it goes, a push the strip in between. For actions that
+    leave the arm in the picture (moves, trajectories), it is whatever they changed.
+    """
+    points = points_px(planned, before)
+    held = _held_box(planned, plan)
+    match planned.action:
+        case PickPlace():
+            return tuple(_window(point, held, before).scaled(1.6) for _, point in points)
+        case Push():
+            ends = [_window(point, held, before).scaled(1.6) for _, point in points]
+            return (Box.bounding([corner for box in ends for corner in box.corners]),) if ends else ()
+        case _:
+            return changed_boxes(before, after)
+
+
+def _held_box(planned: PlannedAction, plan: Plan | None) -> Box | None:
+    target = getattr(planned.step, "pick", None)
+    grounded = plan.grounded.get(target) if plan is not None and target is not None else None
+    return None if grounded is None else grounded.box
+
+
+def _window(point: Point, held: Box | None, view: View) -> Box:
+    if held is not None:
+        return Box.around(point, held.width, held.height)
+    side = 2 * _POINT_REACH_PX_SHARE * min(view.size_px)
+    return Box.around(point, side, side)
+
+
+def freshness_checks(
+    then: Observation | None,
+    now: Observation,
+    regions: Sequence[Region],
+    *,
+    scene_hash: str = "",
+    excused: Sequence[Box] = (),
+    max_age_s: float | None = MAX_AGE_S,
+) -> list[GateCheck]:
+    """Compare the picture the plan was made from with the picture of now.
+
+    Args:
+        then: What the plan was made from, or what its last step left; None when it is not at hand.
+        now: The scene just before motion.
+        regions: What the coming actions rely on.
+        scene_hash: The hash that the plan says its picture has; "" skips that check.
+        excused: Parts that the plan's own earlier actions changed.
+        max_age_s: Limit on the picture's age [s]; None for no limit.
+    """
+    if then is None:
+        same = not scene_hash or scene_hash == now.hash
+        value = "the same picture" if same else f"now {now.hash}; the picture of the plan is not at hand"
+        return [GateCheck(None, "scene", same, value, f"picture {scene_hash}" if scene_hash else "none stated")]
+    checks = []
+    if scene_hash:
+        ok = then.hash == scene_hash
+        checks.append(GateCheck(None, "picture of the plan", ok, then.hash, scene_hash))
+    checks.append(_age(then, now, max_age_s))
+    same = then.hash == now.hash
+    checks.append(GateCheck(None, "scene", True, "the same picture" if same else "changed somewhere", "regions decide"))
+    checks += [_region_check(then.main, now.main, region, same, excused) for region in regions]
+    return checks
+
+
+def _age(then: Observation, now: Observation, max_age_s: float | None) -> GateCheck:
+    age_s = now.main.time_s - then.main.time_s
+    if max_age_s is None:
+        return GateCheck(None, "picture age", True, f"{age_s:.1f} s", "no limit")
+    ok = age_s <= max_age_s and (age_s >= 0 or then.hash == now.hash)
+    return GateCheck(None, "picture age", ok, f"{age_s:.1f} s", f"0 to {max_age_s:.0f} s", f"{max_age_s - age_s:.1f} s")
+
+
+def _region_check(then: View, now: View, region: Region, same: bool, excused: Sequence[Box]) -> GateCheck:
+    limit = f"change below {CHANGED:.2f} of 1"
+    name = f"unchanged: {region.name}"
+    if then.size_px != now.size_px:
+        return GateCheck(region.action, name, False, f"picture of {now.size_px} px", f"{then.size_px} px as planned")
+    if region.box.intersection(Box(0, 0, *now.size_px)) is None:
+        return GateCheck(region.action, name, True, "outside the picture: not watched", limit)
+    if any(region.box.intersection(box) is not None for box in excused):
+        return GateCheck(region.action, name, True, "changed by this plan's own actions", limit, "excused")
+    change = 0.0 if same else region_change(then.rgb, now.rgb, region.box)
+    return GateCheck(region.action, name, change < CHANGED, f"{change:.2f}", limit, f"{CHANGED - change:+.2f}")

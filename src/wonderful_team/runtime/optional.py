@@ -1,0 +1,54 @@
+"""What a world or a policy may offer beyond its protocol; checked with isinstance, never assumed."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any, Protocol, runtime_checkable
+
+from wonderful_team.types import Provenance, Usage
+
+
+@runtime_checkable
+class Horizon(Protocol):
+    """A world that ends after so many actions; None for no end."""
+
+    horizon: int | None
+
+
+@runtime_checkable
+class ChunkPolicy(Protocol):
+    """A policy that is asked again after every few actions, which is not a replan (learned policies)."""
+
+    chunks: bool
+
+
+@runtime_checkable
+class Accounting(Protocol):
+    """A policy that knows what its calls cost, per role."""
+
+    @property
+    def usage_by_role(self) -> Mapping[str, Usage]: ...
+
+
+@runtime_checkable
+class NamedModel(Protocol):
+    """A policy that says which model serves it."""
+
+    @property
+    def model_name(self) -> str: ...
+
+
+@runtime_checkable
+class Configured(Protocol):
+    """A policy that says how it is set up, in plain values."""
+
+    @property
+    def setting(self) -> Mapping[str, Any]: ...
+
+
+@runtime_checkable
+class Sourced(Protocol):
+    """A policy that says where its answers came from: model, offline, simulated, …"""
+
+    @property
+    def provenance(self) -> Sequence[Provenance]: ...

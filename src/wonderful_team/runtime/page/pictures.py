@@ -1,0 +1,107 @@
+"""Pictures inside the page: each stands once, as a data URI, and is shown wherever it is used."""
+
+from __future__ import annotations
+
+import base64
+import io
+from dataclasses import dataclass
+from pathlib import Path
+
+from markupsafe import Markup, escape
+from PIL import Image
+
+MOST_BYTES = 3_600_000
+"""Bytes of pictures that a page may hold before base64 (4.8 MB of text); beyond, pictures get coarser, not fewer."""
+_LEVELS = ((2000, 92), (1400, 82), (1000, 72), (640, 60), (400, 45), (240, 35))
+_LOSSLESS_BELOW_PX = 300 * 300
+
+
+@dataclass(frozen=True)
+class Shown:
+    """A picture that the page holds.
+
+    Attributes:
+        number: Names it inside the page.
+        size_px: Width, height of the file.
+        file: Relative to the run folder.
+    """
+
+    number: int
+    size_px: tuple[int, int]
+    file: str
+
+
+class Album:
+    """All pictures of one page.
+
+    Args:
+        folder: The run folder.
+        files: From hash to file, as the record says.
+    """
+
+    def __init__(self, folder: Path, files: dict[str, str]) -> None:
+        self._folder = folder
+        self._files = files
+        self._shown: dict[str, Shown | None] = {}
+
+    def get(self, key: str | None) -> Shown | None:
+        """The picture with that hash, taken into the page; None when its file is missing."""
+        if key is None:
+            return None
+        if key not in self._shown:
+            self._shown[key] = self._open(key)
+        return self._shown[key]
+
+    def _open(self, key: str) -> Shown | None:
+        file = self._files.get(key)
+        if file is None:
+            return None
+        path = (self._folder / file).resolve()
+        if not path.is_relative_to(self._folder.resolve()):
+            return None
+        try:
+            with Image.open(path) as image:
+                return Shown(len(self._shown) + 1, image.size, file)
+        except OSError:
+            return None
+
+    def image(self, key: str | None, alt: str, css: str = "") -> Markup:
+        """The picture as it is, no wider than its file says; words in its place when the file is missing."""
+        shown = self.get(key)
+        if shown is None:
+            return Markup('<span class="missing">picture missing: {}</span>').format(alt)
+        width, height = shown.size_px
+        return Markup(
+            '<svg class="picture {}" viewBox="0 0 {} {}" width="{}" role="img" aria-label="{}"><title>{}</title>'
+            '<use href="#p{}"/></svg>'
+        ).format(css, width, height, width, alt, alt, shown.number)
+
+    def definitions(self) -> Markup:
+        """Every picture once, to be referred to."""
+        taken = [shown for shown in self._shown.values() if shown is not None]
+        for side, quality in _LEVELS:
+            coded = [self._coded(shown, side, quality) for shown in taken]
+            if sum(map(len, coded)) <= MOST_BYTES:
+                break
+        lines = [
+            Markup('<image id="p{}" width="{}" height="{}" preserveAspectRatio="none" href="data:image/webp;base64,{}"/>')
+            .format(shown.number, *shown.size_px, base64.b64encode(code).decode("ascii"))
+            for shown, code in zip(taken, coded, strict=True)
+        ]  # fmt: skip
+        return Markup("\n").join(lines)
+
+    def _coded(self, shown: Shown, most_px: int, quality: int) -> bytes:
+        with Image.open(self._folder / shown.file) as opened:
+            image = opened.convert("RGB")
+        lossless = image.width * image.height < _LOSSLESS_BELOW_PX and quality > 70
+        image.thumbnail((most_px, most_px))
+        buffer = io.BytesIO()
+        image.save(buffer, format="WEBP", quality=quality, lossless=lossless, method=2)
+        return buffer.getvalue()
+
+
+def text_in_svg(x: float, y: float, text: str, css: str, size: float) -> Markup:
+    """A line of text in a drawing, escaped."""
+    return Markup('<text x="{}" y="{}" class="{}" font-size="{}">{}</text>').format(
+        f"{x:.2f}", f"{y:.2f}", css, f"{size:.2f}", escape(text)
+    )

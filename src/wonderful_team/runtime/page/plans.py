@@ -1,0 +1,79 @@
+"""4 and 8: the plan with its first draft as a diff, and what each replan changed."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from markupsafe import Markup, escape
+
+from wonderful_team.runtime.page.look_up import chapters
+from wonderful_team.runtime.page.words import step_words, word_diff
+
+
+def plans(record: dict[str, Any]) -> list[dict[str, Any]]:
+    """Every plan: subgoals as a diff against its own first draft, questions, steps."""
+    return [_plan(name, content) for _, name, content in chapters(record)]
+
+
+def _plan(name: str, current: dict[str, Any]) -> dict[str, Any]:
+    before = current["first_draft"] or current["subgoals"]
+    rows = diff_rows(before, current["subgoals"])
+    return {
+        "name": name,
+        "id": current["id"],
+        "mode": current["mode"].replace("_", " "),
+        "verified": current["verified"],
+        "rows": rows,
+        "changed": any(row["kind"] != "same" for row in rows),
+        "questions": current["questions"],
+        "steps": [{"subgoal": step["subgoal"], "words": step_words(step)} for step in current["steps"]],
+        "message": current["message"],
+    }
+
+
+def diff_rows(before: Sequence[dict[str, Any]], after: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
+    """Subgoals side by side by id: same, changed, added, removed."""
+    old = {goal["id"]: goal for goal in before}
+    rows = []
+    for goal in after:
+        was = old.pop(goal["id"], None)
+        same = was is not None and was["text"] == goal["text"]
+        kind = "added" if was is None else "same" if same else "changed"
+        text = escape(goal["text"]) if was is None or same else word_diff(was["text"], goal["text"])
+        if was is None:
+            text = Markup("<ins>{}</ins>").format(goal["text"])
+        rows.append({**goal, "kind": kind, "shown": text})
+    for goal in old.values():
+        rows.append({**goal, "kind": "removed", "shown": Markup("<del>{}</del>").format(goal["text"])})
+    return rows
+
+
+def replans(record: dict[str, Any]) -> list[dict[str, Any]]:
+    """For each plan after the first: what was believed, what was seen, what changed."""
+    planner = record["planner"]
+    made = planner["plans"]
+    judged = planner["verdicts"]
+    found = []
+    for number in range(1, len(made)):
+        before, after = made[number - 1]["plan"], made[number]["plan"]
+        verdicts = judged[number - 1]["verdicts"] if number - 1 < len(judged) else []
+        refusal = [
+            f"{check['name']}: {check['value']} (limit {check['limit']})"
+            for gate in planner["gates"]
+            if not gate["admitted"] and gate["plan"] == number - 1
+            for check in gate["checks"]
+            if not check["ok"]
+        ]
+        found.append(
+            {
+                "number": number,
+                "believed": before["subgoals"],
+                "verdicts": verdicts,
+                "refusal": [] if verdicts else refusal,
+                "rows": diff_rows(before["subgoals"], after["subgoals"]),
+                "steps": [step_words(step) for step in after["steps"]],
+                "status": after["status"].replace("_", " "),
+            }
+        )
+    return found

@@ -1,0 +1,102 @@
+"""Every request of a run, in the order of sending."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from markupsafe import Markup
+
+from wonderful_team.runtime.page.pictures import Album
+
+
+@dataclass(frozen=True, eq=False)
+class Part:
+    """Words or a picture, as shown to the model."""
+
+    words: str = ""
+    picture: Markup | None = None
+    caption: str = ""
+
+
+@dataclass(frozen=True, eq=False)
+class Asked:
+    """One attempt at one request.
+
+    Attributes:
+        number: From 1, in order of sending.
+        sent_s, answered_s: Since the start of the run; answered_s None when no answer came.
+        pictures: Hashes of the pictures, as drawn.
+    """
+
+    number: int
+    entry: dict[str, Any]
+    parts: tuple[Part, ...]
+    pictures: tuple[str, ...]
+    sent_s: float
+    answered_s: float | None
+
+    @property
+    def anchor(self) -> str:
+        return f"request-{self.number}"
+
+    @property
+    def attempt(self) -> int:
+        """Which plan of the trial it served, from 0: the first part of its id where that is a number."""
+        first = str(self.entry["id"]).partition("/")[0]
+        return int(first) if first.isdecimal() else 0
+
+    @property
+    def answer(self) -> dict[str, Any] | None:
+        return self.entry["answer"] or None
+
+    @property
+    def seconds(self) -> float | None:
+        return None if self.answered_s is None else self.answered_s - self.sent_s
+
+    @property
+    def label(self) -> str:
+        """Contract and target, short enough for a bar."""
+        targets = self.entry["targets"]
+        return str(self.entry["contract"]) + (f" {targets[0]}" if len(targets) == 1 else "")
+
+    @property
+    def gist(self) -> str:
+        """The answer in a few words, where one field says it."""
+        parsed = (self.answer or {}).get("parsed")
+        if not isinstance(parsed, dict):
+            return "" if self.answer is None else str(parsed)[:80]
+        for field in ("decision", "status", "kind"):
+            if isinstance(parsed.get(field), str):
+                return str(parsed[field])
+        if isinstance(parsed.get("approved"), bool):
+            return "approved" if parsed["approved"] else "a doubt"
+        for field in ("steps", "targets", "subgoals", "points", "verdicts"):
+            if isinstance(parsed.get(field), list):
+                count = len(parsed[field])
+                return f"{count} {field if count != 1 else field[:-1]}"
+        return ""
+
+
+def in_order(record: dict[str, Any], album: Album) -> tuple[Asked, ...]:
+    """All requests, first sent first."""
+    times = record["clock"]["requests"]
+
+    def sent(entry: dict[str, Any]) -> float:
+        return float(times.get(entry["key"], {}).get("sent_s", 0.0))
+
+    asked = []
+    for number, entry in enumerate(sorted(record["planner"]["requests"], key=sent), start=1):
+        parts = tuple(_part(part, album) for part in entry["parts"])
+        drawn = tuple(part["drawn"] for part in entry["parts"] if "drawn" in part)
+        answered = times.get(entry["key"], {}).get("answered_s")
+        asked.append(Asked(number, entry, parts, drawn, sent(entry), answered))
+    return tuple(asked)
+
+
+def _part(part: dict[str, Any], album: Album) -> Part:
+    if "words" in part:
+        return Part(words=part["words"])
+    width, height = part["size_px"]
+    caption = f"{part['picture']}, {width} × {height} px as sent"
+    return Part(picture=album.image(part["drawn"], caption), caption=caption)

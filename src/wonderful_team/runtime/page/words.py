@@ -1,0 +1,105 @@
+"""Values in words, as the page shows them."""
+
+from __future__ import annotations
+
+import difflib
+import json
+from typing import Any
+
+from markupsafe import Markup, escape
+
+
+def pretty(value: Any) -> str:
+    """A JSON value, indented."""
+    return json.dumps(value, indent=2, ensure_ascii=False)
+
+
+def pretty_name(name: str) -> str:
+    """`not_found` becomes "not found"."""
+    return str(name).replace("_", " ")
+
+
+def seconds(value: float | None) -> str:
+    """A duration: 12 ms, 3.4 s, 2 min 5 s."""
+    if value is None:
+        return "no answer"
+    if value < 0.9995:
+        return f"{value * 1000:.0f} ms"
+    if value < 60:
+        return f"{value:.1f} s"
+    return f"{int(value) // 60} min {int(value) % 60} s"
+
+
+def clock_time(value: float) -> str:
+    """Time since the start of the run."""
+    return f"{value:.2f} s"
+
+
+def money(usd: float | None) -> str:
+    """Money, or that no price is known."""
+    if usd is None:
+        return "unknown"
+    return "0" if usd == 0 else f"${usd:.4f}" if usd < 1 else f"${usd:.2f}"
+
+
+def counted(number: int, noun: str) -> str:
+    """`3 calls`, `1 call`."""
+    return f"{number:,} {noun}{'' if number == 1 else 's'}"
+
+
+def brief(text: str, most: int = 220) -> str:
+    """The first sentences of a text, at most `most` characters of it; what is cut is marked with "…"."""
+    if len(text) <= most:
+        return text
+    stop = max(text.rfind(mark, 0, most) for mark in (". ", "; ", "? "))
+    return text[: stop + 1] + " …" if stop > most // 3 else text[:most].rsplit(" ", 1)[0] + " …"
+
+
+def word_diff(before: str, after: str) -> Markup:
+    """One line with what went struck through and what came underlined; everything escaped."""
+    old, new = before.split(), after.split()
+    parts: list[Markup] = []
+    for kind, a0, a1, b0, b1 in difflib.SequenceMatcher(a=old, b=new, autojunk=False).get_opcodes():
+        gone, come = " ".join(old[a0:a1]), " ".join(new[b0:b1])
+        if kind == "equal":
+            parts.append(escape(gone))
+            continue
+        if gone:
+            parts.append(Markup("<del>{}</del>").format(gone))
+        if come:
+            parts.append(Markup("<ins>{}</ins>").format(come))
+    return Markup(" ").join(parts)
+
+
+def place_words(place: dict[str, Any]) -> str:
+    """A step's place in words."""
+    match place.get("type"):
+        case "Beside":
+            return f"{place['side']} of {place['target']}"
+        case "OriginOf":
+            return f"where {place['target']} stood"
+    return str(place.get("target", ""))
+
+
+def step_words(step: dict[str, Any]) -> str:
+    """A step in words, from its JSON."""
+    turn = step.get("rotate_deg")
+    turned = f", turned {turn:g}° clockwise" if turn else ""
+    match step["type"]:
+        case "PickPlaceStep":
+            return f"pick {step['pick']}, place at {place_words(step['place'])}{turned}"
+        case "PushStep":
+            return f"push from {place_words(step['start'])} to {place_words(step['end'])}"
+        case "MoveStep":
+            return f"move {step['height']} {place_words(step['to'])}"
+        case "CloseStep":
+            return "close the gripper" + (", tight" if step["tight"] else "")
+        case "OpenStep":
+            return "open the gripper"
+        case "RotateGripperStep":
+            return f"turn the gripper {turn:g}° clockwise"
+        case "FollowStep":
+            return f"follow the path of {step['function']}"
+        case "NavigateStep":
+            return f"drive to {place_words(step['to'])}"
+    return "go home"

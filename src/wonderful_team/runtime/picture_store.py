@@ -1,0 +1,58 @@
+"""Pictures of a run as files: numbered in the order of sending, exactly as drawn; the same picture is stored once."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+from wonderful_team.geometry.arrays import Array
+from wonderful_team.images import Ticks, draw, to_png
+from wonderful_team.pictures import Picture, picture_hash
+from wonderful_team.types import Observation, View
+
+FOLDER = "pictures"
+
+
+class PictureStore:
+    """Writes pictures into a run folder.
+
+    Attributes:
+        files: From a picture's hash to its file, relative to the run folder.
+    """
+
+    def __init__(self, folder: Path, ticks: Ticks = Ticks.PIXELS) -> None:
+        self._folder = folder
+        self._ticks = ticks
+        self._sent: set[str] = set()
+        self._views = 0
+        self.files: dict[str, str] = {}
+        (folder / FOLDER).mkdir(parents=True, exist_ok=True)
+
+    def keep_sent(self, picture: Picture) -> str:
+        """Store a picture as it is sent, marks drawn; returns the hash of what was drawn."""
+        drawn = draw(picture, self._ticks)
+        key = picture_hash(drawn)
+        if key not in self._sent:
+            self._sent.add(key)
+            self._write(key, f"{len(self._sent):03d}_{_slug(picture.name)}.png", drawn)
+        return key
+
+    def keep_view(self, view: View, where: str) -> str:
+        """Store a clean view; returns its hash."""
+        key = view.hash
+        if key not in self.files:
+            self._views += 1
+            self._write(key, f"view_{self._views:03d}_{_slug(where)}_{_slug(view.camera_name)}.png", view.rgb)
+        return key
+
+    def keep_observation(self, observation: Observation, where: str) -> dict[str, str]:
+        """Store every view; returns hashes by name of the view."""
+        return {name: self.keep_view(view, where) for name, view in observation.views.items()}
+
+    def _write(self, key: str, name: str, rgb: Array) -> None:
+        (self._folder / FOLDER / name).write_bytes(to_png(rgb))
+        self.files[key] = f"{FOLDER}/{name}"
+
+
+def _slug(words: str) -> str:
+    return re.sub(r"[^a-z0-9]+", "-", words.lower()).strip("-")[:32] or "picture"

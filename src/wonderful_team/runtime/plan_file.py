@@ -1,0 +1,75 @@
+"""A plan as JSON and back: what `plan.json` holds and `run --plan` takes. The plan that comes back has the same id."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from wonderful_team.errors import ConfigError
+from wonderful_team.runtime.values_file import decode, encode
+from wonderful_team.types import Plan
+
+PLAN_SCHEMA_VERSION = 1
+PLAN_FORMAT = "wonderful-team plan"
+
+
+def plan_to_json(plan: Plan) -> dict[str, Any]:
+    """Everything in the plan, in JSON values; pictures of the instruction as PNG text. Numbers keep every digit."""
+    return {"format": PLAN_FORMAT, "schema_version": PLAN_SCHEMA_VERSION, "id": plan.id, "plan": encode(plan)}
+
+
+def plan_from_json(data: Any, where: str = "plan") -> Plan:
+    """The plan that `plan_to_json` wrote.
+
+    Args:
+        data: The parsed JSON.
+        where: What to call it in messages, such as the file's name.
+
+    Raises:
+        ConfigError: Not a plan of ours, another schema version, a broken or changed content.
+    """
+    if not isinstance(data, Mapping) or data.get("format") != PLAN_FORMAT:
+        found = f"format {data.get('format')!r}" if isinstance(data, Mapping) else f"a {type(data).__name__}"
+        raise ConfigError(f"{where}: not a plan file (found {found}, expected format {PLAN_FORMAT!r})")
+    version = data.get("schema_version")
+    if version != PLAN_SCHEMA_VERSION:
+        raise ConfigError(
+            f"{where}: plan schema version {version!r} cannot be read; this release reads {PLAN_SCHEMA_VERSION}. "
+            "Make the plan again, or use the release that wrote it"
+        )
+    try:
+        plan = decode(data.get("plan"), Plan)
+    except (ValueError, TypeError, ConfigError) as error:
+        raise ConfigError(f"{where}: broken plan: {error}") from error
+    assert isinstance(plan, Plan)
+    if plan.id != data.get("id"):
+        raise ConfigError(
+            f"{where}: the content has id {plan.id}, the file says {data.get('id')!r}: it was changed after it was "
+            "written. A changed plan must be made and approved again"
+        )
+    return plan
+
+
+def write_plan(plan: Plan, path: Path) -> None:
+    """Write `plan.json`."""
+    path.write_text(json.dumps(plan_to_json(plan), indent=1, ensure_ascii=False), encoding="utf-8")
+
+
+def read_plan(path: Path) -> Plan:
+    """Read a plan from its file, or from the folder of the run that made it.
+
+    Raises:
+        ConfigError: There is no such file, or it is not a plan of ours.
+    """
+    file = path / "plan.json" if path.is_dir() else path
+    try:
+        data = json.loads(file.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise ConfigError(
+            f"{file}: no plan to read ({error.strerror}); give a run's folder or its plan.json"
+        ) from error
+    except ValueError as error:
+        raise ConfigError(f"{file}: not JSON: {error}") from error
+    return plan_from_json(data, str(file))

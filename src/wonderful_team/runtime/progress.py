@@ -1,0 +1,99 @@
+"""What has happened so far in a rollout; tells subscribers and becomes the Trial."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any, Literal
+
+from wonderful_team.interfaces import Act, Decision, Event, Policy, Subscriber, World
+from wonderful_team.runtime.optional import Accounting, Configured, NamedModel, Sourced
+from wonderful_team.types import GateReport, Observation, Plan, PlannedAction, StepReport, SubgoalRun, Trial, Verdict
+
+
+@dataclass(frozen=True)
+class Ending:
+    """How it ended. `outcome` None leaves the word to the scorer; `final` forbids another attempt."""
+
+    outcome: Literal["success", "failure", "error", "unscored"] | None
+    stage: str | None
+    reason: str
+    final: bool = False
+
+
+@dataclass
+class Progress:
+    """Collects the parts of a Trial while it runs."""
+
+    policy: Policy
+    scene: str
+    seed: int | None
+    subscribers: Sequence[Subscriber]
+    plans: list[Plan] = field(default_factory=list)
+    gates: list[GateReport] = field(default_factory=list)
+    runs: list[SubgoalRun] = field(default_factory=list)
+    verdicts: list[Verdict] = field(default_factory=list)
+    executed: int = 0
+
+    def tell(self, kind: str, name: str, content: Any = None) -> None:
+        for subscriber in self.subscribers:
+            subscriber.on_event(Event(kind, name, content))
+
+    def observe(self, world: World, where: str) -> Observation:
+        """Look, and tell."""
+        observation = world.observe()
+        self.observed(where, observation)
+        return observation
+
+    def observed(self, where: str, observation: Observation) -> None:
+        self.tell("observe", where, observation)
+
+    def decided(self, decision: Decision) -> None:
+        """Note a decision and what it carries."""
+        name = type(decision).__name__
+        self.tell("decision", name, {"decision": name, "reason": getattr(decision, "reason", "")})
+        verdicts = tuple(getattr(decision, "verdicts", ()))
+        if verdicts:
+            self.verdicts += verdicts
+            self.tell("verdicts", "judge", verdicts)
+        if isinstance(decision, Act) and decision.plan is not None:
+            self.add_plan(decision.plan)
+
+    def add_plan(self, plan: Plan) -> None:
+        if all(plan.id != known.id for known in self.plans):
+            self.plans.append(plan)
+            self.tell("plan", plan.id, plan)
+
+    def passed_gate(self, where: str, report: GateReport) -> None:
+        self.gates.append(report)
+        self.tell("gate", where, report)
+
+    def ran_action(self, planned: PlannedAction, report: StepReport) -> None:
+        self.executed += 1
+        self.tell("execute", str(self.executed), (planned, report))
+
+    def ran_subgoal(self, run: SubgoalRun) -> None:
+        self.runs.append(run)
+        self.tell("subgoal", run.subgoal, run)
+
+    def finish(self, ending: Ending) -> Trial:
+        """The trial as it stands; told to subscribers as the last event."""
+        policy = self.policy
+        trial = Trial(
+            scene=self.scene,
+            seed=self.seed,
+            method=policy.name,
+            model=policy.model_name if isinstance(policy, NamedModel) else "",
+            plans=tuple(self.plans),
+            gates=tuple(self.gates),
+            runs=tuple(self.runs),
+            verdicts=tuple(self.verdicts),
+            outcome=ending.outcome or "unscored",
+            stage=ending.stage,
+            reason=ending.reason,
+            usage_by_role=dict(policy.usage_by_role) if isinstance(policy, Accounting) else {},
+            provenance=tuple(policy.provenance) if isinstance(policy, Sourced) else (),
+            setting=dict(policy.setting) if isinstance(policy, Configured) else {},
+        )
+        self.tell("done", trial.outcome, trial)
+        return trial

@@ -1,0 +1,295 @@
+"""Writes the run folder as things happen, so that an interrupted run leaves a readable record too."""
+
+from __future__ import annotations
+
+import json
+import os
+import threading
+import time
+from collections.abc import Callable, Mapping
+from datetime import UTC, datetime
+from pathlib import Path
+from types import TracebackType
+from typing import Any
+
+from wonderful_team.images import Ticks, action_arrows, overview, to_png
+from wonderful_team.interfaces import Event
+from wonderful_team.jsonable import to_jsonable
+from wonderful_team.runtime import entries
+from wonderful_team.runtime.keep_out import outlines
+from wonderful_team.runtime.picture_store import PictureStore
+from wonderful_team.runtime.plan_file import plan_to_json
+from wonderful_team.runtime.redact import redact, redact_all, secrets_of_environment
+from wonderful_team.runtime.versions import versions
+from wonderful_team.types import Instruction, Limits, Observation, Plan, Request, Trial
+
+RECORD_SCHEMA_VERSION = 1
+_REWRITE_EVERY_S = 0.3
+"""Least time between two rewrites of record.json; important events are written at once."""
+_AT_ONCE = frozenset({"run", "stage", "plan", "gate", "execute", "subgoal", "warning", "done"})
+
+
+class Recorder:
+    """A subscriber that keeps a run.
+
+    The record's key "planner" holds what the planner was asked, answered and did, without clock times and in an
+    order that no race changes: removing the scorer leaves it bit-identical. Times stand under "clock".
+
+    Args:
+        folder: Where to write; made when missing.
+        ticks: How the numbers of drawn axes are written, as the model's convention wants them.
+        command: The command that reproduces the run, for the page.
+    """
+
+    def __init__(self, folder: Path, *, ticks: Ticks = Ticks.PIXELS, command: str | None = None) -> None:
+        self.folder = Path(folder)
+        self.folder.mkdir(parents=True, exist_ok=True)
+        self._store = PictureStore(self.folder, ticks)
+        self._secrets = secrets_of_environment()
+        self._lock = threading.RLock()
+        self._zero = time.monotonic()
+        self._last_write = -1.0
+        self._requests: dict[str, dict[str, Any]] = {}
+        self._observations: dict[str, Observation] = {}
+        self._seen: Observation | None = None
+        self._limits: Limits | None = None
+        self._planner: dict[str, Any] = {"instruction": None, "outlines": []}
+        for key in ("observations", "stages", "plans", "decisions", "gates", "executions", "subgoals", "verdicts"):
+            self._planner[key] = []
+        self._planner["warnings"] = []
+        self._clock: dict[str, Any] = {"started": _now(), "requests": {}, "stages": [], "gates": [], "executions": []}
+        self._record: dict[str, Any] = {
+            "schema_version": RECORD_SCHEMA_VERSION,
+            "state": "running",
+            "command": command,
+            "configuration": {},
+            "versions": versions(),
+            "outcome": None,
+        }
+        self._handlers: dict[str, Callable[[Event], None]] = {
+            "run": self._on_run,
+            "observe": self._on_observe,
+            "stage": self._on_stage,
+            "request": self._on_request,
+            "answer": self._on_answer,
+            "invalid": self._on_invalid,
+            "plan": self._on_plan,
+            "decision": lambda event: self._planner["decisions"].append(entries.plain(event.content)),
+            "gate": self._on_gate,
+            "execute": self._on_execute,
+            "subgoal": self._on_subgoal,
+            "verdicts": self._on_verdicts,
+            "warning": self._on_warning,
+            "done": self._on_done,
+        }
+        (self.folder / "log.txt").write_text("", encoding="utf-8")
+        self._write()
+
+    def on_event(self, event: Event) -> None:
+        """Keep one event. Kinds that are not known are left out."""
+        handle = self._handlers.get(event.kind)
+        if handle is None:
+            return
+        with self._lock:
+            handle(event)
+            if event.kind in _AT_ONCE or self._elapsed_s() - self._last_write >= _REWRITE_EVERY_S:
+                self._write()
+
+    def close(self) -> None:
+        """Write what is left. A run that was never finished is marked as interrupted."""
+        with self._lock:
+            if self._record["state"] == "running":
+                self._record["state"] = "interrupted"
+            self._write()
+
+    def __enter__(self) -> Recorder:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+    # -- what happens ------------------------------------------------------------------------------------------------
+
+    def _on_run(self, event: Event) -> None:
+        content = dict(event.content or {})
+        task, limits = content.pop("task", None), content.pop("limits", None)
+        if isinstance(task, Instruction):
+            self._planner["instruction"] = entries.instruction_entry(task, self._store)
+        if isinstance(limits, Limits):
+            self._limits = limits
+            self._planner["limits"] = to_jsonable(limits)
+        self._record["command"] = content.pop("command", None) or self._record["command"]
+        self._record["configuration"].update(entries.plain(content))
+        if event.name:
+            self._record["configuration"].setdefault("scene", event.name)
+
+    def _on_observe(self, event: Event) -> None:
+        observation: Observation = event.content
+        self._seen = observation
+        self._observations[observation.hash] = observation
+        while len(self._observations) > 8:
+            self._observations.pop(next(iter(self._observations)))
+        self._planner["observations"].append(entries.observation_entry(event.name, observation, self._store))
+
+    def _on_stage(self, event: Event) -> None:
+        content = event.content
+        text = content.get("text", "") if isinstance(content, Mapping) else str(content or "")
+        attempt = content.get("attempt", 0) if isinstance(content, Mapping) else 0
+        self._planner["stages"].append({"name": event.name, "text": text, "attempt": attempt})
+        self._stamp("stages")
+        self._log(event.name, text)
+
+    def _on_request(self, event: Event) -> None:
+        request: Request = event.content
+        entry = entries.request_entry(request, self._store)
+        self._requests[entry["key"]] = entry
+        self._clock["requests"][entry["key"]] = {"sent_s": round(self._elapsed_s(), 4), "answered_s": None}
+
+    def _on_answer(self, event: Event) -> None:
+        request, answer = event.content
+        entry = self._entry_of(request)
+        entry["answer"] = entries.answer_entry(answer)
+        self._answered(entry["key"])
+
+    def _on_invalid(self, event: Event) -> None:
+        request, raw, error = event.content
+        entry = self._entry_of(request)
+        entry["invalid"] = {"raw": str(raw), "error": str(error)}
+        self._answered(entry["key"])
+        self._log("invalid", f"{request.id}: {error}")
+
+    def _entry_of(self, request: Request) -> dict[str, Any]:
+        key = entries.request_key(request)
+        if key not in self._requests:
+            # Answered without being sent (a cache): it is part of the story all the same.
+            self._on_request(Event("request", request.id, request))
+        return self._requests[key]
+
+    def _answered(self, key: str) -> None:
+        self._clock["requests"][key]["answered_s"] = round(self._elapsed_s(), 4)
+
+    def _on_plan(self, event: Event) -> None:
+        plan: Plan = event.content
+        data = plan_to_json(plan)
+        # The instruction's pictures stand once, as files, under "instruction".
+        words_only = {**data["plan"]["instruction"], "slots": {}}
+        kept = {**data, "plan": {**data["plan"], "instruction": words_only}}
+        if kept in self._planner["plans"]:
+            return
+        self._planner["plans"].append(kept)
+        if self._planner["instruction"] is None:
+            self._planner["instruction"] = entries.instruction_entry(plan.instruction, self._store)
+        _write_whole(self.folder / "plan.json", json.dumps(self._clean(data), indent=1, ensure_ascii=False))
+        self._draw_final(plan)
+
+    def _draw_final(self, plan: Plan) -> None:
+        observation = self._observations.get(plan.scene_hash, self._seen)
+        if observation is None:
+            return
+        view = observation.main
+        regions = (*plan.keep_out, *(self._limits.keep_out if self._limits is not None else ()))
+        self._planner["outlines"] = outlines(dict.fromkeys(regions), self._limits, view.camera)
+        rgb = overview(
+            view, plan.grounded, arrows=action_arrows(plan.actions), keep_out=plan.keep_out, workspace=self._limits
+        )
+        (self.folder / "final.png").write_bytes(to_png(rgb))
+
+    def _on_gate(self, event: Event) -> None:
+        self._planner["gates"].append({"plan": self._plan_number, **entries.gate_entry(event.name, event.content)})
+        self._stamp("gates")
+
+    def _on_subgoal(self, event: Event) -> None:
+        entry = entries.subgoal_entry(event.content, self._store)
+        self._planner["subgoals"].append({"plan": self._plan_number, **entry})
+
+    def _on_execute(self, event: Event) -> None:
+        planned, report = event.content
+        number = len(self._planner["executions"]) + 1
+        self._planner["executions"].append(entries.execution_entry(number, planned, report))
+        self._stamp("executions")
+        self._log(
+            "execute", f"action {number} {report.action.kind}: " + ("ran" if report.executed else f"{report.fault}")
+        )
+
+    def _on_verdicts(self, event: Event) -> None:
+        verdicts = to_jsonable(tuple(event.content))
+        if not self._planner["verdicts"] or self._planner["verdicts"][-1]["verdicts"] != verdicts:
+            after = len(self._planner["subgoals"])
+            self._planner["verdicts"].append({"after_subgoals": after, "verdicts": verdicts})
+
+    def _on_warning(self, event: Event) -> None:
+        text = str(event.content)
+        self._planner["warnings"].append(text)
+        self._log("warning", text)
+
+    def _on_done(self, event: Event) -> None:
+        self._record["state"] = "finished"
+        self._clock["ended"] = _now()
+        self._clock["seconds"] = round(self._elapsed_s(), 4)
+        match event.content:
+            case Plan() as plan:
+                self._on_plan(Event("plan", plan.id, plan))
+                self._record["outcome"] = {
+                    "outcome": plan.status,
+                    "stage": getattr(plan, "stage", None),
+                    "reason": plan.message,
+                }
+            case Trial() as trial:
+                self._record["outcome"] = {
+                    "outcome": trial.outcome,
+                    "stage": trial.stage,
+                    "reason": trial.reason,
+                    "seed": trial.seed,
+                    "method": trial.method,
+                    "model": trial.model,
+                }
+                # The score comes after the trial and stays out of the planner's part.
+                usage = {role: entries.usage_entry(one, with_seconds=True) for role, one in trial.usage_by_role.items()}
+                self._clock["usage_by_role"] = usage
+            case _:
+                self._record["outcome"] = {"outcome": event.name, "stage": None, "reason": ""}
+        outcome = self._record["outcome"]
+        self._log("done", f"{outcome['outcome']} {outcome['reason']}".strip())
+
+    @property
+    def _plan_number(self) -> int | None:
+        """Which of the plans is current, from 0; None for a method that acts without one."""
+        return len(self._planner["plans"]) - 1 if self._planner["plans"] else None
+
+    def _stamp(self, kind: str) -> None:
+        self._clock[kind].append(round(self._elapsed_s(), 4))
+
+    # -- files -------------------------------------------------------------------------------------------------------
+
+    def _elapsed_s(self) -> float:
+        return time.monotonic() - self._zero
+
+    def _clean(self, value: Any) -> Any:
+        return redact_all(value, self._secrets)
+
+    def _log(self, name: str, text: str) -> None:
+        line = redact(f"{self._elapsed_s():6.1f} s  {name:10s} {text}", self._secrets)
+        with (self.folder / "log.txt").open("a", encoding="utf-8") as log:
+            log.write(line.replace("\n", " ") + "\n")
+
+    def _write(self) -> None:
+        planner = {**self._planner, "requests": [self._requests[key] for key in sorted(self._requests)]}
+        record = {**self._record, "files": self._store.files, "planner": planner, "clock": self._clock}
+        # Indenting takes ten times as long: only the finished record is laid out for reading.
+        indent = None if record["state"] == "running" else 1
+        text = json.dumps(self._clean(record), indent=indent, ensure_ascii=False)
+        _write_whole(self.folder / "record.json", text)
+        self._last_write = self._elapsed_s()
+
+
+def _write_whole(path: Path, text: str) -> None:
+    """Replace a file so that a reader finds the old or the new content, never half of it."""
+    part = path.with_name(f".{path.name}.part")
+    part.write_text(text, encoding="utf-8")
+    os.replace(part, path)
+
+
+def _now() -> str:
+    return datetime.now(UTC).isoformat(timespec="seconds")

@@ -1,0 +1,1 @@
+"""Simulated worlds: our own tabletop, and adapters to other people's simulators."""

@@ -1,0 +1,76 @@
+"""The two cameras over the table: orthographic, so that a metre is as many pixels everywhere in the picture."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from wonderful_team.errors import ConfigError
+from wonderful_team.geometry import AffineCamera
+from wonderful_team.geometry.arrays import Array
+
+TABLE_LOW_M = (0.25, -0.5, 0.0)
+TABLE_HIGH_M = (0.75, 0.5, 0.3)
+SIZE_PX = (640, 320)
+SEEN_WIDTH_M = 640 / 600
+"""Width of what a camera sees [m]: the table and a margin of 33 mm on either side."""
+CAMERA_NAMES = ("top", "front")
+
+
+@dataclass(frozen=True, eq=False)
+class Lens:
+    """Where an orthographic camera stands and how it looks.
+
+    Attributes:
+        position_m: Centre of the picture at zero depth, shape (3,) [m].
+        right, down, forward: Unit axes of the camera in the base frame, shape (3,) each.
+        scale_px_m: Pixels per metre.
+    """
+
+    name: str
+    position_m: Array
+    right: Array
+    down: Array
+    forward: Array
+    size_px: tuple[int, int]
+
+    @property
+    def scale_px_m(self) -> float:
+        return self.size_px[0] / SEEN_WIDTH_M
+
+    @property
+    def seen_height_m(self) -> float:
+        return self.size_px[1] / self.scale_px_m
+
+    @property
+    def camera(self) -> AffineCamera:
+        """The same camera for planners: base frame to pixels and depth."""
+        width, height = self.size_px
+        rows = []
+        for axis, offset, scale in (
+            (self.right, width / 2, self.scale_px_m),
+            (self.down, height / 2, self.scale_px_m),
+            (self.forward, 0.0, 1.0),
+        ):
+            rows.append([*(axis * scale), offset - scale * float(axis @ self.position_m)])
+        return AffineCamera(np.array(rows))
+
+
+def lens(name: str, size_px: tuple[int, int] = SIZE_PX) -> Lens:
+    """The camera of that name: top looks straight down, front looks down at 45 degrees from the +x side.
+
+    Raises:
+        ConfigError: The picture is not twice as wide as high, or too small or large to be of use.
+    """
+    width, height = size_px
+    if width != 2 * height or not 128 <= width <= 2048:
+        raise ConfigError(f"size_px: expected (2 n, n) with a width from 128 to 2048 px, got {size_px}")
+    right = np.array([0.0, 1.0, 0.0])
+    if name == "top":
+        return Lens(name, np.array([0.5, 0.0, 1.0]), right, np.array([1.0, 0, 0]), np.array([0, 0, -1.0]), size_px)
+    half = math.sqrt(0.5)
+    forward = np.array([-half, 0.0, -half])
+    middle = np.array([0.5, 0.0, 0.03])
+    return Lens(name, middle - 1.2 * forward, right, np.array([half, 0.0, -half]), forward, size_px)

@@ -1,0 +1,125 @@
+"""Drawing with OpenGL, without a screen. All of it happens on one thread of its own, whoever asks."""
+
+from __future__ import annotations
+
+import atexit
+import weakref
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from typing import Any, TypeVar
+
+import numpy as np
+
+from wonderful_team.geometry.arrays import Array
+from wonderful_team.sims.tabletop.drawing import Drawn
+from wonderful_team.sims.tabletop.engine import find_context, mj
+from wonderful_team.sims.tabletop.model import FLOOR_GROUP, TABLE_GROUP, THING_GROUP, WHITE_GROUP, BuiltModel
+
+T = TypeVar("T")
+
+
+class _DrawingThread:
+    """The thread that owns the process's one OpenGL context: contexts belong to the thread that made them."""
+
+    def __init__(self) -> None:
+        self._pool = ThreadPoolExecutor(max_workers=1, thread_name_prefix="tabletop-drawing")
+        self._context: Any = None
+        self._failure: str | None = None
+        self.name = ""
+
+    def run(self, work: Callable[[], T]) -> T:
+        return self._pool.submit(work).result()
+
+    def free(self, context: Any) -> None:
+        """Free what a renderer holds; at the end of the process the graphics card has done so already."""
+        try:
+            self.run(context.free)
+        except RuntimeError:
+            return
+
+    def ensure_context(self) -> None:
+        """Open the context once; a failure is remembered, because trying again costs and changes nothing."""
+        if self._failure is not None:
+            raise RuntimeError(self._failure)
+        if self._context is None:
+            try:
+                # Drawing goes to MuJoCo's own off-screen buffer, so the context's size does not matter.
+                self._context, self.name = find_context(64, 64)
+            except RuntimeError as error:
+                self._failure = str(error)
+                raise
+            atexit.register(self._context.free)
+
+
+_THREAD = _DrawingThread()
+
+
+class OpenGLRenderer:
+    """Draws a model through MuJoCo's own renderer.
+
+    Raises:
+        RuntimeError: No OpenGL platform works here.
+    """
+
+    def __init__(self, built: BuiltModel) -> None:
+        self._built = built
+        _THREAD.run(self._open)
+        self.name = _THREAD.name
+        # A world that nobody closed gives its memory back on the right thread, too.
+        self._give_back = weakref.finalize(self, _THREAD.free, self._context)
+
+    def _open(self) -> None:
+        _THREAD.ensure_context()
+        model = self._built.model
+        self._scene = mj.MjvScene(model, maxgeom=400)
+        self._scene.flags[mj.mjtRndFlag.mjRND_SHADOW] = 0
+        self._scene.flags[mj.mjtRndFlag.mjRND_REFLECTION] = 0
+        self._scene.flags[mj.mjtRndFlag.mjRND_SKYBOX] = 0
+        self._option = mj.MjvOption()
+        self._camera = mj.MjvCamera()
+        self._camera.type = mj.mjtCamera.mjCAMERA_FIXED
+        self._context = mj.MjrContext(model, mj.mjtFontScale.mjFONTSCALE_100)
+        mj.mjr_setBuffer(mj.mjtFramebuffer.mjFB_OFFSCREEN, self._context)
+        self._viewport = mj.MjrRect(0, 0, int(model.vis.global_.offwidth), int(model.vis.global_.offheight))
+
+    def draw(self, state: Any, camera: str, *, alone: bool = False) -> Drawn:
+        groups = (THING_GROUP, WHITE_GROUP) if alone else (THING_GROUP, TABLE_GROUP, FLOOR_GROUP)
+        rgb, depth = _THREAD.run(lambda: self._render(state, camera, groups))
+        return Drawn(rgb, depth)
+
+    def bodies(self, state: Any, camera: str) -> Array:
+        def work() -> Array:
+            self._scene.flags[mj.mjtRndFlag.mjRND_SEGMENT] = 1
+            self._scene.flags[mj.mjtRndFlag.mjRND_IDCOLOR] = 1
+            try:
+                coded, _ = self._render(state, camera, (THING_GROUP, TABLE_GROUP, FLOOR_GROUP))
+            finally:
+                self._scene.flags[mj.mjtRndFlag.mjRND_SEGMENT] = 0
+                self._scene.flags[mj.mjtRndFlag.mjRND_IDCOLOR] = 0
+            segment = coded.astype(np.int64) @ np.array([1, 256, 65536]) - 1
+            bodies = np.zeros(self._scene.ngeom + 1, dtype=np.int64)
+            for geom in self._scene.geoms[: self._scene.ngeom]:
+                if geom.objtype == mj.mjtObj.mjOBJ_GEOM:
+                    bodies[geom.segid] = self._built.model.geom_bodyid[geom.objid]
+            return bodies[np.where((segment >= 0) & (segment < self._scene.ngeom), segment, -1)]
+
+        return _THREAD.run(work)
+
+    def _render(self, state: Any, camera: str, groups: tuple[int, ...]) -> tuple[Array, Array]:
+        model = self._built.model
+        self._option.geomgroup[:] = 0
+        self._option.geomgroup[list(groups)] = 1
+        self._camera.fixedcamid = mj.mj_name2id(model, mj.mjtObj.mjOBJ_CAMERA, camera)
+        mj.mjv_updateScene(model, state, self._option, None, self._camera, mj.mjtCatBit.mjCAT_ALL, self._scene)
+        mj.mjr_setBuffer(mj.mjtFramebuffer.mjFB_OFFSCREEN, self._context)
+        mj.mjr_render(self._viewport, self._scene, self._context)
+        shape = (self._viewport.height, self._viewport.width)
+        rgb, depth = np.empty((*shape, 3), dtype=np.uint8), np.empty(shape, dtype=np.float32)
+        mj.mjr_readPixels(rgb, depth, self._viewport, self._context)
+        near, far = model.vis.map.znear * model.stat.extent, model.vis.map.zfar * model.stat.extent
+        metres = near + (far - near) * depth[::-1].astype(np.float64)
+        return np.ascontiguousarray(rgb[::-1]), np.ascontiguousarray(metres.astype(np.float32))
+
+    def close(self) -> None:
+        """Give back what the graphics card holds; safe to call twice."""
+        self._give_back()

@@ -1,0 +1,212 @@
+"""From a list of things to a MuJoCo model: table, lights, cameras, one body per thing."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from wonderful_team.geometry.arrays import Array
+from wonderful_team.sims.tabletop import textures
+from wonderful_team.sims.tabletop.cameras import CAMERA_NAMES, SEEN_WIDTH_M, Lens, lens
+from wonderful_team.sims.tabletop.engine import mj
+from wonderful_team.sims.tabletop.shapes import Shape, shape
+
+TIMESTEP_S = 0.002
+THING_GROUP, TABLE_GROUP, FLOOR_GROUP, WHITE_GROUP, COLLISION_GROUP = 0, 1, 2, 4, 3
+"""What is drawn together: things, the table, the floor round it, a white ground for pictures of one thing alone."""
+AMBIENT, DIFFUSE = 0.62, 0.42
+LIGHT_DIRECTION = np.array([-0.35, 0.25, -1.0]) / math.sqrt(0.35**2 + 0.25**2 + 1)
+SHADE = 0.82
+"""How bright the floor inside a container is, against its walls."""
+TABLE_RGB = (224, 219, 208)
+FLOOR_RGB = (148, 152, 158)
+DENSITY = 350.0
+"""Of every thing [kg/m^3]: like light wood."""
+
+
+@dataclass(frozen=True)
+class Thing:
+    """One thing on the table as it stands at the start.
+
+    Attributes:
+        name: Unique in the scene; never shown to a planner.
+        x_m, y_m, yaw_rad: Where its centre stands and how it is turned.
+    """
+
+    name: str
+    shape: str
+    texture: str
+    x_m: float
+    y_m: float
+    yaw_rad: float
+    z_m: float = 0.0
+
+    @property
+    def body(self) -> Shape:
+        return shape(self.shape)
+
+
+@dataclass(frozen=True, eq=False)
+class BuiltModel:
+    """A compiled model and where each thing is in it.
+
+    Attributes:
+        covers: Texture of each geom that is seen and how bright it is, by geom id.
+    """
+
+    model: Any
+    things: tuple[Thing, ...]
+    covers: dict[int, tuple[str, float]]
+    lenses: dict[str, Lens]
+
+    def body_id(self, name: str) -> int:
+        return int(mj.mj_name2id(self.model, mj.mjtObj.mjOBJ_BODY, name))
+
+
+def build(things: Sequence[Thing], size_px: tuple[int, int]) -> BuiltModel:
+    """Compile a model with these things."""
+    spec = mj.MjSpec()
+    lenses = {name: lens(name, size_px) for name in CAMERA_NAMES}
+    _set_options(spec, size_px)
+    _add_surroundings(spec, lenses)
+    spec.worldbody.add_body(name="tool", mocap=True, pos=(0.5, 0.0, 0.3))
+    for name in sorted({thing.texture for thing in things}):
+        _add_texture(spec, name)
+    for name in sorted({thing.shape for thing in things}):
+        _add_meshes(spec, shape(name))
+    for thing in things:
+        _add_thing(spec, thing)
+    model = spec.compile()
+    covers = {}
+    for thing in things:
+        for name, brightness in ((f"see {thing.name}", 1.0), (f"floor of {thing.name}", SHADE)):
+            geom = int(mj.mj_name2id(model, mj.mjtObj.mjOBJ_GEOM, name))
+            if geom >= 0:
+                covers[geom] = (thing.texture, brightness)
+    return BuiltModel(model, tuple(things), covers, lenses)
+
+
+def _set_options(spec: Any, size_px: tuple[int, int]) -> None:
+    spec.option.timestep = TIMESTEP_S
+    spec.option.integrator = mj.mjtIntegrator.mjINT_IMPLICITFAST
+    spec.option.cone = mj.mjtCone.mjCONE_ELLIPTIC
+    spec.option.impratio = 5.0
+    spec.visual.global_.offwidth, spec.visual.global_.offheight = size_px
+    spec.visual.quality.offsamples = 4
+    spec.visual.quality.shadowsize = 0
+    spec.visual.headlight.active = 0
+    spec.visual.map.znear, spec.visual.map.zfar = 0.1, 4.0
+    spec.stat.extent = 1.0
+    spec.stat.center = (0.5, 0.0, 0.0)
+
+
+def _add_surroundings(spec: Any, lenses: dict[str, Lens]) -> None:
+    world = spec.worldbody
+    world.add_light(
+        type=mj.mjtLightType.mjLIGHT_DIRECTIONAL,
+        pos=(0.5, 0.0, 2.0),
+        dir=LIGHT_DIRECTION,
+        ambient=(AMBIENT,) * 3,
+        diffuse=(DIFFUSE,) * 3,
+        specular=(0.0,) * 3,
+        castshadow=False,
+    )
+    for one in lenses.values():
+        world.add_camera(
+            name=one.name,
+            pos=one.position_m,
+            quat=_camera_quaternion(one),
+            proj=mj.mjtProjection.mjPROJ_ORTHOGRAPHIC,
+            fovy=one.seen_height_m,
+        )
+    colours = {"table": TABLE_RGB, "floor": FLOOR_RGB}
+    for name, rgb in colours.items():
+        material = spec.add_material(name=name, rgba=(*(c / 255 for c in rgb), 1.0))
+        material.specular, material.shininess, material.reflectance = 0.0, 0.0, 0.0
+    box = mj.mjtGeom.mjGEOM_BOX
+    size = (0.25, 0.5, 0.02)
+    world.add_geom(
+        name="table",
+        type=box,
+        size=size,
+        pos=(0.5, 0, -0.02),
+        material="table",
+        group=TABLE_GROUP,
+        friction=(0.9, 0.005, 0.002),
+        condim=6,
+    )
+    far = SEEN_WIDTH_M * 2
+    ground = {"type": box, "size": (far, far, 0.01)}
+    world.add_geom(name="floor", pos=(0.5, 0, -0.06), material="floor", group=FLOOR_GROUP, **ground)
+    white = spec.add_material(name="white", rgba=(1, 1, 1, 1), emission=1.0)
+    white.specular, white.shininess, white.reflectance = 0.0, 0.0, 0.0
+    world.add_geom(
+        name="white", pos=(0.5, 0, -0.0105), material="white", group=WHITE_GROUP, contype=0, conaffinity=0, **ground
+    )
+
+
+def _camera_quaternion(one: Lens) -> Array:
+    """MuJoCo's cameras look along -z with y up."""
+    quaternion = np.zeros(4)
+    axes = np.column_stack([one.right, -one.down, -one.forward])
+    mj.mju_mat2Quat(quaternion, axes.ravel())
+    return quaternion
+
+
+def _add_texture(spec: Any, name: str) -> None:
+    tile = textures.texture(name)
+    texture = spec.add_texture(
+        name=f"tile {name}", type=mj.mjtTexture.mjTEXTURE_2D, width=tile.shape[1], height=tile.shape[0], nchannel=3
+    )
+    texture.data = np.ascontiguousarray(tile).tobytes()
+    for use, brightness in (("cover", 1.0), ("shaded", SHADE)):
+        material = spec.add_material(name=f"{use} {name}", rgba=(brightness, brightness, brightness, 1.0))
+        material.textures[mj.mjtTextureRole.mjTEXROLE_RGB] = f"tile {name}"
+        material.specular, material.shininess, material.reflectance = 0.0, 0.0, 0.0
+
+
+def _add_meshes(spec: Any, body: Shape) -> None:
+    for name, mesh in ((f"see {body.name}", body.mesh), (f"floor of {body.name}", body.inside)):
+        if mesh is None:
+            continue
+        faces = np.arange(len(mesh.points_m), dtype=np.int32)
+        seen = spec.add_mesh(name=name, inertia=mj.mjtMeshInertia.mjMESH_INERTIA_SHELL)
+        seen.uservert, seen.usernormal = mesh.points_m.ravel(), mesh.normals.ravel()
+        seen.usertexcoord = (mesh.texture_m / textures.TILE_M + 0.5).ravel()
+        seen.userface = seen.userfacenormal = seen.userfacetexcoord = faces
+    for k, piece in enumerate(body.pieces):
+        spec.add_mesh(name=f"touch {body.name} {k}", uservert=piece.ravel())
+
+
+def _add_thing(spec: Any, thing: Thing) -> None:
+    body = thing.body
+    half = thing.yaw_rad / 2
+    where = {"pos": (thing.x_m, thing.y_m, thing.z_m), "quat": (math.cos(half), 0, 0, math.sin(half))}
+    made = spec.worldbody.add_body(name=thing.name, mocap=not body.movable, **where)
+    if body.movable:
+        made.add_freejoint(name=f"free {thing.name}")
+    mesh = mj.mjtGeom.mjGEOM_MESH
+    seen = {"type": mesh, "group": THING_GROUP, "contype": 0, "conaffinity": 0, "mass": 0}
+    made.add_geom(name=f"see {thing.name}", meshname=f"see {body.name}", material=f"cover {thing.texture}", **seen)
+    if body.inside is not None:
+        floor = f"floor of {body.name}"
+        made.add_geom(name=f"floor of {thing.name}", meshname=floor, material=f"shaded {thing.texture}", **seen)
+    if body.kind == "area":
+        return
+    for k in range(len(body.pieces)):
+        made.add_geom(
+            name=f"touch {thing.name} {k}", type=mesh, meshname=f"touch {body.name} {k}", group=COLLISION_GROUP,
+            density=DENSITY, condim=6, friction=(0.9, 0.005, 0.002), rgba=(0.5, 0.5, 0.5, 0.0),
+        )  # fmt: skip
+    if body.movable:
+        hold = spec.add_equality(
+            name=f"hold {thing.name}", type=mj.mjtEq.mjEQ_WELD, objtype=mj.mjtObj.mjOBJ_BODY,
+            name1="tool", name2=thing.name, active=False, solref=(0.004, 1.0),
+        )  # fmt: skip
+        # The specification's own default puts the anchor a metre away.
+        hold.data[:] = 0.0
+        hold.data[6] = hold.data[10] = 1.0

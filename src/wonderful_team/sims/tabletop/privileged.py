@@ -1,0 +1,88 @@
+"""The truth of a table, for scorers and simulated models only: never handed to a planner."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from wonderful_team.actions import Action
+from wonderful_team.errors import UnknownNameError
+from wonderful_team.geometry.arrays import Array
+from wonderful_team.interfaces import Score
+from wonderful_team.jsonable import to_jsonable
+from wonderful_team.sims.tabletop import oracle as _oracle
+from wonderful_team.sims.tabletop.judging import score_of
+from wonderful_team.sims.tabletop.table import Table
+
+
+class TabletopTruth:
+    """Implements the Privileged protocol for one table."""
+
+    def __init__(self, table: Table) -> None:
+        self._table = table
+
+    def score(self) -> Score:
+        """Success, or failure with its stage, judged from the true poses after every action."""
+        return score_of(self._table.rules, self._table.history, self._table.things)
+
+    def truth(self) -> Mapping[str, Any]:
+        """Things with true poses, what each picture slot shows, and the goals, as plain values."""
+        poses = self._table.poses()
+        things = {
+            name: {
+                "shape": thing.shape,
+                "kind": thing.body.kind,
+                "texture": thing.texture,
+                "position_m": tuple(float(v) for v in poses[name].position_m),
+                "yaw_rad": poses[name].yaw_rad,
+                "height_m": thing.body.height_m,
+                "movable": thing.body.movable,
+                "grasp_m": _oracle.grasp_point(thing, poses[name]),
+            }
+            for name, thing in self._table.things.items()
+        }
+        rules = self._table.rules
+        return {
+            "task": self._table.task.name,
+            "seed": self._table.seed,
+            "things": things,
+            "slots": dict(self._table.scene.pictures),
+            "words": dict(self._table.scene.words),
+            "goals": [to_jsonable(goal) for goal in rules.goals],
+            "distractors": list(rules.distractors),
+            "horizon": rules.horizon,
+        }
+
+    def masks(self, camera: str = "top") -> dict[str, Array]:
+        """Which pixels of a view show each thing now, shape (H, W) bool by name."""
+        ids = self._table.body_picture(camera)
+        return {name: ids == self._table.built.body_id(name) for name in self._table.things}
+
+    def mask(self, name: str, camera: str = "top") -> Array:
+        """Which pixels of a view show one thing now, shape (H, W) bool.
+
+        Raises:
+            UnknownNameError: No such thing.
+        """
+        if name not in self._table.things:
+            raise UnknownNameError("thing", name, self._table.things)
+        return self.masks(camera)[name]
+
+    def oracle(self) -> Sequence[Action]:
+        """Actions that solve the scene from here."""
+        return _oracle.solve(self._table.rules, self._table.poses(), self._table.things)
+
+    def nudge(self, name: str, dx_m: float = 0.0, dy_m: float = 0.0, yaw_rad: float = 0.0) -> None:
+        """Push a thing aside, as a person at the table might; things are at rest again afterwards.
+
+        Raises:
+            UnknownNameError: No such thing.
+        """
+        if name not in self._table.things:
+            raise UnknownNameError("thing", name, self._table.things)
+        pose = self._table.poses()[name]
+        shift = np.array([dx_m, dy_m, 0.0])
+        self._table.put(name, pose.position_m + shift, math.remainder(pose.yaw_rad + yaw_rad, 2 * math.pi))

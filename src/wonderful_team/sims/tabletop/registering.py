@@ -1,0 +1,108 @@
+"""Tasks by name: the decorator that makes one, and the table that make_world looks in."""
+
+from __future__ import annotations
+
+import inspect
+import re
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TypeAlias
+
+import numpy as np
+
+from wonderful_team.errors import ConfigError, UnknownNameError
+from wonderful_team.sims.tabletop.scene import CrowdedError, Scene, generator
+
+SetTable: TypeAlias = Callable[[Scene, np.random.Generator], None]
+ATTEMPTS = 60
+_TASKS: dict[str, TabletopTask] = {}
+
+
+@dataclass(frozen=True)
+class TabletopTask:
+    """A task: words, how the table is set, how many actions it may take."""
+
+    name: str
+    instruction: str
+    horizon: int
+    set_table: SetTable
+    help: str
+
+    def scene(self, seed: int, recolour: int | None = None) -> Scene:
+        """Set the table; the same seed sets the same table.
+
+        Raises:
+            ConfigError: The task never finds room for its things, sets no goal, or leaves a slot of its words open.
+        """
+        for attempt in range(ATTEMPTS):
+            paint = seed if recolour is None else recolour
+            use = "colours" if recolour is None else "recolour"
+            layout, colours, choices = (
+                generator(number, f"{self.name}/{purpose}", attempt)
+                for number, purpose in ((seed, "layout"), (paint, use), (seed, "choices"))
+            )
+            scene = Scene(layout, colours)
+            try:
+                self.set_table(scene, choices)
+            except CrowdedError:
+                continue
+            self._check(scene)
+            return scene
+        raise ConfigError(f"task {self.name!r} with seed {seed}: no room for its things in {ATTEMPTS} tries")
+
+    def _check(self, scene: Scene) -> None:
+        wanted = set(re.findall(r"\{(\w+)\}", self.instruction))
+        filled = set(scene.words) | set(scene.pictures)
+        if wanted != filled:
+            raise ConfigError(
+                f"task {self.name!r}: its instruction has the slots {sorted(wanted)}, but the scene fills {sorted(filled)}"
+            )
+        if not scene.goals:
+            raise ConfigError(f"task {self.name!r}: it sets no goal; call scene.goal(...)")
+
+
+def task(name: str, *, instruction: str, horizon: int) -> Callable[[SetTable], SetTable]:
+    """Make a task of a function that sets the table: `def cups(scene, rng): ...`.
+
+    Args:
+        name: What make_world is asked for.
+        instruction: Words for the robot; each {slot} is filled by scene.say, scene.show or scene.show_table.
+        horizon: How many actions are judged.
+
+    Raises:
+        ConfigError: The name is taken by another function, or the horizon is not positive.
+    """
+    if horizon < 1:
+        raise ConfigError(f"task {name!r}: horizon must be at least 1, got {horizon}")
+
+    def register(set_table: SetTable) -> SetTable:
+        before = _TASKS.get(name)
+        if before is not None and _origin(before.set_table) != _origin(set_table):
+            raise ConfigError(f"task {name!r} exists already; choose another name")
+        lines = (inspect.getdoc(set_table) or instruction).strip().splitlines()
+        _TASKS[name] = TabletopTask(name, instruction, horizon, set_table, lines[0])
+        return set_table
+
+    return register
+
+
+def _origin(function: SetTable) -> tuple[str, str]:
+    """The same file read twice may register its tasks twice."""
+    return inspect.getsourcefile(function) or "", function.__qualname__
+
+
+def find_task(name: str) -> TabletopTask:
+    """The task of that name; a leading "tabletop/" is allowed.
+
+    Raises:
+        UnknownNameError: No such task; lists the known ones.
+    """
+    short = name.removeprefix("tabletop/")
+    if short not in _TASKS:
+        raise UnknownNameError("task", name, _TASKS)
+    return _TASKS[short]
+
+
+def task_names() -> dict[str, str]:
+    """All tasks with one line of help each."""
+    return {name: found.help for name, found in _TASKS.items()}

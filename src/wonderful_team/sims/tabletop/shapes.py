@@ -1,0 +1,151 @@
+"""The shapes by name: what they look like, what they collide with, where suction holds them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache
+from typing import Literal, TypeAlias
+
+import shapely
+from shapely import LineString, Point, Polygon, box
+from shapely.geometry.base import BaseGeometry
+
+from wonderful_team.errors import UnknownNameError
+from wonderful_team.geometry.arrays import Array
+from wonderful_team.sims.tabletop import fruits
+from wonderful_team.sims.tabletop.outlines import outline
+from wonderful_team.sims.tabletop.solids import CHAMFER_M, Mesh, convex_pieces, extruded, joined, polygons, prism
+
+Kind: TypeAlias = Literal["kit", "base", "area", "fruit"]
+Layer: TypeAlias = tuple[BaseGeometry, float, float]
+"""An outline that stands from one height to another [m]."""
+KIT_WIDTH_M = 0.136
+KIT_HEIGHT_M = 0.034
+BLOCK_M = 0.07
+PAPER_M = 0.001
+
+FULL_TURN = (
+    "L-shaped block",
+    "letter A",
+    "letter E",
+    "letter G",
+    "letter M",
+    "letter R",
+    "letter T",
+    "letter V",
+    "heart",
+)
+"""Shapes that look the same only after a full turn."""
+KIT = (
+    *("block", "L-shaped block", "letter A", "letter E", "letter G", "letter M", "letter R", "letter T", "letter V"),
+    *("cross", "diamond", "triangle", "flower", "heart", "hexagon", "pentagon", "ring", "round", "star"),
+)
+BASES = ("pan", "bowl", "frame", "square", "container", "pallet")
+AREAS = ("paper",)
+
+
+@dataclass(frozen=True, eq=False)
+class Shape:
+    """One shape, in its body frame: origin at the centre, z = 0 at the bottom.
+
+    Attributes:
+        footprint: What it covers seen from above, outline coordinates (a right, b up) [m].
+        mesh: What is seen.
+        inside: What is seen of its floor, in the shade of its walls; None without walls.
+        pieces: Corners of convex pieces to collide with, shape (N, 3) each [m].
+        grasp_ab: A point well inside the material, outline coordinates [m].
+        movable: Whether a robot can carry it.
+    """
+
+    name: str
+    kind: Kind
+    footprint: BaseGeometry
+    height_m: float
+    mesh: Mesh
+    inside: Mesh | None
+    pieces: tuple[Array, ...]
+    grasp_ab: tuple[float, float]
+    movable: bool
+
+    @property
+    def radius_m(self) -> float:
+        """Radius of the circle round the origin that holds the footprint [m]."""
+        return float(shapely.hausdorff_distance(Point(0, 0), self.footprint.convex_hull))
+
+
+def shape_names(kind: Kind | None = None) -> tuple[str, ...]:
+    """All names, or those of one kind."""
+    return (
+        {"kit": KIT, "base": BASES, "area": AREAS, "fruit": fruits.NAMES}[kind]
+        if kind
+        else KIT + BASES + AREAS + fruits.NAMES
+    )
+
+
+@cache
+def shape(name: str) -> Shape:
+    """A shape by name; made once.
+
+    Raises:
+        UnknownNameError: No such shape; lists the known ones.
+    """
+    if name in KIT:
+        return _kit(name)
+    if name in BASES:
+        return _base(name)
+    if name in AREAS:
+        return _from_layers(name, "area", [(box(-0.085, -0.085, 0.085, 0.085), 0.0, PAPER_M)], [], movable=False)
+    if name in fruits.NAMES:
+        made = fruits.fruit(name)
+        return Shape(name, "fruit", made.footprint, made.height_m, made.mesh, None, made.pieces, made.grasp_ab, True)
+    raise UnknownNameError("shape", name, shape_names())
+
+
+def _kit(name: str) -> Shape:
+    width, height = (BLOCK_M, BLOCK_M) if name == "block" else (KIT_WIDTH_M, KIT_HEIGHT_M)
+    return _from_layers(name, "kit", [(outline(name, width), 0.0, height)], [], movable=True)
+
+
+def _base(name: str) -> Shape:
+    round_room, square_room = Point(0, 0).buffer(0.094), box(-0.09, -0.09, 0.09, 0.09)
+    match name:
+        case "pan":
+            dish = Point(0, 0).buffer(0.104)
+            handle = LineString([(0.1, 0.0), (0.204, 0.0)]).buffer(0.0175).difference(box(0.0, -0.1, 0.1, 0.1))
+            walls = [(dish.difference(round_room), 0.0, 0.03), (handle, 0.014, 0.026)]
+            floor: list[Layer] = [(round_room, 0.0, 0.005)]
+        case "bowl":
+            rim = Point(0, 0).buffer(0.11).difference(Point(0, 0).buffer(0.098))
+            walls = [(Point(0, 0).buffer(0.104).difference(round_room), 0.0, 0.03), (rim, 0.03, 0.045)]
+            floor = [(round_room, 0.0, 0.005)]
+        case "frame":
+            walls, floor = [(box(-0.115, -0.115, 0.115, 0.115).difference(square_room), 0.0, 0.024)], []
+        case "square":
+            room = box(-0.092, -0.092, 0.092, 0.092)
+            walls, floor = [(box(-0.1, -0.1, 0.1, 0.1).difference(room), 0.0, 0.014)], [(room, 0.0, 0.008)]
+        case "container":
+            walls = [(box(-0.1, -0.1, 0.1, 0.1).difference(square_room), 0.0, 0.05)]
+            floor = [(square_room, 0.0, 0.005)]
+        case _:
+            walls, floor = [(outline("slats", 0.21), 0.014, 0.024)], [(outline("crossbars", 0.21), 0.0, 0.014)]
+    return _from_layers(name, "base", walls, floor, movable=False)
+
+
+def _from_layers(name: str, kind: Kind, layers: list[Layer], floor: list[Layer], *, movable: bool) -> Shape:
+    everything = [*layers, *floor]
+    footprint = shapely.unary_union([layer for layer, _, _ in everything])
+    mesh = joined([extruded(layer, low, high, 0.0 if high - low < 0.01 else CHAMFER_M) for layer, low, high in layers])
+    inside = joined([extruded(layer, low, high, 0.0) for layer, low, high in floor]) if floor else None
+    pieces = tuple(prism(piece, low, high) for layer, low, high in everything for piece in convex_pieces(layer))
+    height = max(high for _, _, high in layers)
+    return Shape(name, kind, footprint, height, mesh, inside, pieces, _grasp_point(footprint), movable)
+
+
+def _grasp_point(footprint: BaseGeometry) -> tuple[float, float]:
+    """The centre where there is enough material round it, else the point farthest from every edge."""
+    if footprint.contains(Point(0, 0).buffer(0.012)):
+        return 0.0, 0.0
+    largest: Polygon = max(polygons(footprint), key=lambda part: part.area)
+    middle = shapely.maximum_inscribed_circle(largest, tolerance=0.0005)
+    a, b = middle.coords[0]
+    return float(a), float(b)

@@ -1,0 +1,106 @@
+"""A table as a robot meets it: look, act, stop."""
+
+from __future__ import annotations
+
+from functools import cached_property
+
+from wonderful_team.actions import PICK_PLACE, Action, PickPlace, Vocabulary
+from wonderful_team.errors import ConfigError
+from wonderful_team.sims.tabletop.cameras import CAMERA_NAMES, SIZE_PX, TABLE_HIGH_M, TABLE_LOW_M
+from wonderful_team.sims.tabletop.privileged import TabletopTruth
+from wonderful_team.sims.tabletop.registering import find_task
+from wonderful_team.sims.tabletop.table import Table
+from wonderful_team.types import Instruction, Limits, Observation, RobotState, StepReport, View
+
+
+class TabletopWorld:
+    """Implements the World protocol; time is simulated, and everything follows from the seed.
+
+    Attributes:
+        task, seed: Which scene this is.
+        horizon: How many actions are judged.
+        privileged: The truth, for scorers and simulated models only.
+    """
+
+    def __init__(
+        self,
+        task: str,
+        seed: int = 0,
+        *,
+        size_px: tuple[int, int] = SIZE_PX,
+        recolour: int | None = None,
+        renderer: str | None = None,
+    ) -> None:
+        found = find_task(task)
+        if seed < 0 or (recolour is not None and recolour < 0):
+            raise ConfigError(f"seed and recolour must be 0 or more, got {seed} and {recolour}")
+        if renderer not in (None, "rays"):
+            raise ConfigError(f"renderer: expected None (the best that works here) or 'rays', got {renderer!r}")
+        self.task, self.seed, self.horizon = found.name, seed, found.horizon
+        self.vocabulary: Vocabulary = PICK_PLACE
+        self.limits = Limits(TABLE_LOW_M, TABLE_HIGH_M)
+        self._table = Table(found, seed, size_px, recolour, renderer)
+        self._stopped = False
+        self.privileged = TabletopTruth(self._table)
+
+    @cached_property
+    def instruction(self) -> Instruction:
+        """Words and pictures; the pictures are drawn when they are first asked for."""
+        return self._table.instruction()
+
+    @property
+    def renderer(self) -> str:
+        """How pictures are drawn: egl, osmesa or rays."""
+        return self._table.renderer().name
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What a user should know of how this world runs, such as a missing OpenGL."""
+        return self._table.notes
+
+    @property
+    def time_s(self) -> float:
+        """Simulated time [s]."""
+        return self._table.time_s
+
+    def observe(self) -> Observation:
+        """Draw both views of the table as it stands now, the robot out of the way."""
+        views = {}
+        for name in CAMERA_NAMES:
+            drawn = self._table.draw(name)
+            camera = self._table.built.lenses[name].camera
+            views[name] = View(name, name, self.time_s, drawn.rgb, drawn.depth_m, camera)
+        cup = self._table.suction
+        return Observation(views, RobotState(cup.tool_m.copy(), None, cup.holding))
+
+    def execute(self, action: Action) -> StepReport:
+        """Run one action.
+
+        Raises:
+            ConfigError: The action is of a kind that this world does not run, or the world is closed.
+        """
+        if self._table.closed:
+            raise ConfigError("this world is closed; make a new one")
+        if not isinstance(action, PickPlace):
+            raise ConfigError(f"this world runs {', '.join(self.vocabulary.kinds)}; got {action.kind}")
+        fault = "the world was stopped" if self._stopped else _out_of_reach(action)
+        if fault:
+            return StepReport(action, False, {}, fault)
+        return StepReport(action, True, self._table.run(action).measured)
+
+    def stop(self) -> None:
+        """Nothing moves any more until a new world is made."""
+        self._stopped = True
+
+    def close(self) -> None:
+        """Give everything back; safe to call twice."""
+        self._table.close()
+
+
+def _out_of_reach(action: PickPlace) -> str:
+    for role, point in (("pick", action.pick_m), ("place", action.place_m)):
+        for axis in (0, 1):
+            low, high, value = TABLE_LOW_M[axis], TABLE_HIGH_M[axis], float(point[axis])
+            if not low <= value <= high:
+                return f"{role} {'xy'[axis]} = {value:.3f} m is out of reach [{low}, {high}] m"
+    return ""

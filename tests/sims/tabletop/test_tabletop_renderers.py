@@ -1,0 +1,62 @@
+"""Pictures are drawn with OpenGL where there is one and by ray casting where there is none, whoever asks."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from concurrent.futures import ThreadPoolExecutor
+
+import numpy as np
+import pytest
+
+from wonderful_team.errors import ConfigError
+from wonderful_team.sims.tabletop import make_world
+
+LOOK = """
+from wonderful_team.sims.tabletop import make_world
+world = make_world("rotate", 1)
+world.observe()
+print(world.renderer, len(world.notes), "ray casting" in " ".join(world.notes))
+"""
+
+
+def test_ray_casting_shows_the_same_scene() -> None:
+    usual, cast = make_world("visual_manipulation", 2), make_world("visual_manipulation", 2, renderer="rays")
+    assert cast.renderer == "rays"
+    for name in ("top", "front"):
+        one, two = usual.observe().views[name], cast.observe().views[name]
+        assert np.abs(one.rgb.astype(int) - two.rgb).mean() < 6
+        assert np.isfinite(two.depth_m).all()
+        assert np.median(np.abs(one.depth_m - two.depth_m)) < 0.001
+    slots = zip(usual.instruction.slots.values(), cast.instruction.slots.values(), strict=True)
+    for one, two in slots:
+        assert np.abs(one.views["top"].rgb.astype(int) - two.views["top"].rgb).mean() < 2
+    for name, mask in usual.privileged.masks().items():
+        assert (mask != cast.privileged.masks()[name]).mean() < 0.002
+    usual.close()
+    cast.close()
+
+
+def test_another_thread_sees_the_same_pixels() -> None:
+    world = make_world("rotate", 1)
+    here = world.observe().hash
+    with ThreadPoolExecutor(1) as pool:
+        assert pool.submit(lambda: world.observe().hash).result() == here
+    world.close()
+
+
+@pytest.mark.parametrize("platform", ["disabled", "osmesa"])
+def test_a_missing_opengl_library_is_only_a_note(platform: str) -> None:
+    environment = {**os.environ, "MUJOCO_GL": platform}
+    done = subprocess.run([sys.executable, "-c", LOOK], env=environment, capture_output=True, text=True, timeout=120)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.split() in (["rays", "1", "True"], ["osmesa", "0", "False"])
+    if platform == "disabled":
+        assert done.stdout.startswith("rays")
+    assert done.stderr == ""
+
+
+def test_an_unknown_renderer_is_refused() -> None:
+    with pytest.raises(ConfigError, match="'rays', got 'vulkan'"):
+        make_world("rotate", renderer="vulkan")

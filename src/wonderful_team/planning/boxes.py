@@ -65,9 +65,17 @@ class Job:
         self.history.append(GroundingEvent(what, text, box, points, provenance))
 
     def crop_with(self, name: str, window: Box, box: Box, style: Literal["target", "before", "after"]) -> Picture:
-        """A crop round `window` with `box` marked on it (both view pixels) and labelled axes."""
+        """A crop round `window` with `box` marked on it (both view pixels).
+
+        Its axes are labelled in the whole view's pixels, so that it can be found there.
+        """
         picture = crop(self.scene.view, window, name)
-        return picture.marked(Axes(), BoxMark(picture.frame.box_to_picture(box), style))
+        return picture.marked(self.view_axes, BoxMark(picture.frame.box_to_picture(box), style))
+
+    @property
+    def view_axes(self) -> Axes:
+        """Axes of a crop, labelled in pixels of the whole view as it is shown."""
+        return Axes(self.scene.views[0].frame)
 
     def strips(self, box: Box) -> tuple[Strip, ...]:
         return tuple(Strip(edge, side, cut) for (edge, side), cut in edge_strips(self.scene.view, box).items())
@@ -133,7 +141,9 @@ async def _move_until_right(job: Job, box: Box, problem: str, presence: Presence
 
 
 async def _propose(job: Job, box: Box, problem: str, lines: tuple[str, ...]) -> tuple[BoxMove, Box | None]:
-    shown = job.crop_with("crop", box, box, "target")
+    # The Mover answers in pixels of the crop, so here the axes are labelled in these.
+    shown = crop(job.scene.view, box, "crop")
+    shown = shown.marked(Axes(), BoxMark(shown.frame.box_to_picture(box)))
     question = MoveBox(job.target, shown, job.strips(box), problem, lines, not job.desk.members.checker, job.examples)
     answer: Answer = await job.desk.ask_whole(question, stage="ground", branch=job.target.id)
     move: BoxMove = answer.value

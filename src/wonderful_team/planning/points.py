@@ -5,7 +5,7 @@ from __future__ import annotations
 from wonderful_team.contracts import ChoosePoint, PointChoice
 from wonderful_team.geometry import Box
 from wonderful_team.images import beside_points, crop, inside_points
-from wonderful_team.pictures import Axes, BoxMark, Candidates, Picture, Point
+from wonderful_team.pictures import BoxMark, Candidates, Picture, Point
 from wonderful_team.planning.boxes import Job
 from wonderful_team.planning.together import together
 from wonderful_team.types import PointRole
@@ -51,7 +51,7 @@ async def _choose(job: Job, box: Box, role: PointRole) -> Point:
 async def _ask(
     job: Job, shown: Picture, shown_box: Box, candidates: tuple[Point, ...], role: PointRole, *, fine: bool
 ) -> Point:
-    marked = shown.marked(Axes(), BoxMark(shown_box), Candidates(candidates))
+    marked = shown.marked(job.view_axes, BoxMark(shown_box), Candidates(candidates))
     choice: PointChoice = await job.desk.ask(
         ChoosePoint(job.target, role, job.plan, marked, fine, job.examples), stage="ground", branch=job.target.id
     )

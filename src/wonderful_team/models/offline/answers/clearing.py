@@ -1,0 +1,34 @@
+"""What stands in the way of an aim: things that lie on the thing to be moved."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from wonderful_team.models.offline.answers.aims import Aim, Named
+from wonderful_team.models.offline.answers.eyes import Eyes, unique_words
+from wonderful_team.models.offline.description import Description
+
+
+def obstacles(aim: Aim, others: Sequence[Aim], eyes: Eyes) -> list[Aim]:
+    """Aims that bring away what lies on the thing to be moved; what another aim moves anyway is left to it.
+
+    Only where the picture has depth or the thing is no container: what lies in a container travels with it.
+    """
+    thing = eyes.thing(aim.thing.number)
+    if thing is None or thing.flat or aim.thing.description.noun in ("container", "area"):
+        return []
+    away = []
+    for upper in eyes.scene.on(thing):
+        if upper.area_px > thing.area_px or any(other.thing.number == upper.number for other in others):
+            continue
+        spot = Description(noun="area", name="free", text="free area")
+        away.append(
+            Aim(
+                "put",
+                Named(unique_words(eyes, upper, "object"), upper.number),
+                "in",
+                Named(spot),
+                why=f"it lies on the {aim.thing.words}",
+            )
+        )
+    return away

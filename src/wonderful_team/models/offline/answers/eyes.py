@@ -1,0 +1,195 @@
+"""What the answers ask of the eyes: the scene and the instruction's pictures of one question, and who is meant."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
+
+from wonderful_team.contracts import ShownSlot, ShownTask
+from wonderful_team.models.offline.description import COLOURS, SHAPES, Description
+from wonderful_team.models.offline.language import describe, render, try_describe
+from wonderful_team.models.offline.vision import (
+    Example,
+    Match,
+    NotSeen,
+    Scene,
+    Thing,
+    free_spots,
+    resolve,
+    see,
+    study_example,
+)
+from wonderful_team.pictures import Picture
+from wonderful_team.types import Target
+
+NEARLY_EQUAL = 0.06
+"""Two scores closer than this, both good, are a genuine ambiguity (0 to 1)."""
+GOOD = 0.55
+"""A match with at least this score fits (0 to 1)."""
+WHOLE = frozenset(
+    ("whole", "centre", "center", "middle", "body", "inside", "interior", "surface", "top", "all", "top surface")
+)
+"""Parts that mean the thing as a whole."""
+
+
+@dataclass(frozen=True, eq=False)
+class Eyes:
+    """One picture and the example pictures shown with it."""
+
+    scene: Scene
+    examples: Mapping[str, Example]
+
+    def find(self, description: Description) -> list[Match]:
+        """What fits, best first; empty when nothing does or it cannot be judged by eye."""
+        if description.like is not None and description.like not in self.examples:
+            return []
+        if is_free_area(description) and description.superlative is not None:
+            return self._spots_at(description)
+        try:
+            found = resolve(self.scene, description, self.examples)
+            if not found and description.noun == "object" and description.shape is not None:
+                # "the blue square" may well be a flat one, such as a sheet of paper.
+                found = resolve(self.scene, replace(description, noun="thing"), self.examples)
+        except NotSeen:
+            return []
+        return found
+
+    def _spots_at(self, description: Description) -> list[Match]:
+        """Free spots towards a side or corner of the picture, best first."""
+        wishes = description.name.split() if " " in description.name else [str(description.superlative)]
+        width, height = self.scene.size_px
+
+        def away(match: Match) -> float:
+            x, y = match.point[0] / width, match.point[1] / height
+            wanted = {"leftmost": x, "rightmost": 1 - x, "topmost": y, "bottommost": 1 - y}
+            return sum(wanted.get(wish, abs(x - 0.5) + abs(y - 0.5)) for wish in wishes)
+
+        return sorted(free_spots(self.scene, count=60), key=lambda match: round(away(match) - 0.1 * match.score, 6))
+
+    def best(self, description: Description) -> Match | None:
+        """The best match, or None."""
+        return next(iter(self.find(description)), None)
+
+    def number(self, description: Description) -> int | None:
+        """Number of the thing that is meant, or None."""
+        best = self.best(one_of(description))
+        return best.thing.number if best is not None and best.thing is not None else None
+
+    def thing(self, number: int | None) -> Thing | None:
+        return next((thing for thing in self.scene.things if thing.number == number), None)
+
+
+def is_free_area(description: Description) -> bool:
+    """Whether free table is meant and not a thing or coloured region with looks of its own."""
+    looks = description.colours or description.pattern or description.material or description.shape or description.like
+    return description.noun == "area" and not looks
+
+
+def eyes_of(picture: Picture, slots: Iterable[ShownSlot]) -> Eyes:
+    """Look at a picture and at the instruction's pictures of single objects."""
+    return Eyes(see(picture), examples_of(slots))
+
+
+def examples_of(slots: Iterable[ShownSlot]) -> dict[str, Example]:
+    """What each of the instruction's pictures of a single object shows; those that show nothing are left out."""
+    examples: dict[str, Example] = {}
+    for slot in slots:
+        if slot.kind != "object" or not slot.pictures:
+            continue
+        try:
+            examples[slot.name] = study_example(slot.pictures[0])
+        except NotSeen:
+            continue
+    return examples
+
+
+def eyes_of_task(task: ShownTask) -> Eyes:
+    return eyes_of(task.main, task.slots)
+
+
+def one_of(description: Description) -> Description:
+    """The same description of a single thing."""
+    return replace(description, quantity="one", number=1)
+
+
+def target_description(target: Target) -> Description:
+    """What a target's words say; its example picture decides where the words say more than the vocabulary holds.
+
+    Raises:
+        NotUnderstoodError: The words hold something unknown and no picture shows it.
+    """
+    words = target.words
+    if target.part and target.part.lower().strip() not in WHOLE:
+        describe(target.part)  # refuses by name: parts are not told apart by eye
+        words = f"{target.part} {target.words}" if try_describe(f"{target.part} {target.words}") else words
+    if target.like:
+        description = try_describe(words, target.where) or try_describe(words)
+        if description is None:
+            description = Description(noun="object", text=target.words, like=target.like[0])
+        if description.like is None:
+            description = replace(description, like=target.like[0])
+            if "texture" in target.like[0]:
+                description = replace(description, like_only="texture")
+    else:
+        description = describe(words, target.where)
+    if target.kind == "area" and description.noun in ("object", "thing") and not description.like:
+        described = replace(description, noun="area")
+        description = replace(described, text=render(described))
+    return one_of(description)
+
+
+def unique_words(eyes: Eyes, thing: Thing, noun: str, name: str = "", shape: str | None = None) -> Description:
+    """Words that lead to this very thing alone in this picture, as simple as possible, checked by reading them back."""
+    base = Description(noun=noun, text="", name=name, shape=shape)
+    colour = thing.look.colours[0].name
+    second = tuple(share.name for share in thing.look.colours[:2])
+    tries = [replace(base, colours=(colour,))]
+    if thing.look.pattern != "plain":
+        tries.append(replace(base, colours=(colour,), pattern=thing.look.pattern))
+        if len(second) == 2:
+            tries.append(replace(base, colours=second, pattern=thing.look.pattern))
+    if noun in ("object", "thing", "container") and shape is None and thing.look.shape in SHAPES:
+        tries.append(replace(base, colours=(colour,), shape=thing.look.shape))
+    tries = [replace(item, colours=tuple(c for c in item.colours if c in COLOURS)) for item in tries]
+    for description in tries:
+        matches = eyes.find(description)
+        if _means(matches, thing):
+            return _worded(description)
+    return _by_place(eyes, thing, tries[0])
+
+
+def _means(matches: list[Match], thing: Thing) -> bool:
+    if not matches or matches[0].thing is None or matches[0].thing.number != thing.number:
+        return False
+    return len(matches) == 1 or matches[0].score - matches[1].score >= NEARLY_EQUAL
+
+
+def _by_place(eyes: Eyes, thing: Thing, base: Description) -> Description:
+    """Words such as "the second red block from the left"."""
+    fitting = [match.thing for match in eyes.find(replace(base, quantity="all")) if match.thing is not None]
+    ordered = sorted(fitting, key=lambda item: item.centre[0])
+    numbers = [item.number for item in ordered]
+    if thing.number not in numbers:
+        return _worded(base)
+    place = numbers.index(thing.number) + 1
+    candidates = [replace(base, superlative="leftmost", ordinal=place)]
+    candidates.append(replace(base, superlative="rightmost", ordinal=len(numbers) + 1 - place))
+    rows = [item.number for item in sorted(fitting, key=lambda item: item.centre[1])]
+    candidates.append(replace(base, superlative="topmost", ordinal=rows.index(thing.number) + 1))
+    for description in candidates:
+        if description.ordinal <= 5 and eyes.number(description) == thing.number:
+            return _worded(description)
+    return _worded(candidates[0] if place <= 5 else candidates[1])
+
+
+def _worded(description: Description) -> Description:
+    return replace(description, text=render(description))
+
+
+def place_words(thing: Thing, size_px: tuple[int, int]) -> str:
+    """Where a thing lies in a picture, for a choice: "top left", "centre", "bottom right"."""
+    column = ("left", "centre", "right")[min(2, int(3 * thing.centre[0] / size_px[0]))]
+    row = ("top", "middle", "bottom")[min(2, int(3 * thing.centre[1] / size_px[1]))]
+    if row == "middle":
+        return column
+    return row if column == "centre" else f"{row} {column}"

@@ -1,0 +1,66 @@
+"""What an instruction asks for, understood: commands over descriptions."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal, TypeAlias
+
+from wonderful_team.models.offline.description import Description
+
+CommandKind: TypeAlias = Literal["put", "rotate", "push"]
+Where: TypeAlias = Literal[
+    "in", "on", "left", "right", "above", "below", "near", "between", "origin", "matching", "side"
+]
+Aspect: TypeAlias = Literal["colour", "texture", "shape"]
+
+
+@dataclass(frozen=True)
+class Destination:
+    """Where something goes.
+
+    Attributes:
+        how: in or on a thing; on a named side of it; near it; between two; origin (where it stood); matching (the one that
+            shares `aspect` with the thing moved); side (towards a side of the picture, `side`).
+        what: The reference, None for origin and side; the kind of thing that must match for matching.
+        other: The second reference of between.
+        aspect: What must be shared for matching.
+        side: leftmost | rightmost | topmost | bottommost, for side.
+    """
+
+    how: Where
+    what: Description | None = None
+    other: Description | None = None
+    aspect: Aspect | None = None
+    side: str = ""
+
+
+@dataclass(frozen=True)
+class Command:
+    """One thing to be done.
+
+    Attributes:
+        rotate_deg: Clockwise seen from above; for rotate only.
+        conditional: Only where the destination exists ("if such an area exists").
+        after_last: The words say that the command before it comes first ("then").
+    """
+
+    kind: CommandKind
+    thing: Description
+    to: Destination | None = None
+    rotate_deg: float = 0.0
+    conditional: bool = False
+    after_last: bool = False
+
+
+@dataclass(frozen=True)
+class Understood:
+    """A text, understood.
+
+    Attributes:
+        commands: In order of execution.
+        used: The words that carried meaning, in order, as written.
+    """
+
+    text: str
+    commands: tuple[Command, ...]
+    used: tuple[str, ...]

@@ -1,0 +1,132 @@
+"""From texts to commands and descriptions: tokens, the simplest tree, its meaning.
+
+`understand` reads an instruction, `describe` a noun phrase. Both refuse by name what they do not know.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+from functools import lru_cache
+
+from wonderful_team.errors import NotUnderstoodError
+from wonderful_team.models.offline.description import Description
+from wonderful_team.models.offline.language.changes import related_of, thing_of
+from wonderful_team.models.offline.language.commands import Understood
+from wonderful_team.models.offline.language.conditions import open_conditions
+from wonderful_team.models.offline.language.grammar import parse
+from wonderful_team.models.offline.language.meaning import Meaning
+from wonderful_team.models.offline.language.tokens import Token, refusal, tokenise
+from wonderful_team.models.offline.language.vocabulary import known_words
+
+
+@lru_cache(maxsize=512)
+def understand(text: str) -> Understood:
+    """What an instruction asks for.
+
+    Raises:
+        NotUnderstoodError: A word is unknown, or the words do not make an instruction; says which.
+    """
+    plain, conditional = open_conditions(text)
+    tokens = _joined(tokenise(plain))
+    tree = parse(tokens, "sentence")
+    if tree is None:
+        raise NotUnderstoodError(_no_sentence(text, tokens))
+    commands = Meaning().commands(tree)
+    if conditional:
+        commands = tuple(replace(command, conditional=True) for command in commands)
+    return Understood(text, commands, tuple(token.text for token in tokens))
+
+
+@lru_cache(maxsize=2048)
+def describe(words: str, where: str = "") -> Description:
+    """What a noun phrase says of a thing; `where` holds relations in words of their own ("left of the blue bowl").
+
+    Raises:
+        NotUnderstoodError: A word is unknown, or the words do not make a noun phrase; says which.
+    """
+    tokens = [token for token in tokenise(_noun_words(words)) if token.kind != "SEP"]
+    tree = parse(tokens, "np")
+    if tree is None:
+        raise NotUnderstoodError(_no_noun_phrase(words, tokens))
+    description = thing_of(tree)
+    if where.strip():
+        description = _with_where(description, where)
+    return description
+
+
+def try_understand(text: str) -> Understood | None:
+    """Like understand; None where it would refuse."""
+    try:
+        return understand(text)
+    except NotUnderstoodError:
+        return None
+
+
+def try_describe(words: str, where: str = "") -> Description | None:
+    """Like describe; None where it would refuse."""
+    try:
+        return describe(words, where)
+    except NotUnderstoodError:
+        return None
+
+
+def _with_where(description: Description, where: str) -> Description:
+    tokens = [token for token in tokenise(where) if token.kind not in ("SEP", "COMMA")]
+    if not tokens or all(token.kind in ("ON_TABLE", "TABLE", "ON") for token in tokens):
+        return description
+    tree = parse(tokens, "post")
+    if tree is not None:
+        return replace(description, related=(*description.related, related_of(tree)))
+    tree = parse([Token("NOUN", ("thing", "", False), "thing"), *tokens], "np")
+    if tree is None:
+        raise NotUnderstoodError(_no_noun_phrase(where, tokens))
+    extra = thing_of(tree)
+    return replace(
+        description,
+        related=(*description.related, *extra.related),
+        superlative=extra.superlative or description.superlative,
+        ordinal=max(extra.ordinal, description.ordinal),
+    )
+
+
+def _noun_words(words: str) -> str:
+    """Explanations in brackets and after a dash are left out."""
+    return re.sub(r"\([^)]*\)|\s[-\u2013\u2014]\s.*$", " ", words)
+
+
+def _joined(tokens: list[Token]) -> list[Token]:
+    """Runs of commas, stops, "and" and "then" become one; none at either end."""
+    rank = {"COMMA": 0, "AND": 1, "SEP": 2, "THEN": 3}
+    joined: list[Token] = []
+    for token in tokens:
+        if token.kind in rank and joined and joined[-1].kind in rank:
+            if rank[token.kind] > rank[joined[-1].kind]:
+                joined[-1] = token
+        else:
+            joined.append(token)
+    while joined and joined[0].kind in rank:
+        joined.pop(0)
+    while joined and joined[-1].kind in rank:
+        joined.pop()
+    return joined
+
+
+def _no_sentence(text: str, tokens: list[Token]) -> str:
+    if not tokens:
+        return refusal(tokens, [text.strip()])
+    return (
+        f"I know every word, but they do not make an instruction for me: {text.strip()!r}. "
+        f"I used: {', '.join(token.text for token in tokens)}. I understand: put X into/onto/left of/beside Y, "
+        "rotate X by N degrees, stack X on Y, push X to Y, sort or put each X into the Y of the same colour. "
+        f"I know: {known_words()}. For other wordings name a vision-language model: --model anthropic:..., or probe your "
+        "own server."
+    )
+
+
+def _no_noun_phrase(words: str, tokens: list[Token]) -> str:
+    return (
+        f"I know every word of {words.strip()!r}, but they do not name a thing for me. "
+        f"I used: {', '.join(token.text for token in tokens) or 'nothing'}. I know: {known_words()}. "
+        "For photos like this name a vision-language model: --model anthropic:..., or probe your own server."
+    )

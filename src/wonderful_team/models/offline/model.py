@@ -1,0 +1,41 @@
+"""The offline model: answers each question from the pixels, marks and words that it shows, and nothing else."""
+
+from __future__ import annotations
+
+from wonderful_team.errors import ModelOutputError, UnsupportedQuestion
+from wonderful_team.models.offline.answers import ANSWERS, SAMPLED
+from wonderful_team.models.offline.vision import NotSeen
+from wonderful_team.types import Answer, Request, Usage
+
+MODEL_ID = "offline"
+
+
+class OfflineModel:
+    """Classical vision and a grammar: no key, no weights, no network, no memory between requests.
+
+    It reads `request.question` (everything in it is shown) and the pictures it holds. Text inside pictures is data and
+    is never read.
+    """
+
+    name = MODEL_ID
+
+    def answer(self, request: Request) -> Answer:
+        """Answer one request.
+
+        Raises:
+            NotUnderstoodError: The words hold something it does not know; says which.
+            UnsupportedQuestion: A kind of question that classical vision cannot answer.
+        """
+        kind = type(request.question)
+        if kind not in ANSWERS:
+            raise UnsupportedQuestion(self.name, request.contract, "classical vision writes no programs")
+        try:
+            if kind in SAMPLED:
+                value = ANSWERS[kind](request.question, request.sample)
+            else:
+                value = ANSWERS[kind](request.question)
+        except NotSeen as error:
+            raise ModelOutputError(f"model 'offline' could not answer {request.contract}: {error}") from error
+        value, repairs = request.question.settle(value)
+        usage = Usage(calls=1, pictures=len(request.pictures), usd=0.0)
+        return Answer(value, usage, MODEL_ID, value.model_dump_json(), 1, "offline", repairs)

@@ -1,0 +1,27 @@
+"""Classical eyes: what a picture of a table shows, read from its pixels (and depth if given) and nothing else."""
+
+from wonderful_team.models.offline.vision.examples import alike, study_example
+from wonderful_team.models.offline.vision.measure import BoxFit, StripFit, fit_box, strip_presence
+from wonderful_team.models.offline.vision.resolve import resolve, suits
+from wonderful_team.models.offline.vision.scene import see
+from wonderful_team.models.offline.vision.spots import free_spots
+from wonderful_team.models.offline.vision.things import Example, Look, Match, NotSeen, Scene, Thing
+
+__all__ = [
+    "BoxFit",
+    "Example",
+    "Look",
+    "Match",
+    "NotSeen",
+    "Scene",
+    "StripFit",
+    "Thing",
+    "alike",
+    "fit_box",
+    "free_spots",
+    "resolve",
+    "see",
+    "strip_presence",
+    "study_example",
+    "suits",
+]

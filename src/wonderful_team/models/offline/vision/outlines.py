@@ -1,0 +1,176 @@
+"""Outlines in polar form: compare two shapes, holes included, at every rotation at once."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+
+from wonderful_team.geometry.arrays import Array
+
+RADII = 36
+ANGLES = 120
+_REACH = 2.3
+"""Radii are sampled to this many times the radius of a disc of the same filled area."""
+
+
+@dataclass(frozen=True, eq=False)
+class Outline:
+    """A shape, free of place and size.
+
+    Attributes:
+        polar: Coverage at radius and angle, shape (RADII, ANGLES), 0 to 1.
+        outer: The same with all holes filled.
+        profile: Distance of the outer edge in units of the equal-area radius, shape (ANGLES,).
+        hole_share: Area of holes over filled area, 0 to 1.
+        holes: Number of holes that count.
+        solidity: Filled area over convex area, 0 to 1.
+        aspect: Long over short side of the tightest rectangle, >= 1.
+        fill: Filled area over that rectangle's area, 0 to 1.
+        corners: Corners of the simplified outline.
+        filled_area: Of the mask, in its own pixels.
+        angle_rad: Direction of the long axis in the picture, counter-clockwise seen, -pi/2 to pi/2.
+    """
+
+    polar: Array
+    outer: Array
+    profile: Array
+    hole_share: float
+    holes: int
+    solidity: float
+    aspect: float
+    fill: float
+    corners: int
+    filled_area: float
+    angle_rad: float
+
+
+def largest_contour(mask: Array) -> Array:
+    """The longest outer contour of a mask, shape (N, 1, 2) int32."""
+    contours, _ = cv2.findContours(mask.astype(np.uint8), cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)
+    return np.asarray(max(contours, key=cv2.contourArea))
+
+
+def filled(mask: Array) -> Array:
+    """The mask with everything inside its outer contours, bool."""
+    contours, _ = cv2.findContours(mask.astype(np.uint8), cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)
+    out = np.zeros(mask.shape, np.uint8)
+    cv2.drawContours(out, contours, -1, 1, cv2.FILLED)
+    return out.astype(bool)
+
+
+def study_outline(mask: Array) -> Outline:
+    """Describe the shape of a mask, shape (h, w), bool, with at least a few pixels set."""
+    padded = np.pad(mask.astype(np.uint8), 2)
+    # Work at a size where one pixel is small against the shape.
+    scale = float(np.clip(64.0 / max(np.sqrt(padded.sum()), 1.0), 0.5, 4.0))
+    grown = cv2.resize(padded.astype(np.float32), None, fx=scale, fy=scale, interpolation=cv2.INTER_LINEAR)
+    grown = cv2.GaussianBlur(grown, (0, 0), max(0.6, 0.45 * scale))
+    solid = grown > 0.5
+    if not solid.any():
+        solid = grown > 0.5 * grown.max()
+    whole = filled(solid)
+    area = float(whole.sum())
+    holes, hole_area = _holes(whole & ~solid, area)
+    contour = largest_contour(whole)
+    hull_area = max(float(cv2.contourArea(cv2.convexHull(contour))), 1.0)
+    (_, _), (w, h), _ = cv2.minAreaRect(contour)
+    long_side, short_side = max(w, h, 1.0), max(min(w, h), 1.0)
+    simple = cv2.approxPolyDP(contour, 0.035 * cv2.arcLength(contour, True), True)
+    moments = cv2.moments(whole.astype(np.uint8), True)
+    centre = (moments["m10"] / moments["m00"], moments["m01"] / moments["m00"])
+    angle = 0.5 * np.arctan2(2 * moments["mu11"], moments["mu20"] - moments["mu02"])
+    radius = np.sqrt(area / np.pi)
+    polar = _polar(
+        np.where(_opened(whole & ~solid, area), 0.0, np.where(whole, np.maximum(grown, 0.5), grown)), centre, radius
+    )
+    outer = _polar(whole.astype(np.float32), centre, radius)
+    reach = np.where(outer > 0.5, np.arange(1, RADII + 1)[:, None], 0).max(axis=0) * _REACH / RADII
+    return Outline(
+        polar.astype(np.float32),
+        outer.astype(np.float32),
+        reach,
+        hole_area / area,
+        holes,
+        min(1.0, float(cv2.contourArea(contour)) / hull_area),
+        long_side / short_side,
+        area / (long_side * short_side),
+        len(simple),
+        area / scale**2,
+        -float(angle),
+    )
+
+
+def _opened(gaps: Array, area: float) -> Array:
+    """Gaps that are true holes, not specks."""
+    count, labels, stats, _ = cv2.connectedComponentsWithStats(gaps.astype(np.uint8), connectivity=4)
+    keep = np.zeros(count, dtype=bool)
+    keep[1:] = stats[1:, cv2.CC_STAT_AREA] > 0.02 * area
+    return np.asarray(keep[labels])
+
+
+def _holes(gaps: Array, area: float) -> tuple[int, float]:
+    true_holes = _opened(gaps, area)
+    count = cv2.connectedComponents(true_holes.astype(np.uint8), connectivity=4)[0] - 1
+    return count, float(true_holes.sum())
+
+
+def _polar(image: Array, centre: tuple[float, float], radius: float) -> Array:
+    """Sample an image on rings round a centre, shape (RADII, ANGLES)."""
+    r = (np.arange(RADII) + 0.5) / RADII * _REACH * radius
+    t = np.arange(ANGLES) / ANGLES * 2 * np.pi
+    x = (centre[0] + r[:, None] * np.cos(t)).astype(np.float32)
+    y = (centre[1] + r[:, None] * np.sin(t)).astype(np.float32)
+    return np.asarray(cv2.remap(image.astype(np.float32), x, y, cv2.INTER_LINEAR, borderValue=0.0))
+
+
+_WEIGHT = (np.arange(RADII) + 0.5)[:, None] / RADII
+
+
+@dataclass(frozen=True, eq=False)
+class Forms:
+    """Several polar shapes, ready to be compared with one: their spectra and areas."""
+
+    spectra: Array
+    total: Array
+    squares: Array
+
+    @classmethod
+    def of(cls, polars: Array) -> Forms:
+        """From polar shapes, shape (N, RADII, ANGLES)."""
+        spectra = np.conj(np.fft.rfft(polars * _WEIGHT, axis=-1)).astype(np.complex64)
+        return cls(spectra, (polars * _WEIGHT).sum(axis=(1, 2)), (polars**2 * _WEIGHT).sum(axis=(1, 2)))
+
+
+def overlaps(polar: Array, forms: Forms) -> tuple[Array, Array]:
+    """Best intersection over union with each of several shapes over all rotations.
+
+    Args:
+        polar: Shape (RADII, ANGLES).
+        forms: N shapes.
+
+    Returns:
+        IoU, shape (N,), and the rotation from the other to this one [rad, clockwise in the picture], shape (N,).
+    """
+    mine = np.fft.rfft(polar, axis=-1).astype(np.complex64)
+    shared = np.fft.irfft(np.einsum("nra,ra->na", forms.spectra, mine), n=ANGLES, axis=-1)
+    total = (polar * _WEIGHT).sum() + forms.total
+    # For soft edges: 1 - |A - B|^2 over the union keeps a shape's IoU with itself at 1.
+    difference = ((polar**2 * _WEIGHT).sum() + forms.squares)[:, None] - 2 * shared
+    union = 0.5 * (total[:, None] + difference)
+    scores = 1 - difference / np.maximum(union, 1e-9)
+    best = scores.argmax(axis=1)
+    return scores[np.arange(len(best)), best], best / ANGLES * 2 * np.pi
+
+
+def same_outline(one: Outline, other: Outline) -> float:
+    """How alike two outlines are at their best rotation, 0 to 1; 1 for the same shape."""
+    iou = float(overlaps(one.polar, Forms.of(other.polar[None]))[0][0])
+    spectrum = np.conj(np.fft.rfft(other.profile)) * np.fft.rfft(one.profile)
+    shared = np.fft.irfft(spectrum, n=ANGLES).max()
+    gap = np.sqrt(max((one.profile**2).mean() + (other.profile**2).mean() - 2 * shared / ANGLES, 0.0))
+    hole_gap = abs(one.hole_share - other.hole_share)
+    solidity_gap = abs(one.solidity - other.solidity)
+    score = np.clip((iou - 0.55) / 0.4, 0, 1) * np.clip(1 - gap / 0.35, 0, 1)
+    return float(score * np.clip(1 - 1.2 * hole_gap, 0, 1) * np.clip(1 - 1.2 * solidity_gap, 0, 1))

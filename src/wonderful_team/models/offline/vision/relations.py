@@ -1,0 +1,130 @@
+"""Relations between things as the picture shows them, and superlatives."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from wonderful_team.models.offline.vision.examples import alike_colour, alike_pattern
+from wonderful_team.models.offline.vision.outlines import same_outline
+from wonderful_team.models.offline.vision.things import Match, Scene, Thing, covers
+
+DIRECTIONS = {"left_of": (-1.0, 0.0), "right_of": (1.0, 0.0), "above": (0.0, -1.0), "below": (0.0, 1.0)}
+"""Unit vectors in the picture: x right, y down."""
+
+
+def relation_score(relation: str, thing: Thing, others: Sequence[Thing], scene: Scene) -> float:
+    """How well a thing stands in a relation to others, 0 to 1; `between` takes two others, the rest one."""
+    other = others[0]
+    if relation in DIRECTIONS:
+        return direction_score(relation, thing.centre, other.centre)
+    distance = float(np.hypot(thing.centre[0] - other.centre[0], thing.centre[1] - other.centre[1]))
+    diagonal = float(np.hypot(scene.valid.width, scene.valid.height))
+    match relation:
+        case "near":
+            return float(np.clip(1.2 - 2.5 * distance / diagonal, 0.05, 1))
+        case "far_from":
+            return float(np.clip(2.5 * distance / diagonal - 0.2, 0.05, 1))
+        case "on" | "inside":
+            if thing.on == other.number or (thing.area_px < other.area_px and covers(other, thing.centre)):
+                return 1.0
+            return 0.0
+        case "between":
+            return _between(thing, others[0], others[1])
+        case "same_colour":
+            return alike_colour(thing.look, other.look)
+        case "same_pattern":
+            return alike_pattern(thing.look, other.look)
+        case "same_shape":
+            return same_outline(thing.look.outline, other.look.outline)
+        case _:
+            raise ValueError(f"unknown relation {relation!r}")
+
+
+def direction_score(relation: str, point: tuple[float, float], origin: tuple[float, float]) -> float:
+    """How well a point lies in a direction of another: 1 straight, 0.5 at 45 degrees, 0 from 80 degrees on."""
+    dx, dy = point[0] - origin[0], point[1] - origin[1]
+    distance = float(np.hypot(dx, dy))
+    if distance < 1e-6:
+        return 0.0
+    direction = DIRECTIONS[relation]
+    angle = np.degrees(np.arccos(np.clip((dx * direction[0] + dy * direction[1]) / distance, -1, 1)))
+    return float(np.clip(1.0 - max(angle - 15.0, 0.0) / 65.0, 0, 1))
+
+
+def _between(thing: Thing, one: Thing, other: Thing) -> float:
+    a, b, p = np.array(one.centre), np.array(other.centre), np.array(thing.centre)
+    span = b - a
+    length = float(np.linalg.norm(span))
+    if length < 1e-6:
+        return 0.0
+    along = float((p - a) @ span) / length**2
+    aside = float(abs(span[0] * (p - a)[1] - span[1] * (p - a)[0])) / length**2
+    return float(np.clip(min(along, 1 - along) / 0.15, 0, 1) * np.clip(1.2 - 2 * aside, 0, 1))
+
+
+def pick_superlative(scene: Scene, matches: list[Match], superlative: str, ordinal: int) -> list[Match]:
+    """The one (or those nearly equal) that a superlative picks among what fits; the others are dropped.
+
+    An `ordinal` beyond what fits gives [].
+    """
+    placed = [match for match in matches if match.thing is not None]
+    if superlative in ("tallest", "shortest") and any(m.thing is None or m.thing.height_m is None for m in placed):
+        superlative = "largest" if superlative == "tallest" else "smallest"
+    if len(placed) < ordinal:
+        return []
+    if superlative == "middle":
+        return _middle(placed)
+    keys = [_key(match.thing, superlative, scene) for match in placed if match.thing is not None]
+    order = np.argsort(keys, kind="stable")
+    chosen = int(order[ordinal - 1])
+    neighbours = [int(order[k]) for k in (ordinal - 2, ordinal) if 0 <= k < len(order)]
+    scale = (
+        max(abs(keys[chosen]), 1e-6)
+        if superlative in ("largest", "smallest", "tallest", "shortest")
+        else (0.5 * placed[chosen].box.width)
+    )
+    lead = min((abs(keys[k] - keys[chosen]) / scale for k in neighbours), default=1.0)
+    best = placed[chosen]
+    sure = float(np.clip(0.5 + 5 * lead, 0, 1))
+    return [replace(best, score=best.score * sure, why=f"{best.why}, {superlative} {sure:.2f}")]
+
+
+def _key(thing: Thing, superlative: str, scene: Scene) -> float:
+    """Sort key: the smallest is picked."""
+    match superlative:
+        case "largest":
+            return -thing.area_px
+        case "smallest":
+            return thing.area_px
+        case "leftmost":
+            return thing.centre[0]
+        case "rightmost":
+            return -thing.centre[0]
+        case "topmost":
+            return thing.centre[1]
+        case "bottommost" | "nearest":  # the picture's bottom is nearest to the viewer
+            return -thing.centre[1]
+        case "tallest":
+            return -(thing.height_m or 0.0)
+        case "shortest":
+            return thing.height_m or 0.0
+        case _:
+            raise ValueError(f"unknown superlative {superlative!r}")
+
+
+def _middle(matches: list[Match]) -> list[Match]:
+    """The middle one along the direction in which the things are spread."""
+    if len(matches) < 3:
+        return matches if len(matches) == 1 else []
+    points = np.array([match.thing.centre for match in matches if match.thing is not None])
+    spread = points - points.mean(axis=0)
+    axis = 0 if spread[:, 0].std() >= 0.7 * spread[:, 1].std() else 1
+    order = np.argsort(points[:, axis], kind="stable")
+    if len(order) % 2:
+        return [matches[int(order[len(order) // 2])]]
+    centre = np.median(points, axis=0)
+    nearest = int(np.hypot(*(points - centre).T).argmin())
+    return [replace(matches[nearest], score=matches[nearest].score * 0.7)]

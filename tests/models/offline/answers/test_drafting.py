@@ -1,0 +1,126 @@
+"""DraftPlan, RevisePlan and ExtractTargets on drawn tables."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.models.offline.answers.tables import KINDS, ask, draft, slot, table, task
+from wonderful_team.contracts import DraftPlan, ExtractTargets, PlanDraft, PlanRevision, RevisePlan, TargetList
+from wonderful_team.errors import NotUnderstoodError
+from wonderful_team.types import Doubt, Subgoal
+
+SCENE = table(
+    ("square", "red", 80, 80, 26),
+    ("square", "blue", 300, 160, 52),
+    ("star", "green", 500, 80, 36),
+    ("disc", "yellow", 520, 240, 30),
+)
+TWO_RED = table(("square", "red", 80, 80, 26), ("square", "red", 150, 240, 26), ("square", "blue", 400, 160, 60))
+
+
+def test_put_names_the_thing_then_its_place() -> None:
+    plan = draft("Put the green star into the blue square.", SCENE)
+    assert [goal.text for goal in plan.subgoals] == ["put the green star into the blue square"]
+    assert [(t.words, t.use) for t in plan.targets] == [("green star", ["pick"]), ("blue square", ["place"])]
+    assert plan.mode == "one_step"
+
+
+def test_pictured_targets_carry_their_pictures() -> None:
+    plan = draft("Put the {a} into the {b}.", SCENE, slot("a", "star", "green"), slot("b", "square", "blue"))
+    assert [t.like for t in plan.targets] == [["a"], ["b"]]
+
+
+def test_a_picture_that_was_not_given_is_refused() -> None:
+    with pytest.raises(NotUnderstoodError, match=r"\{b\}.*pictures: a"):
+        draft("Put the {a} into the {b}.", SCENE, slot("a", "star", "green"))
+
+
+def test_all_is_instantiated_in_the_picture() -> None:
+    plan = draft("put all red squares onto the blue square", TWO_RED)
+    assert len(plan.subgoals) == 2
+    assert len({t.words for t in plan.targets if "pick" in t.use}) == 2
+
+
+def test_two_that_fit_equally_are_a_question() -> None:
+    plan = draft("put the red square onto the blue square", TWO_RED)
+    assert plan.clarification is not None
+    assert len(plan.clarification.choices) == 2
+    assert "top left" in plan.clarification.choices[0]
+    assert draft("put the leftmost red square onto the blue square", TWO_RED).clarification is None
+
+
+def test_each_to_its_colour_leaves_out_what_is_there_and_what_has_no_place() -> None:
+    view = table(
+        ("square", "red", 130, 230, 70), ("square", "yellow", 480, 230, 70), ("disc", "yellow", 480, 230, 26),
+        ("disc", "red", 300, 80, 26), ("disc", "purple", 560, 70, 26),
+    )  # fmt: skip
+    plan = draft("Put each ball onto the square of its colour, if there is one.", view)
+    assert [goal.text for goal in plan.subgoals] == ["put the red ball into the red square"]
+    assert "no purple square" in plan.reasoning
+
+
+def test_nothing_to_do_is_an_empty_plan() -> None:
+    view = table(("square", "blue", 300, 160, 70), ("disc", "yellow", 300, 160, 26))
+    assert draft("put the yellow ball onto the blue square", view).subgoals == []
+
+
+def test_an_absent_thing_is_drafted_from_the_words() -> None:
+    plan = draft("put the purple star onto the blue square", SCENE)
+    assert plan.targets[0].words == "purple star"
+
+
+def test_then_orders_subgoals() -> None:
+    plan = draft("put the green star onto the blue square, then put the yellow ball onto the red square", SCENE)
+    assert [goal.after for goal in plan.subgoals] == [[], ["G1"]]
+
+
+def test_stacking_puts_the_lower_one_first() -> None:
+    plan = draft("Stack the green star on the red square on the blue square", SCENE)
+    assert [goal.text for goal in plan.subgoals] == [
+        "put the red square onto the blue square",
+        "put the green star onto the red square",
+    ]
+    assert plan.subgoals[1].after == ["G1"]
+
+
+def test_advice_changes_the_description_or_says_that_it_cannot() -> None:
+    text = "put the dark striped green star onto the blue square"
+    changed = draft(text, SCENE, advice=("T1 (dark green striped star) was not found in the picture.",))
+    assert changed.targets[0].words == "green star"
+    kept = draft(
+        "put the purple star onto the blue square", SCENE, advice=("T1 (purple star) was not found in the picture.",)
+    )
+    assert kept.targets[0].words == "purple star"
+    assert "the plan stands" in kept.reasoning
+
+
+def test_without_targets_the_lists_stay_empty() -> None:
+    plan = ask(DraftPlan(task("put the green star onto the blue square", SCENE), KINDS, False))
+    assert isinstance(plan, PlanDraft)
+    assert plan.targets == []
+    assert plan.subgoals[0].targets == []
+
+
+def test_targets_are_extracted_from_anyones_subgoals() -> None:
+    goals = (
+        Subgoal("G1", "Move the emerald star inside the blue square."),
+        Subgoal("G2", "Place the yellow disc left of the blue square"),
+    )
+    answer = ask(ExtractTargets(task("put them in", SCENE), goals))
+    assert isinstance(answer, TargetList)
+    assert [t.words for t in answer.targets] == ["green star", "blue square", "yellow circle"]
+    assert [need.targets for need in answer.needs] == [["T1", "T2"], ["T3", "T2"]]
+
+
+def test_a_right_doubt_changes_the_plan_and_a_wrong_one_does_not() -> None:
+    shown = task("put the green star onto the blue square", SCENE)
+    plan = draft("put the green star onto the blue square", SCENE)
+    doubt = Doubt("G1", "wrong_target", "Is it the right thing?")
+    kept = ask(RevisePlan(shown, KINDS, plan.to_subgoals(), plan.to_targets(), doubt, True))
+    assert isinstance(kept, PlanRevision)
+    assert kept.decision == "keep"
+    wrong = (Subgoal("G1", "put the red square onto the blue square", targets=("T1", "T2")),)
+    changed = ask(RevisePlan(shown, KINDS, wrong, plan.to_targets(), doubt, True))
+    assert isinstance(changed, PlanRevision)
+    assert changed.plan is not None
+    assert changed.plan.subgoals[0].text == "put the green star onto the blue square"

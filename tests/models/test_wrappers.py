@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from tests.planning.helpers import APPROVED, doubt, draft, plan_with, scripted, subgoal
-from wonderful_team.models.wrappers import Injecting, Injection, demo_injections, shift_box, swap_targets
+from wonderful_team.models.wrappers import Injecting, Injection, shift_box
 from wonderful_team.planning import TeamConfig
 
 
@@ -17,26 +17,21 @@ def test_an_injected_box_is_labelled_and_shifted_by_the_stated_radii():
     assert spoiled.grounded["T2"].history[1].provenance != "injected", "it strikes once"
 
 
-def test_a_swapped_plan_reads_the_wrong_way_round():
-    value = type("Q", (), {})
-    plan = draft(subgoal("G1"))
-    from wonderful_team.contracts import PlanDraft
-
-    swapped = swap_targets(PlanDraft(**plan), value)
-    assert swapped.subgoals[0].text == "put the second thing into the first thing"
-    assert swapped.subgoals[0].targets == ["T2", "T1"]
-
-
 def test_verification_sees_the_injected_plan_and_its_doubt_is_recorded():
     def review(request):
         right = request.question.subgoals[0].text == "put the first thing into the second thing"
         return APPROVED if right else doubt(question="is it not the other way round?")
 
+    def wrong_way_round(plan, request):
+        swapped = plan.subgoals[0].model_copy(update={"text": "put the second thing into the first thing"})
+        return plan.model_copy(update={"subgoals": [swapped]})
+
     better = draft(subgoal("G1"))
     model = scripted(
         ReviewPlan=review, RevisePlan={"reasoning": "", "decision": "revise", "answer": "Yes.", "plan": better}
     )
-    plan = plan_with(Injecting(model, demo_injections()), TeamConfig(way="lean"))
+    planted = Injecting(model, [Injection(("DraftPlan",), wrong_way_round, "a plan the wrong way round")])
+    plan = plan_with(planted, TeamConfig(way="lean"))
     assert plan.first_draft[0].text == "put the second thing into the first thing"
     assert plan.subgoals[0].text == "put the first thing into the second thing"
     assert plan.questions[0].changed

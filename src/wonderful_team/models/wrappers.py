@@ -8,7 +8,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from wonderful_team.contracts import BoxPx, PlanDraft, PointPx, SceneReading
+from wonderful_team.contracts import BoxPx, PointPx, SceneReading
 from wonderful_team.contracts.give_box import BoxAnswer
 from wonderful_team.interfaces import Model
 from wonderful_team.models.door import as_answer, settle_answer
@@ -60,37 +60,6 @@ class Injecting:
         return answer
 
 
-def swap_targets(draft: PlanDraft, request: Request) -> PlanDraft | None:
-    """A plan that does it the wrong way round: the first two targets exchange their places in the first subgoal."""
-    if not isinstance(draft, PlanDraft) or not draft.subgoals:
-        return None
-    first = draft.subgoals[0]
-    if len(draft.targets) < 2:
-        return None
-    one, two = (_name_in(first.text, target.words, target.like) for target in draft.targets[:2])
-    if one not in first.text or two not in first.text:
-        return None
-    mark = "\0"
-    text = first.text.replace(one, mark).replace(two, one).replace(mark, two)
-    wrong = first.model_copy(update={"text": text, "targets": list(reversed(first.targets))})
-    return draft.model_copy(update={"subgoals": [wrong, *draft.subgoals[1:]]})
-
-
-def _name_in(text: str, words: str, like: Sequence[str]) -> str:
-    """How a subgoal's text calls a target: by its words, or by the mark of its picture."""
-    if words in text:
-        return words
-    return next((f"{{{name}}}" for name in like if f"{{{name}}}" in text), words)
-
-
-def drop_subgoal(draft: PlanDraft, request: Request) -> PlanDraft | None:
-    """A plan without its last subgoal."""
-    if not isinstance(draft, PlanDraft) or len(draft.subgoals) < 2:
-        return None
-    last = draft.subgoals[-1].id
-    return draft.model_copy(update={"subgoals": [s for s in draft.subgoals if s.id != last]})
-
-
 def shift_box(radii: float = 1.2) -> Callable[[Any, Request], Any | None]:
     """A change that shifts the first found box by `radii` half-widths towards the middle of the picture."""
 
@@ -118,11 +87,3 @@ def _shifted(box: BoxPx, radii: float, middle: float) -> BoxPx:
     radius = (box.x1 - box.x0) / 2
     dx = radii * radius * (1 if (box.x0 + box.x1) / 2 < middle else -1)
     return BoxPx(x0=box.x0 + dx, y0=box.y0, x1=box.x1 + dx, y1=box.y1)
-
-
-def demo_injections() -> tuple[Injection, ...]:
-    """The two faults of `demo`: a plan the wrong way round, and a first box beside its object."""
-    return (
-        Injection(("DraftPlan",), swap_targets, "a plan that does it the wrong way round"),
-        Injection(("GiveBox", "ReadScene"), shift_box(), "a first box beside its object"),
-    )

@@ -171,7 +171,8 @@ async def _judge_revision(job: Job, before: Box, after: Box) -> str:
 
 def _move_line(move: BoxMove) -> str:
     if move.action == "move":
-        return f"moved {move.right_px:+.0f} px right, {move.down_px:+.0f} px down"
+        across = f"{abs(move.right_px):.0f} px {'right' if move.right_px >= 0 else 'left'}"
+        return f"moved {across}, {abs(move.down_px):.0f} px {'down' if move.down_px >= 0 else 'up'}"
     grown = (move.grow_left_px, move.grow_top_px, move.grow_right_px, move.grow_bottom_px)
     names = ("left", "top", "right", "bottom")
     parts = [f"{name} {amount:+.0f}" for name, amount in zip(names, grown, strict=True) if amount]

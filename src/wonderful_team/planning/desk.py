@@ -62,8 +62,9 @@ class Desk:
             sample=sample,
             prompts=self.config.prompts,
         )
+        write_down = self.notebooks.begin(asker, branch)
         answer = await self.door.ask(request)
-        self.notebooks.write(asker, branch, Note(question.contract, _short(answer.value), "notebook"))
+        write_down(Note(question.contract, _short(answer.value), "notebook"))
         return answer
 
     def remember(self, role: str, stage: str, asked: str, answered: str, *, target: int = 0, branch: str = "") -> None:

@@ -7,7 +7,7 @@ target, never of finishing, so that requests do not depend on races.
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Coroutine
+from collections.abc import Callable, Coroutine
 from typing import Any
 
 from wonderful_team.contracts import MemoryEntry
@@ -21,17 +21,25 @@ class Notebooks:
     """One notebook per role. Work on one target writes to a branch, which only that target's requests see."""
 
     def __init__(self) -> None:
-        self._lines: dict[tuple[str, str], list[Note]] = {}
+        self._lines: dict[tuple[str, str], list[Note | None]] = {}
 
-    def write(self, role: str, branch: str, note: Note) -> None:
-        self._lines.setdefault((role, branch), []).append(note)
+    def begin(self, role: str, branch: str) -> Callable[[Note], None]:
+        """Take the next line; what comes back writes it. Lines so stand in the order of asking, never of finishing."""
+        lines = self._lines.setdefault((role, branch), [])
+        lines.append(None)
+        number = len(lines) - 1
+
+        def write(note: Note) -> None:
+            lines[number] = note
+
+        return write
 
     def read(self, role: str, branch: str) -> tuple[Note, ...]:
         """The role's own lines on the main line, then those of this branch; the newest NOTEBOOK_LINES of them."""
         lines = [*self._lines.get((role, ""), ())]
         if branch:
             lines += self._lines.get((role, branch), ())
-        return tuple(lines[-NOTEBOOK_LINES:])
+        return tuple([line for line in lines if line is not None][-NOTEBOOK_LINES:])
 
 
 class SystemMemory:

@@ -139,6 +139,8 @@ class Team:
         progress = _Progress(start)
         try:
             plan = await self._plan(desk, scene, progress, until, tuple(advice))
+            # What Memory is still writing belongs to this plan: whether it is kept must not be a matter of luck.
+            await desk.memory.border()
         except (
             PlanError,
             NotFoundError,

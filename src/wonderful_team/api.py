@@ -1,0 +1,452 @@
+"""The Python face: synchronous, safe in notebooks, recorded. `import wonderful_team as wt` offers what stands here."""
+
+from __future__ import annotations
+
+import inspect
+import time
+import warnings
+from collections.abc import Callable, Coroutine, Mapping, Sequence
+from dataclasses import dataclass, fields, replace
+from pathlib import Path
+from typing import Any
+
+from wonderful_team import registry, types
+from wonderful_team.actions import PICK_PLACE, VOCABULARIES, Vocabulary
+from wonderful_team.errors import ConfigError, UnknownNameError
+from wonderful_team.finding import find
+from wonderful_team.interfaces import Decision, Event, Model, Policy, Privileged, Situation, Subscriber, World
+from wonderful_team.made import MadePlan, RecordedTrial
+from wonderful_team.models.budget import Budget, Caps
+from wonderful_team.models.cache import CacheMode, cached_models
+from wonderful_team.models.cache_key import model_identity
+from wonderful_team.models.door import Door
+from wonderful_team.models.providers import check_prices, model_options
+from wonderful_team.planning import Team as Planner
+from wonderful_team.planning import TeamConfig, Until
+from wonderful_team.runs import new_run_folder
+from wonderful_team.runtime import Approval, Approver, check_gate
+from wonderful_team.runtime import rollout as roll_out
+from wonderful_team.runtime.loop import Caller
+from wonderful_team.runtime.page import write_page
+from wonderful_team.runtime.recorder import Recorder
+from wonderful_team.runtime.setup import setup_entry
+from wonderful_team.types import NO_WORKSPACE, GateReport, Instruction, KeepOut, Limits, Plan, Target, Usage
+
+ModelChoice = str | Model | Mapping[str, str | Model]
+POINTING_ROLES = ("manager", "supervisor")
+"""Who gives points and boxes on whole views."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Work:
+    """A plan under way and what it costs."""
+
+    plan: Coroutine[Any, Any, Plan]
+    usage_by_role: Callable[[], Mapping[str, Usage]]
+
+
+@dataclass
+class Method:
+    """A method by name, with its model and its caps, not yet at work.
+
+    Args:
+        model: A name (`offline`, FILE.py:NAME), an object with `answer(request)`, or a mapping from role to either;
+            "*" is for the roles not named.
+        method: team, team:paper, team:s1 to team:s8, or FILE.py:NAME.
+        thinking: off, low, medium or high, for all roles or by role; None leaves each model's own default.
+        price: "IN,OUT" in USD per million tokens, for all roles or by role, where no price is known.
+        allow_unpriced: Accept models of unknown price without a cap on tokens.
+        local_only: Refuse models outside this machine and private networks.
+        max_calls, max_tokens, max_seconds, max_usd: Caps of one plan or trial; None for no cap.
+        concurrency: Most calls in flight at once.
+        cache: on, off or only (never call a model); None: on for vendors and servers, off for `offline` and own models.
+        cache_file: Where answers are kept; default $WONDERFUL_TEAM_CACHE, else the user's cache folder.
+        repeat: Number of this repetition: repetitions do not share kept answers.
+        prompts: A folder with your own words for the team's roles.
+        strict: Refuse a plan that Verification did not approve.
+        out: Where run folders go; default $WONDERFUL_TEAM_RUNS or `runs`.
+        subscribers: Told of every event as it happens.
+        command: The command line that reproduces the run, for the page.
+        parent: Which run this one branches off, and at which stage.
+
+    Raises:
+        ConfigError: An unknown name or a value out of range; before anything is sent.
+    """
+
+    model: ModelChoice = "offline"
+    method: str = "team"
+    max_calls: int | None = None
+    max_tokens: int | None = None
+    max_seconds: float | None = None
+    max_usd: float | None = None
+    concurrency: int = 8
+    cache: CacheMode | None = None
+    cache_file: str | Path | None = None
+    repeat: int = 0
+    prompts: str | Path | None = None
+    strict: bool = False
+    out: str | Path | None = None
+    subscribers: Sequence[Subscriber] = ()
+    command: str | None = None
+    parent: Mapping[str, str] | None = None
+    thinking: str | Mapping[str, str] | None = None
+    price: str | Mapping[str, str] | None = None
+    allow_unpriced: bool = False
+    local_only: bool = False
+
+    def __post_init__(self) -> None:
+        self._config = team_config(self.method, self.prompts, self.strict)
+        options = model_options(self.thinking, self.price, self.local_only, role_names())
+        made = registry.make_models(self.model, role_names(), options)
+        if self._config is not None and any(getattr(made[role], "weak_pointing", False) for role in POINTING_ROLES):
+            self._config = replace(self._config, axes=True)
+        self._models, self._store = cached_models(made, self.cache, self.cache_file, repeat=self.repeat)
+        self._caps = Caps(self.max_calls, self.max_tokens, self.max_seconds, self.max_usd)
+        if self.cache != "only":
+            check_prices(made.values(), self._caps, self.allow_unpriced)
+        self._label = registry.model_label(_known_names(self.model, made))
+
+    @property
+    def name(self) -> str:
+        """What records call the method."""
+        return self.method
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What the user should know of the set-up, in words."""
+        return () if self._store is None else self._store.warnings
+
+    @property
+    def model_name(self) -> str:
+        """What records call the model."""
+        return self._label
+
+    def door(self, *subscribers: Subscriber) -> Door:
+        """A door to the model for one run: capped, and told to subscribers."""
+        everyone = (*subscribers, *self.subscribers)
+        return Door(self._models, budget=Budget(self._caps), subscribers=everyone, concurrency=self.concurrency)
+
+    def policy(self, *subscribers: Subscriber) -> Policy:
+        """The method at work in one trial."""
+        if self._config is None:
+            return registry.load_method(self.method, self.door(*subscribers))
+        return Planner(
+            self._models,
+            self._config,
+            caps=self._caps,
+            subscribers=(*subscribers, *self.subscribers),
+            concurrency=self.concurrency,
+        )
+
+    def words(self) -> Mapping[str, str]:
+        """The words of the roles, by file name; none for a method of one's own."""
+        return {} if self._config is None else self._config.prompts.files()
+
+    def configuration(self) -> dict[str, Any]:
+        """What the record says of how a run was set up."""
+        caps = {"calls": self.max_calls, "tokens": self.max_tokens, "seconds": self.max_seconds, "usd": self.max_usd}
+        return {
+            "method": self.method,
+            "model": self.model_name,
+            "caps": caps,
+            "concurrency": self.concurrency,
+            "thinking": dict(self.thinking) if isinstance(self.thinking, Mapping) else self.thinking,
+            "local_only": self.local_only,
+            "axes": self._config is not None and self._config.axes,
+            "models": {
+                role: model_identity(model) for role, model in self._models.items() if hasattr(model, "identity")
+            },
+            "cache": "off" if self._store is None else (self.cache or "on"),
+            "repeat": self.repeat,
+            "strict": self.strict,
+            "prompts": None if self._config is None else self._config.prompts.hash,
+            **({} if self.parent is None else {"parent": dict(self.parent)}),
+        }
+
+
+@dataclass
+class Team(Method):
+    """The team of agents. Every call of `plan` or `ground` is one run with a folder and a page of its own.
+
+    Takes what `Method` takes; its method is one of the team's.
+    """
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self._config is None:
+            raise ConfigError(
+                f"method {self.method!r} is not the team: run it with wt.rollout(wt.Method(method=…), world)"
+            )
+        self._deciding: Policy | None = None
+
+    async def decide(self, situation: Situation) -> Decision:
+        """`Policy`: what to do now."""
+        if self._deciding is None or situation.attempt == 0:
+            self._deciding = self.policy()
+        decision = self._deciding.decide(situation)
+        return await decision if inspect.isawaitable(decision) else decision
+
+    def plan(
+        self,
+        observation: types.Observation,
+        instruction: str | Instruction,
+        *,
+        vocabulary: str | Vocabulary = PICK_PLACE,
+        limits: Limits | None = None,
+        until: Until = "actions",
+        keep_out: Sequence[KeepOut] = (),
+    ) -> MadePlan:
+        """Plan for what is seen; nothing moves.
+
+        Args:
+            observation: A photo (`Observation.from_files`) or `world.observe()`.
+            instruction: What is wanted.
+            vocabulary: Kinds of action that may be used: pick_place, push, arm, or a Vocabulary.
+            limits: The workspace; default that of the photo's camera file or corners, if any.
+            until: Stop early: draft, checked, grounded.
+            keep_out: Regions nothing may enter.
+
+        Returns:
+            The plan; its `status` says how it ended, and failures of the method keep the best so far.
+
+        Raises:
+            ConfigError: Wrong use.
+            ModelUnavailableError: The provider did not answer.
+        """
+        wanted = instruction if isinstance(instruction, Instruction) else Instruction(instruction)
+        words = vocabulary_named(vocabulary)
+        bounds = limits or getattr(observation, "limits", None) or NO_WORKSPACE
+
+        def make(recorder: Recorder) -> _Work:
+            planner = self.policy(recorder)
+            assert isinstance(planner, Planner)
+            work = planner.make_plan(observation, wanted, words, bounds, until=until, keep_out=keep_out)
+            return _Work(work, lambda: planner.usage_by_role)
+
+        setup = setup_entry("plan", words, bounds, until=until, keep_out=keep_out)
+        return self._recorded(observation, wanted, words, bounds, setup, make)
+
+    def ground(
+        self, observation: types.Observation, objects: Sequence[str] = (), areas: Sequence[str] = ()
+    ) -> MadePlan:
+        """Find things in a picture: boxes and points, no plan.
+
+        Args:
+            observation: Where to look: its main view.
+            objects: Descriptions of things that have an outline.
+            areas: Descriptions of free areas.
+
+        Raises:
+            ConfigError: Nothing is asked for.
+        """
+        targets = [Target(f"T{number}", "object", words) for number, words in enumerate(objects, start=1)]
+        targets += [Target(f"T{number}", "area", words) for number, words in enumerate(areas, start=len(targets) + 1)]
+        if not targets:
+            raise ConfigError("ground: at least one description is needed")
+        wanted = Instruction("Find: " + "; ".join(target.words for target in targets))
+
+        def make(recorder: Recorder) -> _Work:
+            assert self._config is not None
+            door = self.door(recorder)
+            return _Work(find(door, self._config, observation, wanted, targets), lambda: door.budget.by_role)
+
+        setup = setup_entry("ground", PICK_PLACE, NO_WORKSPACE, targets=targets)
+        return self._recorded(observation, wanted, PICK_PLACE, NO_WORKSPACE, setup, make)
+
+    def _recorded(
+        self,
+        observation: types.Observation,
+        instruction: Instruction,
+        vocabulary: Vocabulary,
+        limits: Limits,
+        setup: Mapping[str, Any],
+        make: Callable[[Recorder], _Work],
+    ) -> MadePlan:
+        """Make a plan in a run folder of its own, pass it through the gate, and write its page."""
+        folder = new_run_folder(instruction.text, self.out)
+        recorder = Recorder(folder, command=self.command)
+        everyone = (recorder, *self.subscribers)
+        started = time.monotonic()
+        told = {**self.configuration(), "task": instruction, "limits": limits, "setup": setup, "words": self.words()}
+        tell(everyone, "run", str(setup["entry"]), told)
+        for text in self.warnings:
+            tell(everyone, "warning", "cache", text)
+        tell(everyone, "observe", "start", observation)
+        if limits is NO_WORKSPACE and observation.main.camera is not None:
+            tell(everyone, "warning", "workspace", "no workspace is stated: the gate checks everything but that")
+        work = make(recorder)
+        try:
+            with Caller() as caller:
+                plan: Plan = caller.wait_for(work.plan)
+            gate = plan_gate(plan, observation, vocabulary, limits)
+            if gate is not None:
+                tell(everyone, "gate", "before motion", gate)
+            tell(everyone, "done", plan.status, plan)
+        finally:
+            recorder.close()
+            _page_of(folder)
+        return MadePlan(plan, observation, gate, dict(work.usage_by_role()), time.monotonic() - started, folder)
+
+
+def make_world(name: str | Any, seed: int = 0, instruction: str | Instruction | None = None) -> World:
+    """A world with one scene set up in it, such as `make_world("tabletop/rotate", seed=3)`.
+
+    Args:
+        name: WORLD/TASK, FILE.py:NAME, or an object of your own that is to be used as a world.
+        seed: Of the scene.
+        instruction: Instead of the world's own; its scorer is then dropped.
+
+    Raises:
+        ConfigError: An unknown name, or a world without an instruction.
+    """
+    return registry.make_world(name, seed, instruction)
+
+
+def rollout(
+    method: Method | Policy,
+    world: World,
+    *,
+    plan: MadePlan | Plan | None = None,
+    replans: int = 0,
+    approval: Approval | Approver | None = None,
+    seed: int | None = None,
+    scene: str = "",
+    scored: bool = True,
+    out: str | Path | None = None,
+    subscribers: Sequence[Subscriber] = (),
+) -> RecordedTrial:
+    """Run a method in a world, recorded.
+
+    Args:
+        method: A Team, a Method, or anything with the Policy interface.
+        world: Where it acts.
+        plan: A plan that was read beforehand: exactly that plan runs, or the gate refuses.
+        replans: How often the method may plan again after its first attempt.
+        approval: Consent to one plan, or a function that is asked for it before motion.
+        seed: What the record says of the scene's seed.
+        scene: What the record calls the scene.
+        scored: Let the world's scorer, where it has one, judge the outcome afterwards.
+        out: Where the run folder goes; default the team's, else $WONDERFUL_TEAM_RUNS or `runs`.
+        subscribers: Told of every event as it happens.
+
+    Raises:
+        ConfigError: Wrong use, before anything moved.
+    """
+    named = method if isinstance(method, Method) else None
+    folder = new_run_folder(world.instruction.text, out if out is not None else (named.out if named else None))
+    recorder = Recorder(folder, command=named.command if named else None)
+    if named is not None:
+        for text in named.warnings:
+            tell((recorder, *subscribers, *named.subscribers), "warning", "cache", text)
+    policy: Policy = method.policy(recorder, *subscribers) if isinstance(method, Method) else method
+    made = plan if isinstance(plan, MadePlan) else None
+    scorer: Privileged | None = registry.privileged(world) if scored else None
+    given = made.plan if made is not None else plan
+    setup = setup_entry(
+        "run",
+        world.vocabulary,
+        world.limits,
+        keep_out=world.limits.keep_out,
+        scene=scene,
+        seed=seed,
+        replans=replans,
+        plan=None if given is None else given.id,
+        scored=scorer is not None,
+    )
+    try:
+        trial = roll_out(
+            policy,
+            world,
+            plan=given,  # type: ignore[arg-type]
+            plan_observation=made.observation if made is not None else None,
+            replans=replans,
+            scorer=scorer,
+            subscribers=(recorder, *subscribers, *(named.subscribers if named else ())),
+            approval=approval,
+            seed=seed,
+            scene=scene,
+            configuration={
+                **(named.configuration() if named else {}),
+                "task": world.instruction,
+                "limits": world.limits,
+                "setup": setup,
+                "words": named.words() if named else {},
+            },
+        )
+    finally:
+        recorder.close()
+        _page_of(folder)
+    held = {item.name: getattr(trial, item.name) for item in fields(trial)}
+    return RecordedTrial(**held, folder=folder)
+
+
+def task(name: str, *, instruction: str, horizon: int = 1, **more: Any) -> Callable[[Callable[..., Any]], Any]:
+    """Make a tabletop task of a function `(scene, rng)` that sets the table; see docs/own-task.md."""
+    from wonderful_team.sims.tabletop import task as tabletop_task
+
+    return tabletop_task(name, instruction=instruction, horizon=horizon, **more)
+
+
+def team_config(method: str, prompts: str | Path | None = None, strict: bool = False) -> TeamConfig | None:
+    """The configuration that a `team…` name means; None for a method of one's own.
+
+    Raises:
+        UnknownNameError: Not a name of the team.
+    """
+    from wonderful_team.agents import Prompts
+
+    way = registry.team_way(method)
+    if way is None:
+        return None
+    words = Prompts.default() if prompts is None else Prompts.load(Path(prompts))
+    return TeamConfig(way=way.way, setting=way.setting, strict=strict, prompts=words)
+
+
+def _known_names(model: ModelChoice, made: Mapping[str, Model]) -> ModelChoice:
+    """The choice with the names that servers gave for addresses without #NAME."""
+    if isinstance(model, Mapping):
+        rest = next((role for role in made if role not in model), None)
+        by_role = {role: made[rest] if role == "*" and rest else made.get(role) for role in model}
+        return {role: _known_name(named, by_role[role]) for role, named in model.items()}
+    return _known_name(model, next(iter(made.values())))
+
+
+def _known_name(named: str | Model, made: Model | None) -> str | Model:
+    return named if made is None or not isinstance(named, str) else str(getattr(made, "name", named))
+
+
+def role_names() -> tuple[str, ...]:
+    """All roles of the team."""
+    from wonderful_team.agents import ROLES
+
+    return tuple(ROLES)
+
+
+def vocabulary_named(vocabulary: str | Vocabulary) -> Vocabulary:
+    """A vocabulary by its name."""
+    if isinstance(vocabulary, Vocabulary):
+        return vocabulary
+    if vocabulary not in VOCABULARIES:
+        raise UnknownNameError("vocabulary", vocabulary, VOCABULARIES)
+    return VOCABULARIES[vocabulary]
+
+
+def plan_gate(plan: Plan, observation: types.Observation, vocabulary: Vocabulary, limits: Limits) -> GateReport | None:
+    """What the gate says of a plan that is not run now; None without actions."""
+    if plan.status != "planned" or not plan.actions:
+        return None
+    return check_gate(plan.actions, vocabulary=vocabulary, limits=limits, plan=plan, then=observation, now=observation)
+
+
+def _page_of(folder: Path) -> None:
+    """Write the page. A run may have cost money and moved a robot: a defect of the page must not lose its result."""
+    try:
+        write_page(folder)
+    except Exception as error:  # noqa: BLE001  told as a warning; `wonderful-team show` writes the page anew
+        warnings.warn(f"the page of {folder} could not be written: {type(error).__name__}: {error}", stacklevel=3)
+
+
+def tell(subscribers: Sequence[Subscriber], kind: str, name: str, content: Any) -> None:
+    """Pass an event on."""
+    for subscriber in subscribers:
+        subscriber.on_event(Event(kind, name, content))

@@ -1,0 +1,120 @@
+"""The command group, and the one place where an error becomes a message and an exit code."""
+
+from __future__ import annotations
+
+import importlib
+import sys
+from collections.abc import Sequence
+from typing import Any
+
+import click
+
+from wonderful_team import __version__
+from wonderful_team.cli.output import Document, wants_json
+
+INTERRUPTED = 130
+CRASHED = 70
+"""Exit code of a defect of ours (EX_SOFTWARE): never one of the codes that say something about a run."""
+
+COMMANDS: dict[str, tuple[str, str]] = {
+    "demo": ("demo", "Watch the team plan, catch two planted mistakes, and act, on a rendered scene."),
+    "doctor": ("doctor", "Check this machine: versions, rendering, disk, keys, and what is missing."),
+    "list": ("listing", "List models, worlds, tasks, methods, prompts or runs."),
+    "plan": ("plan", "Plan from pictures and an instruction; nothing moves."),
+    "ground": ("ground", "Find things in a picture: boxes and points."),
+    "run": ("run", "Plan, pass the gate, act in a world, look, replan."),
+    "show": ("show", "Show a recorded run."),
+    "bench": ("bench", "Compare methods and models on suites, with controls, in a durable store."),
+    "report": ("study_report", "Turn stores into one page, tables and plots."),
+    "new": ("new", "Write a world, method, task or model of your own that runs, with a test."),
+    "check": ("check", "Check a world, method, task or model of your own."),
+}
+
+
+class LazyGroup(click.Group):
+    """Knows its commands by name and imports one only when it is asked for, so that `--help` answers at once."""
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        return list(COMMANDS)
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
+        if cmd_name not in COMMANDS:
+            return None
+        module = importlib.import_module(f"wonderful_team.cli.{COMMANDS[cmd_name][0]}")
+        command = module.command
+        if not isinstance(command, click.Command):
+            raise TypeError(f"{module.__name__}.command is not a click command")
+        return command
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        with formatter.section("Commands"):
+            formatter.write_dl([(name, words) for name, (_, words) in COMMANDS.items()])
+
+    def resolve_command(
+        self, ctx: click.Context, args: list[str]
+    ) -> tuple[str | None, click.Command | None, list[str]]:
+        if args and args[0] not in COMMANDS and not args[0].startswith("-"):
+            from wonderful_team.errors import UnknownNameError
+
+            raise UnknownNameError("command", args[0], COMMANDS)
+        return super().resolve_command(ctx, args)
+
+
+@click.group(
+    cls=LazyGroup,
+    context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 110},
+    epilog="Exit codes: 0 done, 1 the method failed, 2 wrong use, 3 model unavailable, 4 gate refused, "
+    "5 budget reached, 6 robot fault, 7 not understood, 130 interrupted.",
+)
+@click.version_option(__version__, prog_name="wonderful-team")
+@click.option("--debug", is_flag=True, help="Show the traceback of an error.")
+def group(debug: bool) -> None:
+    """A picture and an instruction in; a checked, grounded, executable robot plan out."""
+
+
+def main(argv: Sequence[str] | None = None) -> None:
+    """Run one command and exit with its code."""
+    sys.exit(run(list(sys.argv[1:] if argv is None else argv)))
+
+
+def run(argv: list[str]) -> int:
+    """Run one command.
+
+    Returns:
+        The exit code. An error has then been told on stderr, and as a JSON document on stdout with --json.
+    """
+    try:
+        code: Any = group.main(args=argv, prog_name="wonderful-team", standalone_mode=False, obj=tuple(argv))
+        return code if isinstance(code, int) else 0
+    except click.exceptions.Exit as ending:
+        return ending.exit_code
+    except (click.exceptions.Abort, KeyboardInterrupt):
+        return _fail(argv, "Interrupted", "interrupted; what was recorded so far is kept", INTERRUPTED)
+    except click.ClickException as error:
+        hint = error.ctx.command_path if isinstance(error, click.UsageError) and error.ctx else "wonderful-team"
+        return _fail(argv, "UsageError", f"{error.format_message()} (see {hint} --help)", 2)
+    except BrokenPipeError:
+        sys.stderr.close()
+        return 0
+    except Exception as error:  # noqa: BLE001  the top: every error becomes a message and an exit code here
+        if "--debug" in argv:
+            raise
+        return _tell(argv, error)
+
+
+def _tell(argv: list[str], error: Exception) -> int:
+    from wonderful_team.errors import WonderfulTeamError
+
+    name = type(error).__name__
+    if isinstance(error, WonderfulTeamError):
+        return _fail(argv, name, str(error), error.exit_code, stage=error.stage)
+    message = f"unexpected {name}: {error}. This is a defect of wonderful-team; `wonderful-team --debug …` shows where"
+    return _fail(argv, name, message, CRASHED)
+
+
+def _fail(argv: list[str], name: str, message: str, code: int, stage: str | None = None) -> int:
+    if wants_json(argv):
+        command = next((word for word in argv if word in COMMANDS), "")
+        Document(command, {}, error={"type": name, "message": message, "stage": stage}).print(code)
+    click.echo(f"error: {message}" if code != INTERRUPTED else message, err=True)
+    return code

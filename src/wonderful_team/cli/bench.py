@@ -1,0 +1,72 @@
+"""`bench`: methods x models x suites x seeds, in one durable store."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from wonderful_team.cli.options import PATH
+from wonderful_team.cli.output import finish
+
+if TYPE_CHECKING:
+    from wonderful_team.evals.study import Standing
+
+INTERRUPTED, BUDGET = 130, 5
+
+
+@click.command(
+    short_help="Compare methods and models on suites, with controls.",
+    epilog="\b\nwonderful-team bench vima3 --estimate\n"
+    "wonderful-team bench vima3 fruit --method team,team:paper --seeds 1000:1020 --store study.db\n"
+    "wonderful-team bench rotate --method mine.py:Mine --store study.db && wonderful-team report study.db",
+)
+@click.argument("suites", nargs=-1, metavar="SUITE|TASK|FILE.py:TASK|PHOTOS.json ...")
+@click.option("--method", "methods", multiple=True, metavar="A,B", help="Methods; default team.")
+@click.option("--model", "models", multiple=True, metavar="M,N", help="Models; default offline.")
+@click.option("--seeds", metavar="FIRST:END", help="For every task; default the suite's own, from 1000 on.")
+@click.option("--repeats", type=click.IntRange(1), default=1, show_default=True, help="How often each scene is run.")
+@click.option("--replans", type=click.IntRange(0), help="Plans after the first; default the suite's protocol.")
+@click.option("--isolate", type=click.Choice(["planning", "grounding"]), help="Truth answers for the other part.")
+@click.option("--perturb", metavar="KIND=0..3", help="A harder tier: clutter, lighting, camera, texture or paraphrase.")
+@click.option("--no-control", "refused", multiple=True, metavar="NAME|all", help="Leave a control out; may be repeated.")
+@click.option("--estimate", is_flag=True, help="Say what it would take, from a few pilot trials, and run no more.")
+@click.option("--store", type=PATH, default=Path("study.db"), show_default=True, help="Where trials are kept.")
+@click.option("--jobs", type=click.IntRange(1), help="Worker processes. [default: one per core]")
+@click.option("--at-once", type=click.IntRange(1), default=1, show_default=True, help="Trials in flight per process.")
+@click.option("--shard", metavar="I/N", help="Only this part, in a store file of its own.")
+@click.option("--ray", metavar="ADDRESS", help='Run on a Ray cluster; "local" starts one here.')
+@click.option("--retry-errors", is_flag=True, help="Run trials again that ended as errors.")
+@click.option("--pages", type=click.Choice(["all", "failures", "none"]), default="failures", show_default=True)
+@click.option("--out", type=PATH, metavar="DIR", help="Where the pages of trials go. [default: runs]")
+@click.option("--prompts", type=PATH, metavar="DIR", help="Your own words for the roles.")
+@click.option("--concurrency", type=click.IntRange(1), help="Model calls at once, over all workers.")
+@click.option("--max-calls", type=click.IntRange(1), help="Of the whole study.")
+@click.option("--max-tokens", type=click.IntRange(1), help="Of the whole study.")
+@click.option("--max-usd", type=click.FloatRange(0, min_open=True), help="Of the whole study, where prices are known.")
+@click.option("--max-seconds", type=click.FloatRange(0, min_open=True), help="Of this command.")
+@click.option("--trial-max-calls", type=click.IntRange(1), help="Of one trial: it then fails at stage budget.")
+@click.option("--trial-max-usd", type=click.FloatRange(0, min_open=True), help="Of one trial.")
+@click.option("--json", "as_json", is_flag=True, help="Print one JSON document instead of text.")
+def command(**options: Any) -> int:
+    """Run methods and models over suites with controls; what ended stays in the store, and the same command resumes."""
+    from wonderful_team.studies import Study
+
+    study = Study.from_options(**options)
+    for note in study.notes:
+        click.echo(f"note: {note}", err=True)
+    if options["estimate"]:
+        estimate = study.estimate()
+        return finish("bench", text=estimate.text(), result=estimate.to_json(), as_json=options["as_json"], code=0)
+    ended = study.run(report=_tell)
+    code = 0 if not ended.why else BUDGET if "cap" in ended.why else INTERRUPTED
+    lines = study.lines()
+    if ended.why:
+        lines.append(f"stopped: {ended.why}")
+    lines.append(f"report: wonderful-team report {study.store}")
+    return finish("bench", text="\n".join(lines), result=study.to_json(ended), as_json=options["as_json"], code=code)
+
+
+def _tell(text: str, standing: Standing | None) -> None:
+    click.echo(text if standing is None else standing.line(), err=True)

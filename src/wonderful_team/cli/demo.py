@@ -1,0 +1,120 @@
+"""`demo`: the whole team at work on a rendered scene, with two planted mistakes that it has to catch."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from wonderful_team.cli.options import PATH
+from wonderful_team.cli.output import finish
+from wonderful_team.cli.report import program, shown_path, trial_json
+from wonderful_team.cli.wording import action_line, trial_exit_code, trial_lines
+
+if TYPE_CHECKING:
+    from wonderful_team.contracts import BoxAnswer, PlanDraft
+    from wonderful_team.made import RecordedTrial
+    from wonderful_team.types import Request
+
+WORLD = "tabletop/visual_manipulation"
+SEED = 7
+NEXT = (
+    "show latest --role verification",
+    "run tabletop/rotate --seed 3",
+    'plan YOUR_PHOTO.jpg "put the red cube to the left of the blue bowl"',
+)
+
+
+@click.command(short_help="Watch the team plan, catch two planted mistakes, and act, on a rendered scene.")
+@click.option("--seed", type=click.IntRange(0), default=SEED, show_default=True, help="Of the scene.")
+@click.option("--out", type=PATH, metavar="DIR", help="Where run folders go. [default: runs]")
+@click.option("--json", "as_json", is_flag=True, help="Print one JSON document instead of text.")
+@click.option("--open", "open_page", is_flag=True, help="Open the page when done.")
+def command(seed: int, out: Path | None, as_json: bool, open_page: bool) -> int:
+    """Run the team on a tabletop scene without a key, a GPU or a robot.
+
+    Two mistakes are planted and labelled INJECTED: a plan that does it the wrong way round, and a first box beside its
+    object. Verification and the Checker have to catch them.
+    """
+    from wonderful_team.api import Team, make_world, rollout
+    from wonderful_team.cli.progress import Progress, cost_line
+    from wonderful_team.models.wrappers import Injecting, Injection
+    from wonderful_team.registry import make_model, scene_name
+
+    progress = Progress()
+    injections = (
+        Injection(("DraftPlan",), swap_pictures, "the first plan does it the wrong way round"),
+        Injection(("GiveBox",), shift_first_box, "the first box lies beside its object"),
+    )
+    model = Injecting(make_model("offline"), injections)
+    progress.note(
+        "`offline` is classical vision and a grammar, not a vision-language model: it needs no key and no weights."
+    )
+    progress.note("Two mistakes are planted, labelled INJECTED: the team has to catch them.")
+    team = Team(
+        model=model, method="team:paper", out=out, subscribers=(progress,), command=f"wonderful-team demo --seed {seed}"
+    )
+    progress.header(team)
+    world = make_world(WORLD, seed)
+    try:
+        progress.note(f"{scene_name(WORLD, seed)}: {world.instruction.text}")
+        trial = rollout(team, world, replans=1, seed=seed, scene=scene_name(WORLD, seed))
+    finally:
+        world.close()
+    click.echo(cost_line(trial.usage, progress.seconds), err=True)
+    planted = [injection.label for injection in injections if injection.struck]
+    result = {**trial_json(trial), "injected": planted, "caught": caught(trial)}
+    text = "\n".join([*_story(trial, planted), "", "next:", *(f"  {program()} {line}" for line in NEXT)])
+    if open_page and trial.page is not None:
+        click.launch(trial.page.resolve().as_uri())
+    last = "" if trial.page is None else f"page: {shown_path(trial.page)}"
+    return finish("demo", text=text, result=result, as_json=as_json, code=trial_exit_code(trial), last_line=last)
+
+
+def swap_pictures(draft: PlanDraft, request: Request) -> PlanDraft | None:
+    """A wrong plan: the first two pictures that its first subgoal names change places."""
+    if not draft.subgoals:
+        return None
+    first = draft.subgoals[0]
+    names = list(dict.fromkeys(re.findall(r"\{\w+\}", first.text)))
+    if len(names) < 2:
+        return None
+    other = {names[0]: names[1], names[1]: names[0]}
+    text = re.sub(r"\{\w+\}", lambda match: other.get(match[0], match[0]), first.text)
+    return draft.model_copy(update={"subgoals": [first.model_copy(update={"text": text}), *draft.subgoals[1:]]})
+
+
+def shift_first_box(answer: BoxAnswer, request: Request) -> BoxAnswer | None:
+    """A wrong box for T1. Targets are looked for all at once: naming one keeps the demo the same every time."""
+    from wonderful_team.models.wrappers import shift_box
+
+    wrong: BoxAnswer | None = shift_box()(answer, request) if request.question.target.id == "T1" else None
+    return wrong
+
+
+def caught(trial: RecordedTrial) -> dict[str, list[str]]:
+    """What the checking members said against the planted mistakes: doubts that changed the plan, boxes not accepted."""
+    if not trial.plans:
+        return {"verification": [], "checker": []}
+    plan = trial.plans[0]
+    doubts = [f"{doubt.about}: {doubt.question} -> {doubt.answer}" for doubt in plan.questions if doubt.changed]
+    verdicts = []
+    for target, grounded in plan.grounded.items():
+        told = [event for event in grounded.history if event.what in ("verdict", "move")]
+        if any(event.provenance == "injected" for event in grounded.history):
+            verdicts += [f"{target}: {event.text}" for event in told]
+    return {"verification": doubts, "checker": verdicts}
+
+
+def _story(trial: RecordedTrial, planted: list[str]) -> list[str]:
+    found = caught(trial)
+    lines = [f"INJECTED  {label}" for label in planted]
+    lines += [f"CAUGHT    Verification on {text}" for text in found["verification"]]
+    lines += [f"CAUGHT    {text}" for text in found["checker"]]
+    if trial.plans:
+        plan = trial.plans[-1]
+        words = {target.id: target.words for target in plan.targets}
+        lines += [f"PLAN      {action_line(planned, words)}" for planned in plan.actions]
+    return [*lines, *trial_lines(trial)]

@@ -1,0 +1,141 @@
+"""`doctor`: is this machine ready, and if not, which command helps?"""
+
+from __future__ import annotations
+
+import os
+import shutil
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import click
+
+from wonderful_team.cli.options import PATH
+from wonderful_team.cli.output import finish
+from wonderful_team.cli.report import program
+from wonderful_team.errors import ConfigError
+
+KEYS = ("ANTHROPIC_API_KEY", "GEMINI_API_KEY", "GOOGLE_API_KEY", "OPENAI_API_KEY", "OPENROUTER_API_KEY")
+LEAST_FREE_MB = 200
+"""A run folder takes about 2 MB; a hundred runs are a day's work."""
+GL_PACKAGES = "apt-get install libegl1 libgl1-mesa-dri"
+
+
+@dataclass(frozen=True)
+class Finding:
+    """One thing looked at. `fix` is the command that helps; `ok` False makes doctor fail."""
+
+    name: str
+    ok: bool
+    text: str
+    fix: str = ""
+
+
+@click.command(short_help="Check this machine: versions, rendering, disk, keys, and what is missing.")
+@click.option("--out", type=PATH, metavar="DIR", help="Where run folders go. [default: runs]")
+@click.option("--json", "as_json", is_flag=True, help="Print one JSON document instead of text.")
+def command(out: Path | None, as_json: bool) -> int:
+    """Check this machine in a few seconds: versions, rendering, drawing, the sandbox, disk, keys."""
+    checks: tuple[Callable[[], Finding], ...] = (_versions, _rendering, _drawing, _sandbox, lambda: _disk(out), _keys)
+    findings = [_guarded(check) for check in checks]
+    ok = all(finding.ok for finding in findings)
+    lines = [f"{'ok ' if item.ok else 'BAD'}  {item.name:<10} {item.text}" for item in findings]
+    lines += [f"     to mend {item.name}: {item.fix}" for item in findings if item.fix]
+    lines.append(f"ready: {program()} demo" if ok else "not ready: see the lines marked BAD")
+    result = {"ready": ok, "findings": [vars(finding) for finding in findings]}
+    return finish("doctor", text="\n".join(lines), result=result, as_json=as_json, code=0 if ok else 2)
+
+
+def _guarded(check: Callable[[], Finding]) -> Finding:
+    """A check that fails is a finding, so that the others are still seen."""
+    try:
+        return check()
+    except Exception as error:  # noqa: BLE001  whatever goes wrong here is what doctor is for
+        name = getattr(check, "__name__", "disk").strip("_").replace("<lambda>", "disk")
+        return Finding(name, False, f"{type(error).__name__}: {error}", "pip install --force-reinstall wonderful-team")
+
+
+def _versions() -> Finding:
+    from wonderful_team.runtime.versions import versions
+
+    found = versions()
+    missing = [name for name, version in found.items() if version is None and name != "commit"]
+    text = ", ".join(f"{name} {version}" for name, version in found.items() if version is not None)
+    return Finding("versions", not missing, text, f"pip install {' '.join(missing)}" if missing else "")
+
+
+def _rendering() -> Finding:
+    from wonderful_team.registry import make_world
+
+    started = time.monotonic()
+    world = make_world("tabletop/visual_manipulation", seed=1)
+    try:
+        view = world.observe().main
+        how = str(getattr(world, "renderer", "unknown"))
+    finally:
+        world.close()
+    seconds = time.monotonic() - started
+    if int(view.rgb.std()) < 1:
+        return Finding("rendering", False, f"{how}: the picture is blank", GL_PACKAGES)
+    by_rays = "ray" in how
+    text = f"by {how}: a scene of {view.size_px[0]} x {view.size_px[1]} px in {seconds:.1f} s"
+    return Finding("rendering", True, text, f"{GL_PACKAGES} (optional: OpenGL is faster)" if by_rays else "")
+
+
+def _drawing() -> Finding:
+    import numpy as np
+
+    from wonderful_team.images import draw, whole
+    from wonderful_team.pictures import Axes
+    from wonderful_team.types import View
+
+    picture = whole(View("v", "v", 0.0, np.full((128, 256, 3), 128, np.uint8)), "test", marks=(Axes(),))
+    started = time.monotonic()
+    changed = int((draw(picture) != picture.rgb).any(axis=2).sum())
+    milliseconds = 1000 * (time.monotonic() - started)
+    return Finding(
+        "drawing", changed > 0, f"axes drawn on {picture.size_px[0]} x {picture.size_px[1]} px in {milliseconds:.0f} ms"
+    )
+
+
+def _sandbox() -> Finding:
+    from wonderful_team.geometry import Box
+    from wonderful_team.sandbox import SandboxError, run_path
+
+    boxes = {"T1": Box(10, 10, 20, 20)}
+    points = run_path("def path(boxes):\n    x0, y0, x1, y1 = boxes['T1']\n    return [(x0, y0), (x1, y1)]\n", boxes)
+    try:
+        run_path("def path(boxes):\n    return open('/etc/hostname').read()\n", boxes)
+    except SandboxError:
+        return Finding("sandbox", len(points) == 2, "runs a path, refuses to open a file")
+    return Finding(
+        "sandbox",
+        False,
+        "opened a file: code of models must not run here",
+        "pip install --force-reinstall pydantic-monty",
+    )
+
+
+def _disk(out: Path | None) -> Finding:
+    from wonderful_team.runs import runs_folder
+
+    root = runs_folder(out)
+    try:
+        root.mkdir(parents=True, exist_ok=True)
+        probe = root / f".doctor-{os.getpid()}"
+        probe.write_text("x", encoding="utf-8")
+        probe.unlink()
+    except OSError as error:
+        raise ConfigError(f"runs folder {str(root)!r} cannot be written: {error.strerror}") from error
+    free_mb = shutil.disk_usage(root).free // 1_000_000
+    text = f"{root}: writable, {free_mb:,} MB free"
+    return Finding(
+        "disk", free_mb >= LEAST_FREE_MB, text, "" if free_mb >= LEAST_FREE_MB else "use --out DIR on another disk"
+    )
+
+
+def _keys() -> Finding:
+    found = [name for name in KEYS if os.environ.get(name)]
+    text = f"{', '.join(found)} set" if found else "none set"
+    return Finding("keys", True, f"{text} (this release never uses one: offline needs none)")

@@ -1,0 +1,70 @@
+"""`ground`: find described things in a picture."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import click
+
+from wonderful_team.cli.options import PATH, Common, common
+
+
+@click.command(
+    short_help="Find things in a picture: boxes and points.",
+    epilog='\b\nwonderful-team ground desk.jpg "red cube" "the largest bowl" --area "free area left of the bowl"',
+)
+@click.argument("image", type=PATH)
+@click.argument("descriptions", nargs=-1, metavar="DESCRIPTION...")
+@click.option("--area", multiple=True, metavar="DESCRIPTION", help="A free area instead of an object; may be repeated.")
+@click.option("--coco", type=PATH, metavar="OUT.json", help="Write the boxes in COCO format.")
+@common
+def command(
+    common: Common, image: Path, descriptions: tuple[str, ...], area: tuple[str, ...], coco: Path | None
+) -> int:
+    """Find each described thing: a box and points, or that it is not there."""
+    if not (descriptions or area):
+        raise click.UsageError("say what to look for: at least one DESCRIPTION or --area DESCRIPTION")
+    from wonderful_team.api import Team
+    from wonderful_team.cli.progress import Progress
+    from wonderful_team.cli.report import report_plan
+    from wonderful_team.observe import Observation
+
+    observation = Observation.from_files(image)
+    progress = Progress()
+    team = Team(**common.team_arguments(), subscribers=(progress,))
+    progress.header(team)
+    made = team.ground(observation, descriptions, area)
+    if coco is not None:
+        _write(coco, coco_document(image, observation.main.size_px, made.targets))
+    return report_plan("ground", made, common, progress)
+
+
+def coco_document(image: Path, size_px: tuple[int, int], targets: Any) -> dict[str, Any]:
+    """Found boxes in COCO format: [x, y, width, height] [px], one category for each description."""
+    boxed = [target for target in targets if target.box_px is not None and target.status == "found"]
+    names = list(dict.fromkeys(target.words for target in boxed))
+    return {
+        "images": [{"id": 1, "file_name": image.name, "width": size_px[0], "height": size_px[1]}],
+        "categories": [{"id": number, "name": name} for number, name in enumerate(names, start=1)],
+        "annotations": [
+            {
+                "id": number,
+                "image_id": 1,
+                "category_id": names.index(target.words) + 1,
+                "bbox": [x0, y0, x1 - x0, y1 - y0],
+                "area": (x1 - x0) * (y1 - y0),
+                "iscrowd": 0,
+            }
+            for number, target in enumerate(boxed, start=1)
+            for x0, y0, x1, y1 in [target.box_px]
+        ],
+    }
+
+
+def _write(path: Path, document: dict[str, Any]) -> None:
+    try:
+        path.write_text(json.dumps(document, indent=1), encoding="utf-8")
+    except OSError as error:
+        raise click.UsageError(f"--coco {str(path)!r}: {error.strerror}") from error

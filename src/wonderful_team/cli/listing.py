@@ -1,0 +1,101 @@
+"""`list`: what there is to choose from."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from pathlib import Path
+
+import click
+
+from wonderful_team.cli.options import PATH
+from wonderful_team.cli.output import finish
+from wonderful_team.errors import ConfigError
+
+KINDS = ("models", "worlds", "tasks", "methods", "prompts", "runs")
+
+
+@click.command(name="list", short_help="List models, worlds, tasks, methods, prompts or runs.")
+@click.argument("kind", type=click.Choice(KINDS))
+@click.option(
+    "--out", type=PATH, metavar="DIR", help="For runs: where they lie. For prompts: write them there, to edit."
+)
+@click.option("--json", "as_json", is_flag=True, help="Print one JSON document instead of text.")
+def command(kind: str, out: Path | None, as_json: bool) -> int:
+    """List models, worlds, tasks, methods, prompts or runs, each with a line of help."""
+    lists: Mapping[str, Callable[[Path | None], dict[str, str]]] = {
+        "models": _models,
+        "worlds": _worlds,
+        "tasks": _tasks,
+        "methods": _methods,
+        "prompts": _prompts,
+        "runs": _runs,
+    }
+    found = lists[kind](out)
+    width = max((len(name) for name in found), default=0)
+    text = "\n".join(f"{name:<{width}}  {words}".rstrip() for name, words in found.items()) or f"no {kind}"
+    return finish("list", text=text, result={kind: found}, as_json=as_json, code=0)
+
+
+def _models(out: Path | None) -> dict[str, str]:
+    from wonderful_team.models.profiles import saved_profiles
+    from wonderful_team.registry import MODEL_FORMS, MODELS
+
+    saved = {name: held if isinstance(held, str) else held.line for name, held in saved_profiles().items()}
+    return {**MODELS, **saved, **MODEL_FORMS}
+
+
+def _worlds(out: Path | None) -> dict[str, str]:
+    from wonderful_team.registry import WORLDS
+
+    return {
+        **WORLDS,
+        "FILE.py:NAME": "your own: a class with the World interface, or a task made with wonderful_team.task",
+    }
+
+
+def _tasks(out: Path | None) -> dict[str, str]:
+    from wonderful_team.registry import task_names
+
+    return task_names()
+
+
+def _methods(out: Path | None) -> dict[str, str]:
+    from wonderful_team.registry import METHODS
+
+    return {**METHODS, "FILE.py:NAME": "your own: a class with the Policy interface"}
+
+
+def _prompts(out: Path | None) -> dict[str, str]:
+    from wonderful_team.agents import Prompts
+
+    files = Prompts.default().files()
+    if out is None:
+        return {name: text.strip().partition("\n")[0] for name, text in files.items()}
+    try:
+        out.mkdir(parents=True, exist_ok=True)
+        for name, text in files.items():
+            path = out / name
+            if path.exists() and path.read_text(encoding="utf-8") != text:
+                raise ConfigError(f"--out: {str(path)!r} exists with other words; choose an empty folder")
+            path.write_text(text, encoding="utf-8")
+    except OSError as error:
+        raise ConfigError(f"--out {str(out)!r}: {error.strerror}") from error
+    return {str(out / name): "written" for name in files}
+
+
+def _runs(out: Path | None) -> dict[str, str]:
+    from wonderful_team.runs import all_runs
+    from wonderful_team.runtime.page.write import read_record
+
+    found = {}
+    for folder in all_runs(out):
+        try:
+            content = read_record(folder)
+        except ConfigError:
+            found[folder.name] = "record unreadable"
+            continue
+        outcome = content.get("outcome") or {}
+        found[folder.name] = " ".join(str(outcome.get(key) or "") for key in ("outcome", "reason")).strip() or str(
+            content.get("state", "")
+        )
+    return found

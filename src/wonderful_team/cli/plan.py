@@ -1,0 +1,85 @@
+"""`plan`: pictures and an instruction to a plan; nothing moves."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from wonderful_team.cli.options import PATH, Common, common, read_pairs
+
+
+@click.command(
+    short_help="Plan from pictures and an instruction; nothing moves.",
+    epilog='\b\nwonderful-team plan desk.jpg "put the red cube to the left of the blue bowl"'
+    '\nwonderful-team plan desk.jpg "put {this} into the bowl" --picture this=cube.png',
+)
+@click.argument("words", nargs=-1, metavar="IMAGE... INSTRUCTION")
+@click.option(
+    "--picture",
+    multiple=True,
+    metavar="NAME=FILE",
+    help="A picture for {NAME} in the instruction (NAME:scene=FILE for a scene).",
+)
+@click.option(
+    "--depth", type=PATH, metavar="FILE", help="Depth of the first image: 16-bit PNG in mm, or .npy in metres."
+)
+@click.option("--camera", type=PATH, metavar="FILE", help="Camera file (JSON) of the first image: gives metres.")
+@click.option(
+    "--corners",
+    metavar='"x,y x,y x,y x,y=WxH"',
+    help="The table's corners in the first image, clockwise from the top left, and its size in metres.",
+)
+@click.option(
+    "--vocabulary",
+    type=click.Choice(["pick_place", "push", "arm"]),
+    default="pick_place",
+    show_default=True,
+    help="Kinds of action.",
+)
+@click.option(
+    "--until",
+    type=click.Choice(["draft", "checked", "grounded", "actions"]),
+    default="actions",
+    show_default=True,
+    help="Stop early.",
+)
+@click.option("--keep-out", multiple=True, metavar="[NAME=]x0,y0,x1,y1[px|m]", help="A region nothing may enter.")
+@common
+def command(
+    common: Common,
+    words: tuple[str, ...],
+    picture: tuple[str, ...],
+    depth: Path | None,
+    camera: Path | None,
+    corners: str | None,
+    vocabulary: str,
+    until: str,
+    keep_out: tuple[str, ...],
+) -> int:
+    """Plan for photos of a workspace: subgoals, targets, boxes and points, actions.
+
+    Without --camera or --corners the plan is in pixels; with one of them also in metres.
+    """
+    if len(words) < 2:
+        raise click.UsageError("at least one IMAGE and then the INSTRUCTION are needed")
+    from wonderful_team.api import Team
+    from wonderful_team.cli.progress import Progress
+    from wonderful_team.cli.report import report_plan
+    from wonderful_team.observe import Observation
+    from wonderful_team.photos import instruction_with_pictures, read_keep_out
+
+    *files, text = words
+    observation = Observation.from_files(*files, depth=depth, camera=camera, corners=corners)
+    instruction = instruction_with_pictures(text, read_pairs(picture, "--picture"))
+    progress = Progress()
+    team = Team(**common.team_arguments(), subscribers=(progress,))
+    progress.header(team)
+    made = team.plan(
+        observation,
+        instruction,
+        vocabulary=vocabulary,
+        until=until,  # type: ignore[arg-type]  # click has checked the choice
+        keep_out=read_keep_out(keep_out),
+    )
+    return report_plan("plan", made, common, progress)

@@ -1,0 +1,104 @@
+"""`run`: plan, pass the gate, act in a world, look, replan."""
+
+from __future__ import annotations
+
+import getpass
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from wonderful_team.cli.options import PATH, Common, common
+from wonderful_team.runs import find_run
+
+if TYPE_CHECKING:
+    from wonderful_team.runtime import Approver
+    from wonderful_team.types import GateReport, Plan, PlannedAction
+
+
+@click.command(
+    short_help="Plan, pass the gate, act in a world, look, replan.",
+    epilog="\b\nwonderful-team run tabletop/rotate --seed 3\nwonderful-team run tabletop/rotate --seed 3 --approve\n"
+    "wonderful-team run tabletop/rotate --seed 3 --plan latest",
+)
+@click.argument("world", metavar="WORLD/TASK")
+@click.argument("instruction", required=False)
+@click.option(
+    "--seed", type=click.IntRange(0), default=0, show_default=True, help="Of the scene; below 1000 for development."
+)
+@click.option("--plan", "plan_run", metavar="RUN", help="Run the plan of an earlier run, exactly as it was read.")
+@click.option("--replans", type=click.IntRange(0), default=3, show_default=True, help="Plans after the first.")
+@click.option("--approve", is_flag=True, help="Ask before anything moves.")
+@click.option("--video", type=PATH, metavar="FILE", help="Write an animation of the run (.webp, .gif or .png).")
+@common
+def command(
+    common: Common,
+    world: str,
+    instruction: str | None,
+    seed: int,
+    plan_run: str | None,
+    replans: int,
+    approve: bool,
+    video: Path | None,
+) -> int:
+    """Run a method in a world: WORLD/TASK such as tabletop/rotate, or FILE.py:NAME.
+
+    An INSTRUCTION takes the place of the task's own; the task's scorer is then left out.
+    """
+    from wonderful_team.api import Method, Team, make_world, rollout
+    from wonderful_team.cli.progress import Progress
+    from wonderful_team.cli.report import report_trial
+    from wonderful_team.cli.video import Film, check_video_name
+    from wonderful_team.registry import scene_name, team_way
+    from wonderful_team.runtime import read_plan
+
+    if video is not None:
+        check_video_name(video)
+    plan = read_plan(find_run(plan_run, common.out)) if plan_run is not None else None
+    kind = Method if team_way(common.method) is None else Team
+    progress = Progress()
+    method = kind(**common.team_arguments(), subscribers=(progress,))
+    place = make_world(world, seed, instruction)
+    try:
+        film = Film() if video is not None else None
+        progress.header(method)
+        progress.note(f"{scene_name(world, seed)}: {place.instruction.text}")
+        trial = rollout(
+            method,
+            place,
+            plan=plan,
+            replans=replans,
+            approval=ask_person() if approve else None,
+            seed=seed,
+            scene=scene_name(world, seed),
+            subscribers=() if film is None else (film,),
+        )
+    finally:
+        place.close()
+    if film is not None and video is not None:
+        film.write(video)
+        progress.note(f"video: {video} ({len(film.frames)} pictures)")
+    return report_trial("run", trial, common, progress, {"video": None if video is None else str(video)})
+
+
+def ask_person() -> Approver:
+    """A function that shows a plan and asks for consent on the terminal; no answer is a no."""
+    from wonderful_team.cli.wording import action_line
+    from wonderful_team.runtime import Approval, actions_id
+
+    def ask(plan: Plan | None, actions: Sequence[PlannedAction], gate: GateReport) -> Approval | None:
+        words = {} if plan is None else {target.id: target.words for target in plan.targets}
+        click.echo(f"The gate admits {len(actions)} actions ({len(gate.checks)} checks):", err=True)
+        for planned in actions:
+            click.echo(f"  {action_line(planned, words)}", err=True)
+        try:
+            agreed = click.confirm("Run this plan?", default=False, err=True)
+        except click.Abort as error:
+            # click says the same for Ctrl-C and for the end of input; only the latter means that nobody is there.
+            if isinstance(error.__context__, KeyboardInterrupt):
+                raise KeyboardInterrupt from error
+            return None
+        return Approval(actions_id(actions) if plan is None else plan.id, getpass.getuser()) if agreed else None
+
+    return ask

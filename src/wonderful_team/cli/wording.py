@@ -1,0 +1,118 @@
+"""A plan, a grounding or a trial in a few lines of text, and the exit code that says how it ended."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from wonderful_team.actions import Action, PickPlace, Place, Step, places_of
+from wonderful_team.made import FoundTarget, MadePlan, RecordedTrial
+from wonderful_team.types import PlannedAction
+
+EXIT_OF_STATUS: dict[str, int] = {
+    "planned": 0,
+    "draft": 0,
+    "checked": 0,
+    "grounded": 0,
+    "not_found": 1,
+    "refused": 1,
+    "failed": 1,
+    "budget": 5,
+    "not_understood": 7,
+    "needs_clarification": 7,
+}
+EXIT_OF_STAGE: dict[str, int] = {"gate": 4, "budget": 5}
+
+
+def plan_exit_code(made: MadePlan) -> int:
+    """The exit code of `plan` and `ground`."""
+    if made.gate is not None and not made.gate.admitted:
+        return 4
+    return EXIT_OF_STATUS[made.status]
+
+
+def trial_exit_code(trial: RecordedTrial) -> int:
+    """The exit code of `run`: an unscored trial that reached its end counts as done."""
+    if trial.outcome == "success" or (trial.outcome == "unscored" and trial.stage is None):
+        return 0
+    if trial.outcome == "error":
+        return 3
+    if any(report.fault for report in trial.reports) and trial.stage == "execution":
+        return 6
+    status = trial.plans[-1].status if trial.plans else ""
+    return EXIT_OF_STAGE.get(trial.stage or "", EXIT_OF_STATUS.get(status, 1) or 1)
+
+
+def plan_lines(made: MadePlan) -> list[str]:
+    """What `plan` prints: how it ended, then what would run."""
+    lines = []
+    if made.status not in ("planned", "grounded", "checked", "draft"):
+        ending = made.status.replace("_", " ")
+        said = made.message.removeprefix(f"{ending}: ").partition(" Choices: ")[0]
+        lines.append(f"{ending.upper()}  {said}")
+        lines += [f"  choice: {choice}" for choice in made.choices]
+    elif made.message:
+        lines.append(made.message)
+    if made.gate is not None and not made.gate.admitted:
+        lines += [f"REFUSED by the safety gate  {reason}" for reason in made.gate.reasons]
+    if made.actions:
+        words = {target.id: target.words for target in made.targets}
+        lines += [f"PLAN  {action_line(planned, words)}" for planned in made.actions]
+    else:
+        lines += [f"GOAL  {subgoal.id} {subgoal.text}" for subgoal in made.subgoals]
+        lines += [target_line(target) for target in made.targets]
+    if made.status == "planned" and not made.verified:
+        lines.append("note: Verification did not approve this plan (--strict refuses such plans)")
+    return lines
+
+
+def target_line(target: FoundTarget) -> str:
+    """One target: id, words, box and points."""
+    box = "" if target.box_px is None else "  box ({:.0f}, {:.0f}, {:.0f}, {:.0f}) px".format(*target.box_px)
+    points = "".join(f"  {role} ({x:.0f}, {y:.0f}) px" for role, (x, y) in target.points_px.items())
+    status = {"gave_up": "gave up", "absent": "not here", "not_grounded": "not looked for"}.get(
+        target.status, target.status
+    )
+    return f"{target.id}  {target.words}  {status}{box}{points}"
+
+
+def action_line(planned: PlannedAction, words: Mapping[str, str]) -> str:
+    """One action: kind, its targets (`words` by id) with their pixels, metres where there are any."""
+    pixels = {(source.role, source.target): source.point_px for source in planned.sources}
+    ends = []
+    for role, place in places_of(planned.step):
+        point = pixels.get((role, place.target))
+        at = "" if point is None else f" @ ({point[0]:.0f}, {point[1]:.0f}) px"
+        ends.append(f"{_place_words(place)} {words.get(place.target, '')}".rstrip() + at)
+    return f"{planned.step.kind}  {'  ->  '.join(ends) or '-'}{_turn(planned.step)}{_metres(planned.action)}"
+
+
+def _place_words(place: Place) -> str:
+    side = getattr(place, "side", None)
+    if side is not None:
+        return f"{side} of {place.target}" if side in ("left", "right") else f"{side} {place.target}"
+    return f"origin of {place.target}" if type(place).__name__ == "OriginOf" else place.target
+
+
+def _turn(step: Step) -> str:
+    degrees = getattr(step, "rotate_deg", 0.0)
+    return f"  turned {degrees:+g} deg clockwise" if degrees else ""
+
+
+def _metres(action: Action | None) -> str:
+    if not isinstance(action, PickPlace):
+        return ""
+    pick, place = ("({:.3f}, {:.3f}, {:.3f})".format(*point) for point in (action.pick_m, action.place_m))
+    return f"  {pick} -> {place} m"
+
+
+def trial_lines(trial: RecordedTrial) -> list[str]:
+    """What `run` prints: outcome, stage, reason, and how every subgoal went."""
+    stage = f" at {trial.stage}" if trial.stage else ""
+    lines = [f"{trial.outcome.upper()}{stage}  {trial.reason}"]
+    lines += [
+        f"  {verdict.subgoal} {verdict.status.replace('_', ' ')}" + (f": {verdict.cause}" if verdict.cause else "")
+        for verdict in trial.verdicts
+    ]
+    executed = sum(report.executed for report in trial.reports)
+    lines.append(f"  {len(trial.plans)} plan{'s' * (len(trial.plans) != 1)}, {executed} actions executed")
+    return lines

@@ -1,0 +1,168 @@
+"""What the Python face hands back: a plan, a grounding or a trial, with its cost and its page."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from wonderful_team.jsonable import to_jsonable
+from wonderful_team.types import GateReport, Observation, Plan, PlannedAction, Subgoal, Target, Trial, Usage
+
+PAGE_NAME = "page.html"
+
+
+@dataclass(frozen=True)
+class FoundTarget:
+    """A target with its place in the main picture; all coordinates are pixels of that picture.
+
+    Attributes:
+        status: found | absent | gave_up | not_grounded (planning stopped before it was looked for).
+        box_px: (x0, y0, x1, y1), or None.
+        points_px: Action points by role, such as pick and place.
+    """
+
+    id: str
+    kind: str
+    words: str
+    status: str
+    box_px: tuple[float, float, float, float] | None = None
+    points_px: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+
+    @property
+    def point_px(self) -> tuple[float, float] | None:
+        """The first action point, or None."""
+        return next(iter(self.points_px.values()), None)
+
+
+@dataclass(frozen=True, eq=False)
+class MadePlan:
+    """A plan with what it cost and where its page lies.
+
+    Attributes:
+        plan: The whole plan.
+        observation: What it was made from.
+        gate: What the safety gate says of its actions; None when there are none.
+        usage_by_role: Cost by role.
+        seconds: How long planning took, on the wall clock.
+        folder: The run folder; None when nothing was recorded.
+    """
+
+    plan: Plan
+    observation: Observation
+    gate: GateReport | None = None
+    usage_by_role: Mapping[str, Usage] = field(default_factory=dict)
+    seconds: float = 0.0
+    folder: Path | None = None
+
+    @property
+    def id(self) -> str:
+        return self.plan.id
+
+    @property
+    def status(self) -> str:
+        """Planned | draft | checked | grounded | not_found | not_understood | needs_clarification | refused | budget | failed."""
+        return self.plan.status
+
+    @property
+    def message(self) -> str:
+        """Why it ended so, in a sentence."""
+        return self.plan.message
+
+    @property
+    def verified(self) -> bool:
+        """Whether Verification approved it."""
+        return self.plan.verified
+
+    @property
+    def choices(self) -> tuple[str, ...]:
+        """What may be meant, when clarification is needed."""
+        return self.plan.choices
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        return self.plan.warnings
+
+    @property
+    def subgoals(self) -> tuple[Subgoal, ...]:
+        return self.plan.subgoals
+
+    @property
+    def actions(self) -> tuple[PlannedAction, ...]:
+        return self.plan.actions
+
+    @property
+    def targets(self) -> tuple[FoundTarget, ...]:
+        """Every target, found or not, in the order of the plan."""
+        return tuple(_found(target, self.plan) for target in self.plan.targets)
+
+    @property
+    def usage(self) -> Usage:
+        """Calls, pictures, tokens, money and seconds over all roles."""
+        return sum(self.usage_by_role.values(), Usage())
+
+    @property
+    def page(self) -> Path | None:
+        """The run's page."""
+        return None if self.folder is None else self.folder / PAGE_NAME
+
+    def to_json(self) -> dict[str, Any]:
+        """A JSON-ready summary; the whole plan stands in the run folder's plan.json."""
+        return {
+            "plan_id": self.id,
+            "status": self.status,
+            "message": self.message,
+            "choices": list(self.choices),
+            "verified": self.verified,
+            "subgoals": to_jsonable(self.subgoals),
+            "targets": [target_json(target) for target in self.targets],
+            "actions": to_jsonable(self.actions),
+            "questions": to_jsonable(self.plan.questions),
+            "gate": None if self.gate is None else {"admitted": self.gate.admitted, "reasons": list(self.gate.reasons)},
+            "warnings": list(self.warnings),
+            **cost_json(self.usage, self.usage_by_role, self.folder),
+            "seconds": round(self.seconds, 3),
+        }
+
+
+@dataclass(frozen=True, eq=False)
+class RecordedTrial(Trial):
+    """A trial that knows its run folder."""
+
+    folder: Path | None = None
+
+    @property
+    def page(self) -> Path | None:
+        """The run's page."""
+        return None if self.folder is None else self.folder / PAGE_NAME
+
+
+def target_json(target: FoundTarget) -> dict[str, Any]:
+    """A target as JSON."""
+    return {
+        "id": target.id,
+        "kind": target.kind,
+        "words": target.words,
+        "status": target.status,
+        "box_px": to_jsonable(target.box_px),
+        "points_px": to_jsonable(target.points_px),
+    }
+
+
+def cost_json(usage: Usage, by_role: Mapping[str, Usage], folder: Path | None) -> dict[str, Any]:
+    """Cost and place of a run as JSON."""
+    return {
+        "usage": to_jsonable(usage),
+        "usage_by_role": {role: to_jsonable(spent) for role, spent in by_role.items()},
+        "folder": None if folder is None else str(folder),
+        "page": None if folder is None else str(folder / PAGE_NAME),
+    }
+
+
+def _found(target: Target, plan: Plan) -> FoundTarget:
+    grounded = plan.grounded.get(target.id)
+    if grounded is None:
+        return FoundTarget(target.id, target.kind, target.words, "not_grounded")
+    box = None if grounded.box is None else grounded.box.as_tuple
+    return FoundTarget(target.id, target.kind, target.words, grounded.status, box, dict(grounded.points))

@@ -1,0 +1,318 @@
+"""Names to things: models, methods, worlds and tasks. The only place where a string picks an implementation.
+
+Every kind also takes `FILE.py:Name`. Truth leaves a simulator only through `privileged`, and only for scorers.
+"""
+
+from __future__ import annotations
+
+import importlib
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Literal, cast
+
+from wonderful_team.actions import Action, Vocabulary
+from wonderful_team.errors import ConfigError, UnknownNameError
+from wonderful_team.interfaces import Model, Policy, Privileged, World
+from wonderful_team.loading import build, is_file_name, load_from_file
+from wonderful_team.types import Instruction, Limits, Observation, StepReport
+
+if TYPE_CHECKING:
+    from wonderful_team.models.door import Door
+    from wonderful_team.models.providers import ModelOptions
+
+MODELS: dict[str, str] = {"offline": "classical vision and a grammar: no key, no weights, no network; not a VLM"}
+MODEL_FORMS: dict[str, str] = {
+    "openai:NAME": "OpenAI (Responses); openai-chat:NAME for Chat Completions; key in OPENAI_API_KEY",
+    "anthropic:NAME": "Anthropic; key in ANTHROPIC_API_KEY",
+    "google:NAME": "Google Gemini; key in GOOGLE_API_KEY or GEMINI_API_KEY",
+    "openrouter:NAME": "OpenRouter; key in OPENROUTER_API_KEY",
+    "VENDOR:NAME@URL": "the same interface at another address",
+    "http://HOST:8000/v1[#NAME]": "any OpenAI-compatible server; without #NAME it is asked which model it has",
+    "FILE.py:NAME": "your own: anything with answer(request)",
+}
+SETTINGS = tuple(f"s{number}" for number in range(1, 9))
+METHODS: dict[str, str] = {
+    "team": "the whole team, lean: few waiting rounds, the paper's loop only for boxes that fail",
+    "team:paper": "the whole team, the algorithms as published",
+    **{f"team:{name}": f"the lean team in the paper's ablation setting {name[1:]}" for name in SETTINGS},
+    **{f"team:paper:{name}": f"the published algorithms in ablation setting {name[1:]}" for name in SETTINGS},
+}
+WORLDS: dict[str, str] = {"tabletop": "MuJoCo table, 1.0 x 0.5 m, suction, top and front cameras with depth"}
+DEFAULT_ROLE = "*"
+
+
+# -- models --------------------------------------------------------------------------------------------------------
+
+
+def make_model(model: str | Model, options: ModelOptions | None = None, role: str = DEFAULT_ROLE) -> Model:
+    """The model that a name means; an object with `answer(request)` is a model already.
+
+    Args:
+        model: `offline`, a name saved by `probe --save`, one of MODEL_FORMS, or an object.
+        options: Thinking, prices and where models may be.
+        role: Whose options count.
+
+    Raises:
+        ConfigError: The name means nothing that exists, its file has no such model, or a key is missing.
+        ModelUnavailableError: A server that was to be asked for its models does not answer.
+    """
+    if not isinstance(model, str):
+        if not callable(getattr(model, "answer", None)):
+            raise ConfigError(f"a model needs a method answer(request); {type(model).__name__} has none")
+        return model
+    if is_file_name(model):
+        made = build(load_from_file(model, "model"), {}, f"model {model!r}")
+        return make_model(made)
+    from wonderful_team.models.profiles import load_profile, profile_names
+    from wonderful_team.models.providers import ModelOptions, is_provider_spec, make_provider
+
+    asked = options or ModelOptions()
+    profile = load_profile(model) if model in profile_names() else None
+    spec = model if profile is None else profile.model
+    if is_provider_spec(spec):
+        thinking, price = asked.thinking_of(role), asked.price_of(role)
+        made = make_provider(spec, profile=profile, thinking=thinking, price=price, local_only=asked.local_only)
+        return cast(Model, made)
+    if profile is not None:
+        return make_model(spec, options, role)
+    if model not in MODELS:
+        raise UnknownNameError("model", model, [*MODELS, *profile_names(), *MODEL_FORMS])
+    return cast(Model, importlib.import_module("wonderful_team.models.offline").OfflineModel())
+
+
+def make_models(
+    model: str | Model | Mapping[str, str | Model], roles: Sequence[str], options: ModelOptions | None = None
+) -> dict[str, Model]:
+    """One model for every role.
+
+    Args:
+        model: One model for all roles, or a model for each role; key "*" is for the roles not named.
+        roles: All roles there are.
+        options: Thinking and prices by role, and where models may be.
+
+    Raises:
+        UnknownNameError: A role that does not exist.
+        ConfigError: A role is left without a model.
+    """
+    wanted: Mapping[str, str | Model] = model if isinstance(model, Mapping) else {DEFAULT_ROLE: model}
+    for role in wanted:
+        if role not in (*roles, DEFAULT_ROLE):
+            raise UnknownNameError("role", role, roles)
+    left_out = [role for role in roles if role not in wanted]
+    if left_out and DEFAULT_ROLE not in wanted:
+        raise ConfigError(
+            f"no model for: {', '.join(left_out)}; give one for all roles beside the ones for {', '.join(wanted)}"
+        )
+    # Roles that share a name and its options share one model, and so its connections.
+    made: dict[tuple[Any, ...], Model] = {}
+    models = {}
+    for role in roles:
+        named = wanted.get(role, wanted.get(DEFAULT_ROLE))
+        assert named is not None
+        how = () if options is None else (options.thinking_of(role), options.price_of(role))
+        key = (named if isinstance(named, str) else id(named), *how)
+        if key not in made:
+            made[key] = make_model(named, options, role)
+        models[role] = made[key]
+    return models
+
+
+def model_label(model: str | Model | Mapping[str, str | Model]) -> str:
+    """How records and pages name the model."""
+    if isinstance(model, Mapping):
+        return ", ".join(
+            model_label(name) if role == DEFAULT_ROLE else f"{role}={model_label(name)}" for role, name in model.items()
+        )
+    return model if isinstance(model, str) else str(getattr(model, "name", type(model).__name__))
+
+
+# -- methods -------------------------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class TeamWay:
+    """What a `team…` name means: the way of working and which members are switched off."""
+
+    way: Literal["lean", "paper"]
+    setting: str
+
+
+def team_way(name: str) -> TeamWay | None:
+    """What a method's name says about the team; None when it does not name the team.
+
+    Raises:
+        UnknownNameError: It starts with "team" but is not one of METHODS.
+    """
+    if is_file_name(name):
+        return None
+    if name not in METHODS:
+        raise UnknownNameError("method", name, [*METHODS, "FILE.py:NAME"])
+    words = name.split(":")
+    setting = words[-1] if words[-1] in SETTINGS else "full"
+    return TeamWay("paper" if "paper" in words else "lean", setting)
+
+
+def load_method(name: str, door: Door) -> Policy:
+    """A method from a user's file. Its class may ask for `door` by parameter name: questions asked there are budgeted and recorded.
+
+    Raises:
+        ConfigError: The object has no `decide(situation)` or no name.
+    """
+    made = build(load_from_file(name, "method"), {"door": door}, f"method {name!r}")
+    if not callable(getattr(made, "decide", None)):
+        raise ConfigError(f"method {name!r} needs a method decide(situation); {type(made).__name__} has none")
+    if not isinstance(getattr(made, "name", None), str):
+        raise ConfigError(f"method {name!r} needs an attribute `name` (a string), for records and pages")
+    return cast(Policy, made)
+
+
+# -- worlds --------------------------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, eq=False)
+class OwnWorld:
+    """A user's world made whole: an instruction from outside, and what it left out (`stop`, `close`) as no-ops.
+
+    Replacing the instruction also drops the scorer: it judges the instruction that the world came with.
+    """
+
+    inner: Any
+    instruction: Instruction
+
+    @property
+    def vocabulary(self) -> Vocabulary:
+        return cast(Vocabulary, self.inner.vocabulary)
+
+    @property
+    def limits(self) -> Limits:
+        return cast(Limits, self.inner.limits)
+
+    def observe(self) -> Observation:
+        return cast(Observation, self.inner.observe())
+
+    def execute(self, action: Action) -> StepReport:
+        return cast(StepReport, self.inner.execute(action))
+
+    def stop(self) -> None:
+        if hasattr(self.inner, "stop"):
+            self.inner.stop()
+
+    def close(self) -> None:
+        if hasattr(self.inner, "close"):
+            self.inner.close()
+
+
+def task_names() -> dict[str, str]:
+    """Every task of every world, as WORLD/TASK, with a line of help."""
+    return {f"tabletop/{name}": words for name, words in _tabletop().task_names().items()}
+
+
+def make_world(name: str | Any, seed: int = 0, instruction: str | Instruction | None = None) -> World:
+    """A world with one scene set up in it.
+
+    Args:
+        name: WORLD/TASK such as "tabletop/rotate"; or FILE.py:NAME, a class with the World interface or a task
+            made with `wonderful_team.task`; or an object that is a world but for its instruction, `stop` or `close`.
+        seed: Of the scene. Seeds below 1000 are for development; suites start at 1000.
+        instruction: Instead of the world's own; the scorer, which judges the world's own, is then dropped.
+
+    Raises:
+        UnknownNameError: No such world or task; lists those that exist.
+        ConfigError: The seed is negative, or the world has no instruction and none is given.
+    """
+    if seed < 0:
+        raise ConfigError(f"seed {seed}: must be 0 or more")
+    if not isinstance(name, str):
+        world, name = _whole(name, f"world {type(name).__name__}"), type(name).__name__
+    else:
+        world = _world_from_file(name, seed) if is_file_name(name) else _named_world(name, seed)
+    own = getattr(world, "instruction", None)
+    wanted = _worded(instruction, own) if instruction is not None else own
+    if wanted is None:
+        raise ConfigError(
+            f'world {name!r} brings no instruction: say one, as in: run {name} "put the red cup on the tray"'
+        )
+    if isinstance(world, World) and wanted is own:
+        return world
+    return cast(World, OwnWorld(world, wanted))
+
+
+def scene_name(name: str, seed: int) -> str:
+    """How records name a scene."""
+    return f"{name}#{seed}"
+
+
+def privileged(world: World) -> Privileged | None:
+    """The truth behind a simulator, for its scorer; None for real robots, own worlds without one, and changed instructions."""
+    truth = getattr(world, "privileged", None)
+    return truth if isinstance(truth, Privileged) else None
+
+
+def _worded(instruction: str | Instruction, own: Instruction | None) -> Instruction:
+    if isinstance(instruction, Instruction):
+        return instruction
+    slots = dict(own.slots) if own is not None else {}
+    return Instruction(instruction, {key: slot for key, slot in slots.items() if f"{{{key}}}" in instruction})
+
+
+def _named_world(name: str, seed: int) -> World:
+    world, _, task = name.partition("/")
+    if world not in WORLDS:
+        known = [*WORLDS, "FILE.py:NAME"]
+        if name in _tabletop().task_names():
+            raise ConfigError(f"unknown world {name!r}: it is a task; say tabletop/{name}")
+        raise UnknownNameError("world", world, known)
+    if not task:
+        raise ConfigError(f"world {name!r}: say which task, one of: {', '.join(task_names())}")
+    if task not in _tabletop().task_names():
+        raise UnknownNameError("task", name, task_names())
+    return cast(World, _tabletop().make_world(task, seed=seed))
+
+
+def _world_from_file(name: str, seed: int) -> Any:
+    thing = load_from_file(name, "world")
+    task = _task_made_of(thing)
+    if task is not None:
+        return _tabletop().make_world(task, seed=seed)
+    return _whole(build(thing, {"seed": seed}, f"world {name!r}"), f"world {name!r}")
+
+
+def _whole(made: Any, what: str) -> Any:
+    """The same object, when it has what a world needs."""
+    missing = [need for need in ("vocabulary", "limits", "observe", "execute") if not hasattr(made, need)]
+    if missing:
+        raise ConfigError(
+            f"{what}: {type(made).__name__} lacks {', '.join(missing)}; a world has vocabulary, limits, "
+            "observe() and execute(action), a task is made with wonderful_team.task"
+        )
+    return made
+
+
+def _task_made_of(thing: Any) -> str | None:
+    """The name of the tabletop task that a user's function was made into."""
+    registering = importlib.import_module("wonderful_team.sims.tabletop.registering")
+    return next((name for name in _tabletop().task_names() if registering.find_task(name).set_table is thing), None)
+
+
+def _tabletop() -> Any:
+    return importlib.import_module("wonderful_team.sims.tabletop")
+
+
+__all__ = [
+    "METHODS",
+    "MODELS",
+    "MODEL_FORMS",
+    "SETTINGS",
+    "WORLDS",
+    "OwnWorld",
+    "TeamWay",
+    "load_method",
+    "make_model",
+    "make_models",
+    "make_world",
+    "model_label",
+    "privileged",
+    "scene_name",
+    "task_names",
+    "team_way",
+]

@@ -1,0 +1,88 @@
+"""Run folders: where a run's record, pictures and page lie, and how a run is found again."""
+
+from __future__ import annotations
+
+import os
+import re
+from datetime import datetime
+from pathlib import Path
+
+from wonderful_team.errors import ConfigError, UnknownNameError
+
+OUT_VARIABLE = "WONDERFUL_TEAM_RUNS"
+LATEST = "latest"
+RECORD_NAME = "record.json"
+
+
+def runs_folder(out: str | Path | None = None) -> Path:
+    """Where run folders go: what is asked for, else $WONDERFUL_TEAM_RUNS, else `runs` in the working directory."""
+    return Path(out if out is not None else os.environ.get(OUT_VARIABLE, "runs")).expanduser()
+
+
+def new_run_folder(words: str, out: str | Path | None = None) -> Path:
+    """Make `<time>_<words>` and point `latest` at it.
+
+    Raises:
+        ConfigError: The place cannot be written to.
+    """
+    root = runs_folder(out)
+    stem = f"{datetime.now():%Y-%m-%d_%H%M%S}_{_slug(words)}"
+    try:
+        root.mkdir(parents=True, exist_ok=True)
+        folder = _first_free(root, stem)
+        link, fresh = root / LATEST, root / f".{LATEST}-{os.getpid()}"
+        fresh.symlink_to(folder.name)
+        fresh.replace(link)
+    except OSError as error:
+        raise ConfigError(
+            f"runs folder {str(root)!r} cannot be written: {error.strerror or error}; use --out DIR"
+        ) from error
+    return folder
+
+
+def find_run(name: str, out: str | Path | None = None) -> Path:
+    """The folder of a run: a path, a folder name in the runs folder, part of one that is unique, or "latest".
+
+    Raises:
+        UnknownNameError: No such run.
+        ConfigError: It is not a run's folder, or the name fits several.
+    """
+    root = runs_folder(out)
+    for folder in (Path(name).expanduser(), root / name):
+        if folder.is_file() and folder.name in (RECORD_NAME, "page.html", "plan.json"):
+            folder = folder.parent
+        if (folder / RECORD_NAME).is_file():
+            return folder
+        if folder.is_dir():
+            raise ConfigError(f"{str(folder)!r} is not a run: it has no {RECORD_NAME}")
+    names = [run.name for run in all_runs(out)]
+    fitting = [known for known in names if name in known]
+    if len(fitting) > 1:
+        raise ConfigError(f"run {name!r} fits several: {', '.join(fitting[:5])}")
+    if not fitting:
+        raise UnknownNameError(f"run in {str(root)!r}", name, names[:12])
+    return root / fitting[0]
+
+
+def all_runs(out: str | Path | None = None) -> list[Path]:
+    """All run folders, newest first."""
+    root = runs_folder(out)
+    if not root.is_dir():
+        return []
+    found = [folder for folder in root.iterdir() if not folder.is_symlink() and (folder / RECORD_NAME).is_file()]
+    return sorted(found, key=lambda folder: folder.name, reverse=True)
+
+
+def _slug(words: str) -> str:
+    return re.sub(r"[^a-z0-9]+", "-", words.lower()).strip("-")[:40].strip("-") or "run"
+
+
+def _first_free(root: Path, stem: str) -> Path:
+    for count in range(1, 1000):
+        folder = root / (stem if count == 1 else f"{stem}-{count}")
+        try:
+            folder.mkdir()
+        except FileExistsError:
+            continue
+        return folder
+    raise OSError(f"{stem} exists a thousand times")

@@ -1,0 +1,41 @@
+"""Every test runs without a network, without keys, and with run folders in a place of its own."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from wonderful_team.runs import OUT_VARIABLE
+
+SECRET_ENDINGS = ("_API_KEY", "_TOKEN", "_SECRET")
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    parser.addoption("--runslow", action="store_true", default=False, help="run tests that take more than ten seconds")
+
+
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    if config.getoption("--runslow"):
+        return
+    for item in items:
+        if "slow" in item.keywords:
+            item.add_marker(pytest.mark.skip(reason="slow: use --runslow"))
+
+
+@pytest.fixture(autouse=True)
+def _no_keys(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A key that happens to be set must never be spent by a test."""
+    import os
+
+    for name in list(os.environ):
+        if name.endswith(SECRET_ENDINGS):
+            monkeypatch.delenv(name)
+
+
+@pytest.fixture(autouse=True)
+def runs_folder(monkeypatch: pytest.MonkeyPatch, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Where this test's run folders go."""
+    folder = tmp_path_factory.mktemp("runs")
+    monkeypatch.setenv(OUT_VARIABLE, str(folder))
+    return folder

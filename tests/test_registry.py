@@ -1,0 +1,117 @@
+"""Names to things, files to things, and who is handed the truth."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+import wonderful_team as wt
+from wonderful_team import registry
+from wonderful_team.errors import ConfigError, UnknownNameError
+from wonderful_team.interfaces import Privileged
+from wonderful_team.planning import SETTINGS
+
+
+class Echo:
+    name = "echo"
+
+    def answer(self, request: wt.Request) -> None:
+        return None
+
+
+def file(tmp_path: Path, content: str) -> str:
+    path = tmp_path / "own.py"
+    path.write_text(content, encoding="utf-8")
+    return str(path)
+
+
+def test_every_listed_method_is_a_configuration_of_the_team() -> None:
+    for name in registry.METHODS:
+        way = registry.team_way(name)
+        assert way is not None
+        assert way.setting in SETTINGS
+        assert wt.Team(method=name).name == name
+    assert {name for name in SETTINGS if name != "full"} == set(registry.SETTINGS)
+
+
+def test_the_planner_carries_the_name_it_was_asked_for_by() -> None:
+    for name in ("team", "team:paper", "team:s3", "team:paper:s3"):
+        assert wt.Team(method=name).policy().name == name
+
+
+def test_models_by_role_share_the_default() -> None:
+    echo = Echo()
+    made = registry.make_models({"*": "offline", "checker": echo}, ("supervisor", "checker"))
+    assert made["checker"] is echo
+    assert made["supervisor"] is not echo
+    with pytest.raises(ConfigError, match="no model for: supervisor"):
+        registry.make_models({"checker": echo}, ("supervisor", "checker"))
+    with pytest.raises(ConfigError, match="needs a method answer"):
+        registry.make_model(3)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("name", ["openai:x", "anthropic:x", "google:x", "openrouter:x/y", "http://127.0.0.1:1/v1"])
+def test_vendors_are_named_as_not_there_yet(name: str) -> None:
+    with pytest.raises(ConfigError, match="next release"):
+        registry.make_model(name)
+
+
+def test_a_file_that_fails_says_how(tmp_path: Path) -> None:
+    with pytest.raises(ConfigError, match="ZeroDivisionError: division by zero"):
+        registry.make_model(file(tmp_path, "1 / 0\n") + ":M")
+
+
+def test_a_file_without_the_name_lists_what_it_has(tmp_path: Path) -> None:
+    name = file(tmp_path, "class Mine:\n    def answer(self, request): ...\n")
+    with pytest.raises(UnknownNameError, match="Did you mean 'Mine'"):
+        registry.make_model(name + ":Mina")
+    with pytest.raises(ConfigError, match=r"own\.py:Mine"):
+        registry.make_model(name)
+
+
+def test_a_constructor_that_asks_for_what_nobody_offers(tmp_path: Path) -> None:
+    name = file(
+        tmp_path, "class Mine:\n    name = 'm'\n    def __init__(self, engine): ...\n    def decide(self, s): ...\n"
+    )
+    with pytest.raises(ConfigError, match="parameter 'engine'; it may ask for: door"):
+        wt.Method(method=name + ":Mine").policy()
+
+
+def test_a_method_from_a_file_asks_through_a_capped_door(tmp_path: Path) -> None:
+    name = file(
+        tmp_path,
+        "class Mine:\n    name = 'm'\n    def __init__(self, door): self.door = door\n    def decide(self, s): ...\n",
+    )
+    policy = wt.Method(method=name + ":Mine", max_calls=7).policy()
+    assert policy.door.budget.caps.calls == 7  # type: ignore[attr-defined]
+    with pytest.raises(ConfigError, match="is not the team"):
+        wt.Team(method=name + ":Mine")
+
+
+def test_an_object_that_is_no_world_says_what_it_lacks() -> None:
+    with pytest.raises(ConfigError, match="lacks vocabulary, limits, observe, execute"):
+        wt.make_world(Echo())
+
+
+def test_the_truth_is_handed_out_for_the_worlds_own_instruction_only() -> None:
+    world = wt.make_world("tabletop/rotate", seed=1)
+    assert isinstance(registry.privileged(world), Privileged)
+    world.close()
+    other = wt.make_world("tabletop/rotate", seed=1, instruction="put the largest thing on the left")
+    assert registry.privileged(other) is None
+    assert other.instruction.slots == {}
+    other.close()
+
+
+def test_a_world_without_an_instruction_asks_for_one() -> None:
+    class Bare:
+        vocabulary, limits = wt.PICK_PLACE, wt.Limits((0, 0, 0), (1, 1, 1))
+
+        def observe(self) -> None: ...
+
+        def execute(self, action: object) -> None: ...
+
+    with pytest.raises(ConfigError, match="brings no instruction"):
+        wt.make_world(Bare())
+    assert wt.make_world(Bare(), instruction="tidy up").instruction.text == "tidy up"

@@ -236,7 +236,7 @@ def _keep_out(text: str, number: int) -> KeepOut:
     numbers = region.removesuffix("px").removesuffix("m")
     try:
         x0, y0, x1, y1 = (float(part) for part in numbers.split(","))
-        return KeepOut(name or f"keep-out {number}", Box(x0, y0, x1, y1), unit)
+        return KeepOut(name or f"region {number}", Box(x0, y0, x1, y1), unit)
     except ValueError as error:
         why = f": {error}" if "box" in str(error) else ""
         raise ConfigError(f"keep-out {text!r}{why}; valid: [NAME=]x0,y0,x1,y1[px|m] with x0 < x1 and y0 < y1") from None

@@ -397,9 +397,16 @@ class Note:
 
 @dataclass(frozen=True, eq=False)
 class Words:
-    """A part of a request: text."""
+    """A part of a request: text.
+
+    Attributes:
+        says: caption (it announces `picture`, its size and its tick labels) or positions (it says how to give positions
+            in `picture`): a provider may write these in its model's own unit. "" for all other text.
+    """
 
     text: str
+    says: Literal["", "caption", "positions"] = ""
+    picture: Picture | None = None
 
 
 Part: TypeAlias = Words | Picture
@@ -487,12 +494,14 @@ class GateReport:
 
     @property
     def reasons(self) -> tuple[str, ...]:
-        """Every reason for a refusal, all at once."""
-        return tuple(
-            f"{'action ' + str(c.action + 1) + ': ' if c.action is not None else ''}{c.name}: {c.value} (limit {c.limit})"
-            for c in self.checks
-            if not c.ok
-        )
+        """Every reason for a refusal, all at once, each once."""
+        failed = (check for check in self.checks if not check.ok)
+        return tuple(dict.fromkeys(_refusal(check) for check in failed))
+
+
+def _refusal(check: GateCheck) -> str:
+    where = f"action {check.action + 1}: " if check.action is not None else ""
+    return f"{where}{check.name}: {check.value} (limit {check.limit})"
 
 
 @dataclass(frozen=True, eq=False)

@@ -30,7 +30,9 @@ INTERRUPTED, BUDGET = 130, 5
 @click.option("--replans", type=click.IntRange(0), help="Plans after the first; default the suite's protocol.")
 @click.option("--isolate", type=click.Choice(["planning", "grounding"]), help="Truth answers for the other part.")
 @click.option("--perturb", metavar="KIND=0..3", help="A harder tier: clutter, lighting, camera, texture or paraphrase.")
-@click.option("--no-control", "refused", multiple=True, metavar="NAME|all", help="Leave a control out; may be repeated.")
+@click.option(
+    "--no-control", "refused", multiple=True, metavar="NAME|all", help="Leave a control out; may be repeated."
+)
 @click.option("--estimate", is_flag=True, help="Say what it would take, from a few pilot trials, and run no more.")
 @click.option("--store", type=PATH, default=Path("study.db"), show_default=True, help="Where trials are kept.")
 @click.option("--jobs", type=click.IntRange(1), help="Worker processes. [default: one per core]")

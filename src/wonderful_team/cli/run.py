@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import getpass
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -30,6 +31,7 @@ if TYPE_CHECKING:
 @click.option("--plan", "plan_run", metavar="RUN", help="Run the plan of an earlier run, exactly as it was read.")
 @click.option("--replans", type=click.IntRange(0), default=3, show_default=True, help="Plans after the first.")
 @click.option("--approve", is_flag=True, help="Ask before anything moves.")
+@click.option("--keep-out", multiple=True, metavar="[NAME=]x0,y0,x1,y1[px|m]", help="A region nothing may enter.")
 @click.option("--video", type=PATH, metavar="FILE", help="Write an animation of the run (.webp, .gif or .png).")
 @common
 def command(
@@ -40,6 +42,7 @@ def command(
     plan_run: str | None,
     replans: int,
     approve: bool,
+    keep_out: tuple[str, ...],
     video: Path | None,
 ) -> int:
     """Run a method in a world: WORLD/TASK such as tabletop/rotate, or FILE.py:NAME.
@@ -50,6 +53,7 @@ def command(
     from wonderful_team.cli.progress import Progress
     from wonderful_team.cli.report import report_trial
     from wonderful_team.cli.video import Film, check_video_name
+    from wonderful_team.photos import read_keep_out
     from wonderful_team.registry import scene_name, team_way
     from wonderful_team.runtime import read_plan
 
@@ -57,9 +61,11 @@ def command(
         check_video_name(video)
     plan = read_plan(find_run(plan_run, common.out)) if plan_run is not None else None
     kind = Method if team_way(common.method) is None else Team
+    regions = read_keep_out(keep_out)
     progress = Progress()
     method = kind(**common.team_arguments(), subscribers=(progress,))
     place = make_world(world, seed, instruction)
+    place.limits = replace(place.limits, keep_out=(*place.limits.keep_out, *regions))
     try:
         film = Film() if video is not None else None
         progress.header(method)

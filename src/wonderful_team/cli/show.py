@@ -94,9 +94,8 @@ def _replay(folder: Path, tolerant: bool, as_json: bool) -> int:
     from wonderful_team.replays import replay
 
     found = replay(folder, tolerant=tolerant)
-    what = "" if found.whole else " (the first plan alone: its world is not a simulator of ours)"
     how = "SAME" if found.same else "DIFFERENT"
-    lines = [f"{how}  {found.answers} answers replayed{what}"]
+    lines = [f"{how}  {found.answers} answers replayed"]
     lines += [
         f"plan {number}: {then or '-'} {'=' if then == now else '->'} {now or '-'}"
         for number, (then, now) in enumerate(zip_longest(found.then, found.now), start=1)
@@ -108,7 +107,6 @@ def _replay(folder: Path, tolerant: bool, as_json: bool) -> int:
         "recorded_plan_ids": list(found.then),
         "answers": found.answers,
         "differences": list(found.differences),
-        "whole": found.whole,
     }
     return finish("show", text="\n".join(lines), result=result, as_json=as_json, code=0 if found.same else 1)
 

@@ -7,21 +7,33 @@ sends the validation text back when it does not fit, and tells subscribers what 
 from __future__ import annotations
 
 import asyncio
+import contextlib
+import contextvars
 import inspect
 import json
+import threading
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
 from pydantic import BaseModel, ValidationError
 
 from wonderful_team.contracts import Question
-from wonderful_team.errors import BudgetReached, ConfigError, ModelOutputError, ModelUnavailableError
+from wonderful_team.errors import (
+    BudgetReached,
+    ConfigError,
+    ModelOutputError,
+    ModelUnavailableError,
+    WonderfulTeamError,
+)
 from wonderful_team.interfaces import Event, Model, Subscriber
-from wonderful_team.models.budget import Budget
+from wonderful_team.models.budget import Budget, Estimating, Ticket, hand_over
+from wonderful_team.models.wire.unreadable import Unreadable
 from wonderful_team.types import Answer, Request, Usage
 
+UNSENT = frozenset({"cached", "replayed"})
+"""Provenance of answers for which no model was called: they cost nothing."""
 DEFAULT = "*"
 """Key of the model that serves every role without one of its own."""
 
@@ -72,6 +84,14 @@ class Door:
             raise ConfigError(f"no model for role {role!r}; models are set for: {', '.join(self._models)}")
         return model
 
+    @property
+    def model_name(self) -> str:
+        """The model's name; where roles have different ones, role=name for each."""
+        names = {_name(model) for model in self._models.values()}
+        if len(names) == 1:
+            return names.pop()
+        return " ".join(f"{role}={_name(model)}" for role, model in self._models.items())
+
     def tell(self, kind: str, name: str, content: Any = None) -> None:
         """Pass an event to every subscriber."""
         for subscriber in self._subscribers:
@@ -96,7 +116,7 @@ class Door:
             except ValueError as error:
                 text = _explain(error)
                 self.tell("invalid", sent.id, (sent, answer.raw or _as_text(answer.value), text))
-                request = replace(request, feedback=text, previous=_plain(answer.value))
+                request = replace(request, feedback=text, previous=answer.raw or _plain(answer.value))
                 continue
             settled = replace(answer, value=value, usage=total, tries=attempt + 1, repairs=answer.repairs + repairs)
             self.tell("answer", sent.id, (sent, settled))
@@ -111,28 +131,42 @@ class Door:
 
     async def _send(self, model: Model, request: Request) -> Answer:
         async with self._place():
-            self.budget.reserve()
-            usage = Usage(calls=1, pictures=len(request.pictures), usd=None)
+            budget = self.budget
+            estimate = model.estimate(request) if isinstance(model, Estimating) else None
+            ticket = await budget.take(estimate)
+            usage = None
             started = time.monotonic()
             try:
                 self.tell("request", request.id, request)
-                left = self.budget.seconds_left
+                left = budget.seconds_left
                 deadline = self._deadline_s if left is None else max(0.001, min(self._deadline_s, left))
+                ticket.seconds = deadline
+                hand_over(ticket)
                 try:
-                    answer = as_answer(await asyncio.wait_for(_call(model, request), deadline), model)
+                    answer = as_answer(await asyncio.wait_for(call_model(model, request), deadline), model)
                 except TimeoutError as error:
+                    ticket.book_lost_try()
                     if left is not None and deadline < self._deadline_s:
-                        raise BudgetReached(f"the cap of {self.budget.caps.seconds:g} s is reached") from error
+                        raise BudgetReached(f"the cap of {budget.caps.seconds:g} s is reached") from error
                     raise ModelUnavailableError(
                         f"{_name(model)} did not answer {request.contract} within {self._deadline_s:g} s"
                     ) from error
                 seconds = time.monotonic() - started
-                usage = replace(
-                    answer.usage, calls=max(1, answer.usage.calls), pictures=len(request.pictures), seconds=seconds
-                )
-                return replace(answer, usage=usage)
+                if answer.provenance in UNSENT:
+                    usage = Usage(seconds=seconds)
+                else:
+                    usage = replace(
+                        answer.usage, calls=max(1, answer.usage.calls), pictures=len(request.pictures), seconds=seconds
+                    )
+                return replace(answer, usage=usage + ticket.lost)
+            except asyncio.CancelledError:
+                ticket.book_lost_try()
+                raise
+            except WonderfulTeamError as error:
+                self.tell("failed", request.id, (request, error))
+                raise
             finally:
-                self.budget.settle(request.role, usage)
+                budget.settle(request.role, usage or _failed_usage(request, ticket, started), ticket)
 
     def _place(self) -> asyncio.Semaphore:
         # A semaphore belongs to one event loop; each synchronous entry may bring a new one.
@@ -142,12 +176,49 @@ class Door:
         return self._places
 
 
-async def _call(model: Model, request: Request) -> Any:
+def _failed_usage(request: Request, ticket: Ticket, started: float) -> Usage:
+    """What a call cost that brought no answer; lost tries are booked beside it."""
+    seconds, pictures = time.monotonic() - started, len(request.pictures)
+    if ticket.answered is not None:
+        return replace(ticket.answered, seconds=seconds)
+    priced = ticket.estimate is not None and ticket.estimate.usd_in is not None
+    return Usage(ticket.tries, pictures=pictures, seconds=seconds, usd=0.0 if priced else None)
+
+
+async def call_model(model: Model, request: Request) -> Any:
+    """What a model's `answer` returns, be it plain (then in a thread) or async."""
     if inspect.iscoroutinefunction(model.answer):
         return await model.answer(request)
     # A plain function would block every other request: it runs in a thread.
-    result = await asyncio.to_thread(model.answer, request)
+    result = await _in_thread(model.answer, request)
     return await result if inspect.isawaitable(result) else result
+
+
+async def _in_thread(answer: Callable[[Request], Any], request: Request) -> Any:
+    """Like asyncio.to_thread, but a call that hangs never keeps the program from ending (Ctrl-C, a deadline)."""
+    loop = asyncio.get_running_loop()
+    future: asyncio.Future[Any] = loop.create_future()
+
+    def settle(result: Any, error: BaseException | None) -> None:
+        if future.cancelled():
+            return
+        if error is None:
+            future.set_result(result)
+        else:
+            future.set_exception(error)
+
+    def work() -> None:
+        result, failed = None, None
+        try:
+            result = answer(request)
+        except BaseException as error:  # noqa: BLE001  handed to whoever waits
+            failed = error
+        with contextlib.suppress(RuntimeError):
+            # The loop may have ended meanwhile: then nobody waits any more.
+            loop.call_soon_threadsafe(settle, result, failed)
+
+    threading.Thread(target=contextvars.copy_context().run, args=(work,), name="model", daemon=True).start()
+    return await future
 
 
 def as_answer(result: Any, model: Model) -> Answer:
@@ -161,6 +232,8 @@ def as_answer(result: Any, model: Model) -> Answer:
 def settle_answer(request: Request, value: Any) -> tuple[Any, tuple[str, ...]]:
     """Validate a value against the request's type and question. Raises ValueError with text for the model."""
     output: type[BaseModel] = request.output
+    if isinstance(value, Unreadable):
+        raise ValueError(value.problem)
     if isinstance(value, str):
         parsed = output.model_validate_json(value)
     else:

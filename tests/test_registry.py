@@ -115,3 +115,15 @@ def test_a_world_without_an_instruction_asks_for_one() -> None:
     with pytest.raises(ConfigError, match="brings no instruction"):
         wt.make_world(Bare())
     assert wt.make_world(Bare(), instruction="tidy up").instruction.text == "tidy up"
+
+
+def test_keep_out_regions_are_added_to_a_worlds_own_limits_and_keep_its_scorer():
+    from wonderful_team.geometry import Box
+    from wonderful_team.types import KeepOut
+
+    region = KeepOut("fixture", Box(0.3, -0.2, 0.4, 0.1), "m")
+    world = registry.make_world("tabletop/rotate", seed=3, keep_out=[region])
+    assert world.limits.keep_out == (region,)
+    assert world.privileged is not None
+    assert world.horizon == registry.make_world("tabletop/rotate", seed=3).horizon
+    world.close()

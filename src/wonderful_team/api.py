@@ -114,7 +114,8 @@ class Method:
     @property
     def warnings(self) -> tuple[str, ...]:
         """What the user should know of the set-up, in words."""
-        return () if self._store is None else self._store.warnings
+        notes = dict.fromkeys(str(getattr(model, "note", "")) for model in self._models.values())
+        return (*(note for note in notes if note), *(() if self._store is None else self._store.warnings))
 
     @property
     def model_name(self) -> str:
@@ -288,18 +289,21 @@ class Team(Method):
         return MadePlan(plan, observation, gate, dict(work.usage_by_role()), time.monotonic() - started, folder)
 
 
-def make_world(name: str | Any, seed: int = 0, instruction: str | Instruction | None = None) -> World:
+def make_world(
+    name: str | Any, seed: int = 0, instruction: str | Instruction | None = None, keep_out: Sequence[KeepOut] = ()
+) -> World:
     """A world with one scene set up in it, such as `make_world("tabletop/rotate", seed=3)`.
 
     Args:
         name: WORLD/TASK, FILE.py:NAME, or an object of your own that is to be used as a world.
         seed: Of the scene.
         instruction: Instead of the world's own; its scorer is then dropped.
+        keep_out: Regions nothing may enter, beside the world's own.
 
     Raises:
         ConfigError: An unknown name, or a world without an instruction.
     """
-    return registry.make_world(name, seed, instruction)
+    return registry.make_world(name, seed, instruction, keep_out)
 
 
 def rollout(

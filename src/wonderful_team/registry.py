@@ -7,14 +7,14 @@ from __future__ import annotations
 
 import importlib
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Literal, cast
 
 from wonderful_team.actions import Action, Vocabulary
 from wonderful_team.errors import ConfigError, UnknownNameError
 from wonderful_team.interfaces import Model, Policy, Privileged, World
 from wonderful_team.loading import build, is_file_name, load_from_file
-from wonderful_team.types import Instruction, Limits, Observation, StepReport
+from wonderful_team.types import Instruction, KeepOut, Limits, Observation, StepReport
 
 if TYPE_CHECKING:
     from wonderful_team.models.door import Door
@@ -178,6 +178,7 @@ class OwnWorld:
 
     inner: Any
     instruction: Instruction
+    keep_out: tuple[KeepOut, ...] = ()
 
     @property
     def vocabulary(self) -> Vocabulary:
@@ -185,7 +186,17 @@ class OwnWorld:
 
     @property
     def limits(self) -> Limits:
-        return cast(Limits, self.inner.limits)
+        limits = cast(Limits, self.inner.limits)
+        return replace(limits, keep_out=(*limits.keep_out, *self.keep_out))
+
+    @property
+    def horizon(self) -> int | None:
+        return getattr(self.inner, "horizon", None)
+
+    @property
+    def privileged(self) -> Any:
+        own = getattr(self.inner, "instruction", None)
+        return getattr(self.inner, "privileged", None) if self.instruction is own else None
 
     def observe(self) -> Observation:
         return cast(Observation, self.inner.observe())
@@ -207,7 +218,9 @@ def task_names() -> dict[str, str]:
     return {f"tabletop/{name}": words for name, words in _tabletop().task_names().items()}
 
 
-def make_world(name: str | Any, seed: int = 0, instruction: str | Instruction | None = None) -> World:
+def make_world(
+    name: str | Any, seed: int = 0, instruction: str | Instruction | None = None, keep_out: Sequence[KeepOut] = ()
+) -> World:
     """A world with one scene set up in it.
 
     Args:
@@ -215,6 +228,7 @@ def make_world(name: str | Any, seed: int = 0, instruction: str | Instruction | 
             made with `wonderful_team.task`; or an object that is a world but for its instruction, `stop` or `close`.
         seed: Of the scene. Seeds below 1000 are for development; suites start at 1000.
         instruction: Instead of the world's own; the scorer, which judges the world's own, is then dropped.
+        keep_out: Regions nothing may enter, beside the world's own.
 
     Raises:
         UnknownNameError: No such world or task; lists those that exist.
@@ -232,9 +246,9 @@ def make_world(name: str | Any, seed: int = 0, instruction: str | Instruction | 
         raise ConfigError(
             f'world {name!r} brings no instruction: say one, as in: run {name} "put the red cup on the tray"'
         )
-    if isinstance(world, World) and wanted is own:
+    if isinstance(world, World) and wanted is own and not keep_out:
         return world
-    return cast(World, OwnWorld(world, wanted))
+    return cast(World, OwnWorld(world, wanted, tuple(keep_out)))
 
 
 def scene_name(name: str, seed: int) -> str:
@@ -271,7 +285,7 @@ def _named_world(name: str, seed: int) -> World:
 
 def _world_from_file(name: str, seed: int) -> Any:
     thing = load_from_file(name, "world")
-    task = _task_made_of(thing)
+    task = task_made_of(thing)
     if task is not None:
         return _tabletop().make_world(task, seed=seed)
     return _whole(build(thing, {"seed": seed}, f"world {name!r}"), f"world {name!r}")
@@ -288,7 +302,7 @@ def _whole(made: Any, what: str) -> Any:
     return made
 
 
-def _task_made_of(thing: Any) -> str | None:
+def task_made_of(thing: Any) -> str | None:
     """The name of the tabletop task that a user's function was made into."""
     registering = importlib.import_module("wonderful_team.sims.tabletop.registering")
     return next((name for name in _tabletop().task_names() if registering.find_task(name).set_table is thing), None)
@@ -313,6 +327,7 @@ __all__ = [
     "model_label",
     "privileged",
     "scene_name",
+    "task_made_of",
     "task_names",
     "team_way",
 ]

@@ -13,7 +13,7 @@ from tests.images.scenes import view
 from wonderful_team.geometry import Box, Frame
 from wonderful_team.geometry.arrays import Array
 from wonderful_team.images import Ticks, crop, draw, inside_points, overview, whole
-from wonderful_team.images.axes import axis_step, axis_ticks, round_step
+from wonderful_team.images.axes import SPANS, axis_step, axis_ticks, round_step
 from wonderful_team.images.canvas import INK, Canvas, Rectangle
 from wonderful_team.images.draw import candidate_radius
 from wonderful_team.images.lettering import plain
@@ -146,7 +146,7 @@ def test_ticks_stand_at_the_number_they_carry(size: tuple[int, int], ticks: Tick
     for axis in (0, 1):
         step = axis_step(frame, Axes(), ticks, axis, spacing)
         row = axis_ticks(frame, Axes(), ticks, axis, step)
-        unit = 1.0 if ticks is Ticks.PIXELS else size[axis] / 1000
+        unit = 1.0 if ticks is Ticks.PIXELS else size[axis] / SPANS[ticks]
         assert [tick.at_px for tick in row] == pytest.approx([tick.value * unit for tick in row])
         assert all(b.at_px - a.at_px >= spacing - 1e-6 for a, b in itertools.pairwise(row))
         assert all(0 <= tick.at_px <= size[axis] for tick in row)

@@ -37,7 +37,15 @@ class Finding:
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON document instead of text.")
 def command(out: Path | None, as_json: bool) -> int:
     """Check this machine in a few seconds: versions, rendering, drawing, the sandbox, disk, keys."""
-    checks: tuple[Callable[[], Finding], ...] = (_versions, _rendering, _drawing, _sandbox, lambda: _disk(out), _keys)
+    checks: tuple[Callable[[], Finding], ...] = (
+        _versions,
+        _rendering,
+        _drawing,
+        _sandbox,
+        lambda: _disk(out),
+        _cache,
+        _keys,
+    )
     findings = [_guarded(check) for check in checks]
     ok = all(finding.ok for finding in findings)
     lines = [f"{'ok ' if item.ok else 'BAD'}  {item.name:<10} {item.text}" for item in findings]
@@ -133,6 +141,22 @@ def _disk(out: Path | None) -> Finding:
     return Finding(
         "disk", free_mb >= LEAST_FREE_MB, text, "" if free_mb >= LEAST_FREE_MB else "use --out DIR on another disk"
     )
+
+
+def _cache() -> Finding:
+    from wonderful_team.cli.cache import size_line
+    from wonderful_team.models.cache_store import CacheStore, default_cache_file
+
+    file = default_cache_file()
+    if not file.exists():
+        return Finding("cache", True, f"{file}: nothing is kept yet")
+    try:
+        store = CacheStore(file)
+        text = size_line(store.size())
+        store.close()
+    except ConfigError as error:
+        return Finding("cache", False, str(error), f"mv {file} {file}.old")
+    return Finding("cache", True, "; ".join([text, *store.warnings]), "use --cache-file" if store.warnings else "")
 
 
 def _keys() -> Finding:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import getpass
 from collections.abc import Sequence
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -64,8 +63,7 @@ def command(
     regions = read_keep_out(keep_out)
     progress = Progress()
     method = kind(**common.team_arguments(), subscribers=(progress,))
-    place = make_world(world, seed, instruction)
-    place.limits = replace(place.limits, keep_out=(*place.limits.keep_out, *regions))
+    place = make_world(world, seed, instruction, regions)
     try:
         film = Film() if video is not None else None
         progress.header(method)

@@ -17,7 +17,7 @@ from wonderful_team.errors import UnknownNameError
 
 
 @click.command(
-    short_help="Show a recorded run.",
+    short_help="Show a recorded run, run it again, or compare two.",
     epilog="\b\nwonderful-team show latest --open\nwonderful-team show latest --role checker\n"
     "wonderful-team show latest --replay\nwonderful-team show latest --from ground --model offline",
 )

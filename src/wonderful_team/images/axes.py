@@ -10,14 +10,18 @@ from wonderful_team.geometry import Frame
 from wonderful_team.images.canvas import WHITE, Canvas
 from wonderful_team.pictures import Axes, Point
 
-THOUSANDTHS_SPAN = 1000.0
-
 
 class Ticks(Enum):
-    """What the numbers along the axes mean: pixels, or thousandths of the picture's width and height."""
+    """What the numbers along the axes mean: pixels, or shares of the picture's width and height."""
 
     PIXELS = "pixels"
     THOUSANDTHS = "thousandths"
+    PERCENT = "percent"
+    UNIT = "unit"
+
+
+SPANS: dict[Ticks, float] = {Ticks.THOUSANDTHS: 1000.0, Ticks.PERCENT: 100.0, Ticks.UNIT: 100.0}
+"""The number at the far edge; shares from 0 to 1 are counted in hundredths and written as 0.05."""
 
 
 @dataclass(frozen=True)
@@ -71,7 +75,8 @@ def draw_axes(canvas: Canvas, frame: Frame, axes: Axes, ticks: Ticks) -> None:
     """Ticks on all four edges, numbers along the top (x) and the left edge (y), each centred on its tick."""
     width, height = canvas.size_px
     font = canvas.font_px
-    wide = canvas.plate_size("0" * len(str(_largest(frame, axes, ticks))), font)[0]
+    digits = 4 if ticks is Ticks.UNIT else len(str(_largest(frame, axes, ticks)))
+    wide = canvas.plate_size("0" * digits, font)[0]
     tall = canvas.plate_size("0", font)[1]
     least = (max(wide * 1.35, 40 * canvas.unit), max(tall * 2.0, 40 * canvas.unit))
     step = max(axis_step(frame, axes, ticks, axis, least[axis]) for axis in (0, 1))
@@ -87,21 +92,23 @@ def draw_axes(canvas: Canvas, frame: Frame, axes: Axes, ticks: Ticks) -> None:
     if axes.reference is None:
         canvas.plate("0", 0, 0, font_px=font)
     for tick in across:
-        plate_width, _ = canvas.plate_size(str(tick.value), font)
-        _label(canvas, tick.value, round(tick.at_px - plate_width / 2), long, font)
+        text = _written(tick.value, ticks)
+        plate_width, _ = canvas.plate_size(text, font)
+        _label(canvas, text, round(tick.at_px - plate_width / 2), long, font)
     for tick in down:
-        _, plate_height = canvas.plate_size(str(tick.value), font)
-        _label(canvas, tick.value, long, round(tick.at_px - plate_height / 2), font)
+        text = _written(tick.value, ticks)
+        _, plate_height = canvas.plate_size(text, font)
+        _label(canvas, text, long, round(tick.at_px - plate_height / 2), font)
 
 
-def _label(canvas: Canvas, value: int, x0: int, y0: int, font: int) -> None:
+def _label(canvas: Canvas, text: str, x0: int, y0: int, font: int) -> None:
     """A number on its plate, or nothing where it would leave the picture or cover another number."""
-    plate_width, plate_height = canvas.plate_size(str(value), font)
+    plate_width, plate_height = canvas.plate_size(text, font)
     x1, y1 = x0 + plate_width, y0 + plate_height
     width, height = canvas.size_px
     inside = x0 >= 0 and y0 >= 0 and x1 <= width and y1 <= height
     if inside and not any(x0 < c and a < x1 and y0 < d and b < y1 for a, b, c, d in canvas.taken):
-        canvas.plate(str(value), x0, y0, font_px=font)
+        canvas.plate(text, x0, y0, font_px=font)
 
 
 def _tick_lines(canvas: Canvas, tick: Tick, axis: int, long: int) -> list[list[Point]]:
@@ -120,10 +127,15 @@ def _label_of(frame: Frame, axes: Axes, ticks: Ticks, axis: int, at_px: float) -
         point = (at_px, 0.0) if axis == 0 else (0.0, at_px)
         value = axes.reference.point_to_picture(frame.point_to_view(point))[axis]
         length = axes.reference.size_px[axis]
-    return value if ticks is Ticks.PIXELS else value / length * THOUSANDTHS_SPAN
+    return value if ticks is Ticks.PIXELS else value / length * SPANS[ticks]
 
 
 def _largest(frame: Frame, axes: Axes, ticks: Ticks) -> int:
-    if ticks is Ticks.THOUSANDTHS:
-        return int(THOUSANDTHS_SPAN)
+    if ticks is not Ticks.PIXELS:
+        return int(SPANS[ticks])
     return max((axes.reference or frame).size_px)
+
+
+def _written(value: int, ticks: Ticks) -> str:
+    """A tick's number as it is written."""
+    return f"{value / SPANS[ticks]:g}" if ticks is Ticks.UNIT else str(value)

@@ -5,9 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+from wonderful_team.errors import WonderfulTeamError
 from wonderful_team.jsonable import to_jsonable
 from wonderful_team.pictures import Picture
 from wonderful_team.runtime.picture_store import PictureStore
+from wonderful_team.runtime.stored import view_entry
+from wonderful_team.runtime.values_file import encode
 from wonderful_team.types import (
     Answer,
     GateReport,
@@ -83,6 +86,15 @@ def answer_entry(answer: Answer) -> dict[str, Any]:
     }
 
 
+def error_entry(error: WonderfulTeamError) -> dict[str, Any]:
+    """What came instead of an answer; enough to raise it again."""
+    shown: dict[str, Any] = {"error": type(error).__name__, "message": str(error), "stage": error.stage}
+    for name in ("question", "choices", "contract", "reasons"):
+        if hasattr(error, name):
+            shown[name] = to_jsonable(getattr(error, name))
+    return shown
+
+
 def usage_entry(usage: Usage, *, with_seconds: bool) -> dict[str, Any]:
     """What calls cost; durations only where clock times belong."""
     entry = to_jsonable(usage)
@@ -104,6 +116,8 @@ def observation_entry(where: str, observation: Observation, store: PictureStore)
         "depth": observation.main.depth_m is not None,
         "views": store.keep_observation(observation, where),
         "cameras": {name: view.camera_name for name, view in observation.views.items()},
+        "stored": {name: view_entry(view, where, store) for name, view in observation.views.items()},
+        "robot": None if observation.robot is None else encode(observation.robot),
     }
 
 
@@ -114,6 +128,7 @@ def instruction_entry(instruction: Instruction, store: PictureStore) -> dict[str
             "kind": slot.kind,
             "index": slot.index,
             "views": {key: store.keep_view(view, name) for key, view in slot.views.items()},
+            "stored": {key: view_entry(view, name, store) for key, view in slot.views.items()},
         }
         for name, slot in instruction.slots.items()
     }

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import hashlib
 import re
 from pathlib import Path
 
+import numpy as np
+
 from wonderful_team.geometry.arrays import Array
-from wonderful_team.images import Ticks, draw, to_png
-from wonderful_team.pictures import Picture, picture_hash
+from wonderful_team.images import Ticks, to_png
+from wonderful_team.images.drawn import drawn, drawn_hash
+from wonderful_team.pictures import Picture
 from wonderful_team.types import Observation, View
 
 FOLDER = "pictures"
@@ -25,16 +29,16 @@ class PictureStore:
         self._ticks = ticks
         self._sent: set[str] = set()
         self._views = 0
+        self._depths: dict[str, str] = {}
         self.files: dict[str, str] = {}
         (folder / FOLDER).mkdir(parents=True, exist_ok=True)
 
     def keep_sent(self, picture: Picture) -> str:
         """Store a picture as it is sent, marks drawn; returns the hash of what was drawn."""
-        drawn = draw(picture, self._ticks)
-        key = picture_hash(drawn)
+        key = drawn_hash(picture, self._ticks)
         if key not in self._sent:
             self._sent.add(key)
-            self._write(key, f"{len(self._sent):03d}_{_slug(picture.name)}.png", drawn)
+            self._write(key, f"{len(self._sent):03d}_{_slug(picture.name)}.png", drawn(picture, self._ticks))
         return key
 
     def keep_view(self, view: View, where: str) -> str:
@@ -48,6 +52,16 @@ class PictureStore:
     def keep_observation(self, observation: Observation, where: str) -> dict[str, str]:
         """Store every view; returns hashes by name of the view."""
         return {name: self.keep_view(view, where) for name, view in observation.views.items()}
+
+    def keep_depth(self, view: View, where: str) -> str:
+        """Store a view's depth, every bit of it; returns the file, relative to the run folder."""
+        assert view.depth_m is not None
+        key = hashlib.sha256(view.depth_m.tobytes()).hexdigest()
+        if key not in self._depths:
+            name = f"depth_{len(self._depths) + 1:03d}_{_slug(where)}_{_slug(view.camera_name)}.npz"
+            np.savez_compressed(self._folder / FOLDER / name, depth_m=view.depth_m)
+            self._depths[key] = f"{FOLDER}/{name}"
+        return self._depths[key]
 
     def _write(self, key: str, name: str, rgb: Array) -> None:
         (self._folder / FOLDER / name).write_bytes(to_png(rgb))

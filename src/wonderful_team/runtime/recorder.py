@@ -73,8 +73,9 @@ class Recorder:
             "request": self._on_request,
             "answer": self._on_answer,
             "invalid": self._on_invalid,
+            "failed": self._on_failed,
             "plan": self._on_plan,
-            "decision": lambda event: self._planner["decisions"].append(entries.plain(event.content)),
+            "decision": self._on_decision,
             "gate": self._on_gate,
             "execute": self._on_execute,
             "subgoal": self._on_subgoal,
@@ -121,6 +122,9 @@ class Recorder:
             self._limits = limits
             self._planner["limits"] = to_jsonable(limits)
         self._record["command"] = content.pop("command", None) or self._record["command"]
+        for key in ("setup", "words"):
+            if key in content:
+                self._record[key] = content.pop(key)
         self._record["configuration"].update(entries.plain(content))
         if event.name:
             self._record["configuration"].setdefault("scene", event.name)
@@ -160,6 +164,12 @@ class Recorder:
         self._answered(entry["key"])
         self._log("invalid", f"{request.id}: {error}")
 
+    def _on_failed(self, event: Event) -> None:
+        request, error = event.content
+        entry = self._entry_of(request)
+        entry["failed"] = entries.error_entry(error)
+        self._answered(entry["key"])
+
     def _entry_of(self, request: Request) -> dict[str, Any]:
         key = entries.request_key(request)
         if key not in self._requests:
@@ -195,6 +205,11 @@ class Recorder:
             view, plan.grounded, arrows=action_arrows(plan.actions), keep_out=plan.keep_out, workspace=self._limits
         )
         (self.folder / "final.png").write_bytes(to_png(rgb))
+
+    def _on_decision(self, event: Event) -> None:
+        # How much had happened by then: what a method was told is what happened since its last decision.
+        so_far = {key: len(self._planner[key]) for key in ("observations", "gates", "executions", "subgoals")}
+        self._planner["decisions"].append({**entries.plain(event.content), "so_far": so_far})
 
     def _on_gate(self, event: Event) -> None:
         self._planner["gates"].append({"plan": self._plan_number, **entries.gate_entry(event.name, event.content)})

@@ -243,6 +243,8 @@ def reproduce(record: dict[str, Any]) -> dict[str, Any]:
     settings = record["configuration"]
     current = last_plan(record)
     facts = [("started", record["clock"]["started"])]
+    parent = settings.get("parent")
+    facts += [("branched off", f"{parent['run']} at {parent['from']}")] if parent else []
     facts += [("plan", current["id"])] if current else []
     facts += [("scene", current["scene_hash"])] if current and current["scene_hash"] else []
     facts += [("prompts", settings["prompts"])] if settings.get("prompts") else []

@@ -1,0 +1,199 @@
+"""Run a recorded run again: exactly (replay), or with another model from some stage on (branch).
+
+Nothing real moves. A replay puts the planner into the recorded situations, with the pictures and reports of that time.
+A branch may lead elsewhere, so a trial branches only in a simulator of ours, which is set up from its seed; of any
+other trial the first plan is made again.
+"""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from wonderful_team import registry
+from wonderful_team.actions import Vocabulary
+from wonderful_team.agents import Prompts
+from wonderful_team.api import Team, rollout
+from wonderful_team.errors import ConfigError
+from wonderful_team.interfaces import Event, Model, Subscriber
+from wonderful_team.made import MadePlan, RecordedTrial
+from wonderful_team.models.replay import Branching, ReplayModel
+from wonderful_team.runtime.loop import Caller
+from wonderful_team.runtime.page.write import read_record
+from wonderful_team.runtime.setup import Setup, read_setup, same_limits
+from wonderful_team.runtime.stored import stored_instruction, stored_observation
+from wonderful_team.runtime.story import recorded_plan, situations
+
+
+@dataclass(frozen=True, eq=False)
+class Replayed:
+    """How a replay came out.
+
+    Attributes:
+        then, now: Ids of the plans, in order: in the record, and made again.
+        answers: How many answers came from the record.
+        differences: Where words or pictures differed (tolerant replays only).
+    """
+
+    then: tuple[str, ...]
+    now: tuple[str, ...]
+    answers: int
+    differences: tuple[str, ...]
+
+    @property
+    def same(self) -> bool:
+        """Whether the same plans came out."""
+        return self.then == self.now
+
+
+def replay(folder: Path, *, tolerant: bool = False, subscribers: Sequence[Subscriber] = ()) -> Replayed:
+    """Make a recorded run's plans again from its own answers; no model and no network. Leaves no run folder behind.
+
+    Args:
+        folder: The run's folder.
+        tolerant: Go on where words or pictures differ from the record (a later release has other words), and say so.
+        subscribers: Told of every event as it happens.
+
+    Raises:
+        ReplayError: What is asked is not what was asked then; names the request and what differs.
+        ConfigError: The record cannot be run again.
+    """
+    record = read_record(folder)
+    setup = read_setup(record, str(folder))
+    model, plans = ReplayModel(record, tolerant=tolerant), _Plans()
+    with tempfile.TemporaryDirectory(prefix="wonderful-team-replay-") as place:
+        team = _team(folder, record, model, out=place, subscribers=(plans, *subscribers))
+        if setup.entry == "run":
+            policy = team.policy()
+            with Caller() as caller:
+                for situation in situations(folder, record, setup):
+                    caller.wait_for(policy.decide(situation))
+            # A plan that was handed in is never told as one that was made.
+            plans.ids[:0] = [] if setup.plan is None else [setup.plan]
+        else:
+            _plan_again(folder, record, setup, team)
+    then = dict.fromkeys(str(entry["id"]) for entry in record["planner"]["plans"])
+    return Replayed(tuple(then), tuple(dict.fromkeys(plans.ids)), model.replayed, tuple(model.differences))
+
+
+class _Plans:
+    """Hears which plans were made."""
+
+    def __init__(self) -> None:
+        self.ids: list[str] = []
+
+    def on_event(self, event: Event) -> None:
+        if event.kind == "plan":
+            self.ids.append(event.content.id)
+
+
+def branch(
+    folder: Path,
+    stage: str,
+    model: str | Model | Mapping[str, str | Model],
+    *,
+    out: str | Path | None = None,
+    subscribers: Sequence[Subscriber] = (),
+    command: str | None = None,
+    **caps: Any,
+) -> MadePlan | RecordedTrial:
+    """Run again with another model from a stage on; the answers before it come from the record.
+
+    Args:
+        folder: The parent run's folder.
+        stage: plan, ground, act or replan.
+        model: Who answers from there on: as for Team.
+        out: Where the new run folder goes; its record names the parent.
+        subscribers: Told of every event as it happens.
+        command: The command line, for the page.
+        **caps: Of the new run: max_calls, max_tokens, max_seconds, max_usd, and other arguments of Team.
+
+    Raises:
+        UnknownNameError: No such stage or model.
+        ConfigError: As for replay.
+    """
+    record = read_record(folder)
+    recorded = ReplayModel(record)
+    wanted: Mapping[str, str | Model] = model if isinstance(model, Mapping) else {registry.DEFAULT_ROLE: model}
+    models = {role: Branching(recorded, registry.make_model(one), stage) for role, one in wanted.items()}
+    parent = {"run": folder.resolve().name, "from": stage}
+    setup = read_setup(record, str(folder))
+    arguments = {**caps, "out": out, "subscribers": tuple(subscribers), "command": command, "parent": parent}
+    team = _team(folder, record, models, **arguments)
+    if setup.entry == "run" and setup.scene.partition("/")[0] in registry.WORLDS:
+        return _trial_again(folder, record, setup, team)
+    return _plan_again(folder, record, setup, team)
+
+
+def _team(folder: Path, record: Mapping[str, Any], model: Model | Mapping[str, Model], **more: Any) -> Team:
+    """The team as it was set up then, with its words of then, over another model.
+
+    Raises:
+        ConfigError: The method was not the team.
+    """
+    configuration = record["configuration"]
+    method = str(configuration["method"])
+    if registry.team_way(method) is None:
+        raise ConfigError(f"{folder}: method {method!r} is a file of your own; only runs of the team can be run again")
+    with tempfile.TemporaryDirectory(prefix="wonderful-team-words-") as words:
+        _write_words(Path(words), record.get("words") or {})
+        return Team(
+            model=model,
+            method=method,
+            concurrency=int(configuration["concurrency"]),
+            prompts=words,
+            strict=bool(configuration["strict"]),
+            **{"cache": "off", **more},
+        )
+
+
+def _plan_again(folder: Path, record: Mapping[str, Any], setup: Setup, team: Team) -> MadePlan:
+    if setup.plan is not None:
+        raise ConfigError(f"{folder}: this run was handed its plan {setup.plan}: there is nothing to plan again")
+    observation = stored_observation(folder, record)
+    if setup.entry == "ground":
+        objects = [target.words for target in setup.targets if target.kind == "object"]
+        areas = [target.words for target in setup.targets if target.kind == "area"]
+        return team.ground(observation, objects, areas)
+    return team.plan(
+        observation,
+        stored_instruction(folder, record),
+        vocabulary=Vocabulary(setup.vocabulary),
+        limits=same_limits(setup),
+        until=setup.until,  # type: ignore[arg-type]  # Team checks it
+        keep_out=setup.keep_out,
+    )
+
+
+def _trial_again(folder: Path, record: Mapping[str, Any], setup: Setup, team: Team) -> RecordedTrial:
+    name = setup.scene.rpartition("#")[0]
+    wanted = stored_instruction(folder, record)
+    world = registry.make_world(name, setup.seed or 0)
+    if world.instruction.text != wanted.text:
+        world.close()
+        world = registry.make_world(name, setup.seed or 0, wanted)
+    # Regions that the user kept out belong to the run, not to the simulator.
+    getattr(world, "inner", world).limits = same_limits(setup)
+    try:
+        return rollout(
+            team,
+            world,
+            plan=None if setup.plan is None else recorded_plan(folder, record, setup.plan),
+            replans=setup.replans,
+            seed=setup.seed,
+            scene=setup.scene,
+            scored=setup.scored,
+        )
+    finally:
+        world.close()
+
+
+def _write_words(place: Path, words: Mapping[str, str]) -> None:
+    """The words of that time, so that a later release asks as the record's did; files it no longer has are left out."""
+    known = Prompts.default().files()
+    for name, text in words.items():
+        if name in known:
+            (place / name).write_text(text, encoding="utf-8")

@@ -1,0 +1,99 @@
+"""A recorded trial as its method lived it: the situations it was asked in, without a world."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+from wonderful_team.actions import Vocabulary
+from wonderful_team.errors import ConfigError
+from wonderful_team.interfaces import Situation
+from wonderful_team.runtime.plan_file import plan_from_json
+from wonderful_team.runtime.setup import Setup, same_limits
+from wonderful_team.runtime.stored import stored_instruction, stored_observation
+from wonderful_team.types import GateCheck, GateReport, Observation, Plan, StepReport, SubgoalRun
+
+Record = Mapping[str, Any]
+_NOTHING = {"gates": 0, "executions": 0, "subgoals": 0}
+
+
+def situations(folder: Path, record: Record, setup: Setup) -> Iterator[Situation]:
+    """What the method was told before each of its decisions, in order.
+
+    Raises:
+        ConfigError: The record does not hold what is needed; names what.
+    """
+    instruction = stored_instruction(folder, record)
+    vocabulary, limits = Vocabulary(setup.vocabulary), same_limits(setup)
+    before = _NOTHING
+    for attempt, decision in enumerate(record["planner"]["decisions"]):
+        now = decision["so_far"]
+        # The last thing that happened before a decision is a look.
+        observation = stored_observation(folder, record, now["observations"] - 1)
+        yield Situation(
+            observation,
+            instruction,
+            vocabulary,
+            limits,
+            attempt=attempt,
+            replans_left=setup.replans - attempt,
+            executed=tuple(_runs(folder, record, before, now)),
+            refused=_refusal(record["planner"]["gates"][before["gates"] : now["gates"]]),
+            plan=recorded_plan(folder, record, setup.plan) if attempt == 0 and setup.plan is not None else None,
+        )
+        before = now
+
+
+def recorded_plan(folder: Path, record: Record, plan_id: str) -> Plan:
+    """A plan of the record by its id.
+
+    Raises:
+        ConfigError: The record does not hold it.
+    """
+    for kept in record["planner"]["plans"]:
+        if kept["id"] == plan_id:
+            return plan_from_json(kept, str(folder))
+    known = ", ".join(str(kept["id"]) for kept in record["planner"]["plans"]) or "none"
+    raise ConfigError(f"{folder}: the record does not hold the plan {plan_id}; it holds: {known}")
+
+
+def _runs(folder: Path, record: Record, before: Mapping[str, int], now: Mapping[str, int]) -> Iterator[SubgoalRun]:
+    planner = record["planner"]
+    reports = iter(planner["executions"][before["executions"] : now["executions"]])
+    done: dict[int, int] = {}
+    for entry in planner["subgoals"][before["subgoals"] : now["subgoals"]]:
+        number = entry["plan"]
+        if number is None:
+            raise ConfigError(f"{folder}: subgoal {entry['subgoal']} belongs to no plan in the record")
+        plan = plan_from_json(planner["plans"][number], str(folder))
+        first = done.get(number, 0)
+        done[number] = last = first + entry["actions"]
+        told = [
+            _report(planned.action, report) for planned, report in zip(plan.actions[first:last], reports, strict=False)
+        ]
+        yield SubgoalRun(
+            entry["subgoal"],
+            _seen(folder, record, entry["before"]),
+            _seen(folder, record, entry["after"]),
+            tuple(told),
+        )
+
+
+def _report(action: Any, told: Mapping[str, Any]) -> StepReport:
+    return StepReport(action, told["executed"], told["measured"], told["fault"])
+
+
+def _seen(folder: Path, record: Record, views: Mapping[str, str]) -> Observation:
+    """The recorded observation that shows these views."""
+    for number, entry in enumerate(record["planner"]["observations"]):
+        if entry["views"] == dict(views):
+            return stored_observation(folder, record, number)
+    raise ConfigError(f"{folder}: the record holds no observation with the views {dict(views)}")
+
+
+def _refusal(gates: list[Mapping[str, Any]]) -> GateReport | None:
+    """The last passage through the gate, when it was refused."""
+    if not gates or gates[-1]["admitted"]:
+        return None
+    return GateReport(tuple(GateCheck(**check) for check in gates[-1]["checks"]))

@@ -1,0 +1,43 @@
+"""Old records open for ever: one that each schema version's first release wrote, and that is never written again."""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+
+import pytest
+
+from tests.desk import read_record
+from wonderful_team.cli.app import run
+from wonderful_team.replays import replay
+from wonderful_team.runtime import read_plan
+from wonderful_team.runtime.page import write_page
+
+GOLDEN = Path(__file__).parent / "golden" / "records"
+
+
+def _golden():
+    return sorted(path.parent for path in GOLDEN.rglob("record.json"))
+
+
+def test_there_is_a_golden_record_of_every_schema_version():
+    from wonderful_team.runtime.recorder import RECORD_SCHEMA_VERSION
+
+    kept = {read_record(folder)["schema_version"] for folder in _golden()}
+    assert kept == set(range(1, RECORD_SCHEMA_VERSION + 1))
+
+
+@pytest.mark.parametrize("folder", _golden(), ids=lambda path: f"{path.parent.name}-{path.name}")
+def test_a_golden_record_opens_shows_and_replays(folder, tmp_path, capsys):
+    """Written once by the release that introduced the version, and never written again."""
+    copy = tmp_path / folder.name
+    shutil.copytree(folder, copy)
+    page = write_page(copy).read_text(encoding="utf-8")
+    record = read_record(copy)
+    assert record["planner"]["plans"][-1]["id"] in page
+    assert run(["show", str(copy)]) == 0
+    assert record["planner"]["instruction"]["text"] in capsys.readouterr().out
+    assert read_plan(copy).id == record["planner"]["plans"][-1]["id"]
+    # A later release may ask in other words: what was answered still makes the same plan.
+    found = replay(copy, tolerant=True)
+    assert found.now == found.then

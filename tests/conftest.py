@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from wonderful_team.models.cache_store import FILE_VARIABLE
 from wonderful_team.runs import OUT_VARIABLE
 
 SECRET_ENDINGS = ("_API_KEY", "_TOKEN", "_SECRET")
@@ -38,4 +39,6 @@ def runs_folder(monkeypatch: pytest.MonkeyPatch, tmp_path_factory: pytest.TempPa
     """Where this test's run folders go."""
     folder = tmp_path_factory.mktemp("runs")
     monkeypatch.setenv(OUT_VARIABLE, str(folder))
+    # Kept answers of one test must never answer for another.
+    monkeypatch.setenv(FILE_VARIABLE, str(folder.with_name(f"{folder.name}-answers.sqlite")))
     return folder

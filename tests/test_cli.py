@@ -189,8 +189,7 @@ def test_an_unknown_task_is_exit_2_with_the_nearest(capsys: pytest.CaptureFixtur
     [
         (["run", "tabletop"], "say which task"),
         (["run", "rotate"], "say tabletop/rotate"),
-        (["run", "tabletop/rotate", "--model", "openai:some-model"], "next release"),
-        (["run", "tabletop/rotate", "--model", "http://127.0.0.1:8000/v1"], "next release"),
+        (["run", "tabletop/rotate", "--model", "http://me:word@127.0.0.1:8000/v1"], "must hold no user, password"),
         (["run", "tabletop/rotate", "--model", "ofline"], "Did you mean 'offline'?"),
         (["run", "tabletop/rotate", "--model", "chequer=offline"], "Did you mean 'checker'?"),
         (["run", "tabletop/rotate", "--model", "missing.py:M"], "there is no file"),

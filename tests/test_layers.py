@@ -19,11 +19,14 @@ TOP = {
     "made",
     "observe",
     "photos",
+    "probing",
     "registry",
     "replays",
     "runs",
     "studies",
     "trial_runs",
+    "photo_runs",
+    "checks",
 }
 ARROWS: dict[str, set[str]] = {
     **dict.fromkeys(BASE, BASE),

@@ -271,7 +271,7 @@ class Team(Method):
         told = {**self.configuration(), "task": instruction, "limits": limits, "setup": setup, "words": self.words()}
         tell(everyone, "run", str(setup["entry"]), told)
         for text in self.warnings:
-            tell(everyone, "warning", "cache", text)
+            tell(everyone, "warning", "setup", text)
         tell(everyone, "observe", "start", observation)
         if limits is NO_WORKSPACE and observation.main.camera is not None:
             tell(everyone, "warning", "workspace", "no workspace is stated: the gate checks everything but that")
@@ -341,7 +341,7 @@ def rollout(
     recorder = Recorder(folder, command=named.command if named else None)
     if named is not None:
         for text in named.warnings:
-            tell((recorder, *subscribers, *named.subscribers), "warning", "cache", text)
+            tell((recorder, *subscribers, *named.subscribers), "warning", "setup", text)
     policy: Policy = method.policy(recorder, *subscribers) if isinstance(method, Method) else method
     made = plan if isinstance(plan, MadePlan) else None
     scorer: Privileged | None = registry.privileged(world) if scored else None

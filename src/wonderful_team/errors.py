@@ -60,8 +60,72 @@ class ModelUnavailableError(WonderfulTeamError):
     exit_code = 3
 
 
+class CacheMissError(ModelUnavailableError):
+    """`--cache only` forbids asking a model, and the cache holds no answer."""
+
+
+class ReplayError(ConfigError):
+    """A record cannot be replayed: what is asked now is not what was asked then; names the request and what differs."""
+
+
+class ModelRateLimitError(ModelUnavailableError):
+    """The provider asked for a pause, and went on asking."""
+
+
+class ModelQuotaError(ModelUnavailableError):
+    """The account has no credit or quota left; waiting does not help."""
+
+
+class ModelServerError(ModelUnavailableError):
+    """The provider failed, or its reply was not a reply."""
+
+
+class ModelTimeoutError(ModelUnavailableError):
+    """No whole reply came within the deadline."""
+
+
+class ModelConnectionError(ModelUnavailableError):
+    """The provider could not be reached, or the connection broke."""
+
+
+class ModelAuthError(ConfigError):
+    """The provider refused the key; names the variable that holds it, never the key."""
+
+
+class UnknownModelError(ConfigError):
+    """The provider has no such model, or nothing answers at that address."""
+
+
+class RequestRejectedError(ConfigError):
+    """The provider refuses such requests whatever is tried; names what it said."""
+
+
+class TooManyPicturesError(RequestRejectedError):
+    """A request holds more pictures than the model takes."""
+
+
+class ContextTooLongError(RequestRejectedError):
+    """A request is longer than the model's context."""
+
+
+class LocalOnlyError(ConfigError):
+    """A model outside this machine and its private network was named although only local ones are allowed."""
+
+
 class ModelOutputError(WonderfulTeamError):
     """A model kept answering outside the contract after every allowed attempt."""
+
+
+class ModelRefusalError(ModelOutputError):
+    """The model declined to answer."""
+
+
+class ContentFilterError(ModelOutputError):
+    """The provider's content filter stopped the answer."""
+
+
+class ModelCutOffError(ModelOutputError):
+    """The answer ended at the limit of tokens before it was whole."""
 
 
 class UnsupportedQuestion(ModelOutputError):  # noqa: N818  the name says what it is

@@ -218,6 +218,12 @@ def task_names() -> dict[str, str]:
     return {f"tabletop/{name}": words for name, words in _tabletop().task_names().items()}
 
 
+def task_partitions() -> dict[str, tuple[str, ...]]:
+    """The generalisation levels of every task, as WORLD/TASK: a world is then made as WORLD/TASK@LEVEL."""
+    registering = importlib.import_module("wonderful_team.sims.tabletop.registering")
+    return {f"tabletop/{name}": tuple(registering.find_task(name).partitions) for name in _tabletop().task_names()}
+
+
 def make_world(
     name: str | Any, seed: int = 0, instruction: str | Instruction | None = None, keep_out: Sequence[KeepOut] = ()
 ) -> World:
@@ -278,7 +284,7 @@ def _named_world(name: str, seed: int) -> World:
         raise UnknownNameError("world", world, known)
     if not task:
         raise ConfigError(f"world {name!r}: say which task, one of: {', '.join(task_names())}")
-    if task not in _tabletop().task_names():
+    if task.partition("@")[0] not in _tabletop().task_names():
         raise UnknownNameError("task", name, task_names())
     return cast(World, _tabletop().make_world(task, seed=seed))
 
@@ -329,5 +335,6 @@ __all__ = [
     "scene_name",
     "task_made_of",
     "task_names",
+    "task_partitions",
     "team_way",
 ]

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Sequence
 
 from wonderful_team.agents.step_words import STEP_KINDS
 from wonderful_team.contracts import ShownSlot, ShownTask
+from wonderful_team.images.telling import axes_words, size_words
 from wonderful_team.pictures import Axes, BoxMark, Candidates, LineMark, Mark, PathMark, Picture, PointMark
 from wonderful_team.types import Note, Part, Subgoal, Target, Words
 
@@ -57,10 +58,8 @@ def safe_tag(tag: str, text: str) -> str:
 def mark_words(mark: Mark) -> str:
     """What a mark is, in a few words."""
     match mark:
-        case Axes(reference=None):
-            return "tick labels in its own pixels along the edges"
         case Axes():
-            return "tick labels along the edges, in pixels of the main view's picture"
+            return axes_words(mark)
         case BoxMark():
             return _BOX_STYLES[mark.style] + (f" labelled {mark.label}" if mark.label else "")
         case PointMark():
@@ -76,21 +75,21 @@ def mark_words(mark: Mark) -> str:
 
 def caption(picture: Picture, about: str = "") -> str:
     """The line that announces a picture: name, size, what it is, what is drawn on it."""
-    width, height = picture.size_px
-    line = f'Picture "{picture.name}" ({width} x {height} px)' + (f", {about}" if about else "")
+    line = f'Picture "{picture.name}" ({size_words(picture.size_px)})' + (f", {about}" if about else "")
     marks = list(dict.fromkeys(mark_words(mark) for mark in picture.marks))
     return line + (f"; drawn on it: {', '.join(marks)}" if marks else "") + ":"
 
 
 def picture_parts(picture: Picture, about: str = "") -> list[Part]:
     """A caption and the picture."""
-    return [Words(caption(picture, about)), picture]
+    return [Words(caption(picture, about), "caption", picture), picture]
 
 
 def answer_in(picture: Picture) -> list[Part]:
     """The line that says which picture the answer's positions refer to."""
     width, height = picture.size_px
-    return words(f'Answer with positions in picture "{picture.name}": x from 0 to {width}, y from 0 to {height}.')
+    text = f'Answer with positions in picture "{picture.name}": x from 0 to {width}, y from 0 to {height}.'
+    return [Words(text, "positions", picture)]
 
 
 def amounts_in(picture: Picture) -> list[Part]:

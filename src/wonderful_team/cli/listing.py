@@ -11,21 +11,22 @@ from wonderful_team.cli.options import PATH
 from wonderful_team.cli.output import finish
 from wonderful_team.errors import ConfigError
 
-KINDS = ("models", "worlds", "tasks", "methods", "prompts", "runs")
+KINDS = ("models", "worlds", "tasks", "suites", "methods", "prompts", "runs")
 
 
-@click.command(name="list", short_help="List models, worlds, tasks, methods, prompts or runs.")
+@click.command(name="list", short_help="List models, worlds, tasks, suites, methods, prompts or runs.")
 @click.argument("kind", type=click.Choice(KINDS))
 @click.option(
     "--out", type=PATH, metavar="DIR", help="For runs: where they lie. For prompts: write them there, to edit."
 )
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON document instead of text.")
 def command(kind: str, out: Path | None, as_json: bool) -> int:
-    """List models, worlds, tasks, methods, prompts or runs, each with a line of help."""
+    """List models, worlds, tasks, suites, methods, prompts or runs, each with a line of help."""
     lists: Mapping[str, Callable[[Path | None], dict[str, str]]] = {
         "models": _models,
         "worlds": _worlds,
         "tasks": _tasks,
+        "suites": _suites,
         "methods": _methods,
         "prompts": _prompts,
         "runs": _runs,
@@ -57,6 +58,15 @@ def _tasks(out: Path | None) -> dict[str, str]:
     from wonderful_team.registry import task_names
 
     return task_names()
+
+
+def _suites(out: Path | None) -> dict[str, str]:
+    from wonderful_team.studies import known_suites
+
+    return {
+        name: f"{len(suite.tasks)} tasks; {suite.help or suite.protocol.name}{'; ' + suite.note if suite.note else ''}"
+        for name, suite in known_suites().items()
+    }
 
 
 def _methods(out: Path | None) -> dict[str, str]:

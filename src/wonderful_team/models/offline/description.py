@@ -36,6 +36,7 @@ Relation: TypeAlias = Literal[
 ]  # fmt: skip
 Superlative: TypeAlias = Literal[
     "largest", "smallest", "leftmost", "rightmost", "topmost", "bottommost", "middle", "tallest", "shortest", "nearest",
+    "darkest", "lightest",
 ]  # fmt: skip
 
 
@@ -65,6 +66,9 @@ class Description:
         related: Relations that must hold.
         quantity: one | each | all (also plurals) | number.
         number: How many when quantity is number.
+        placed: For an area: the thing whose place in the instruction's picture `like` is meant.
+        since: Name of the picture before it in a sequence: the place is where the thing came to between the two.
+        excluded: What is left out of all that fit ("all blocks except the red one").
         text: The words it came from.
     """
 
@@ -83,3 +87,6 @@ class Description:
     material: str | None = None
     quantity: Literal["one", "each", "all", "number"] = "one"
     number: int = 1
+    excluded: tuple[Description, ...] = ()
+    placed: Description | None = None
+    since: str | None = None

@@ -142,7 +142,7 @@ def test_rendered_words_read_back_the_same(description: Description) -> None:
 NONSENSE = {
     "put the red mug to the left of the laptop": ("mug", "laptop"),
     "colourless green ideas sleep furiously": ("colourless", "ideas", "sleep", "furiously"),
-    "swap the red block and the blue block": ("swap",),
+    "weld the red block to the blue block": ("weld",),
     "Open the drawer": ("drawer",),
     "Pour the water into the glass": ("pour", "water", "glass"),
     "Make me a sandwich": ("sandwich",),

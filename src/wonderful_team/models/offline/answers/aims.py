@@ -10,10 +10,13 @@ from wonderful_team.models.offline.answers.eyes import GOOD, NEARLY_EQUAL, Eyes,
 from wonderful_team.models.offline.description import Description
 from wonderful_team.models.offline.language import Command, Destination, Understood, render
 from wonderful_team.models.offline.vision import Match, Thing
+from wonderful_team.models.offline.vision.relations import superlative_key
 from wonderful_team.models.offline.vision.things import covers
 
 RIVAL = 0.6
 """A second match with at least this share of the best score could be taken for it."""
+SAME_SHAPE = 0.85
+"""A thing has a shape when it fits at least this share as well as its best one."""
 LARGER = 1.3
 """A thing goes into another that is at least so many times its area."""
 
@@ -91,9 +94,13 @@ def derive(understood: Understood, eyes: Eyes, *, strict: bool = True, literal: 
     """
     result = Aims(literal=literal)
     moved: dict[int, int] = {}
+    stay = _staying(understood, eyes)
     for command in understood.commands:
         first = len(result.aims)
         for aim in _of_command(command, eyes, result, strict):
+            if aim.thing.number in stay:
+                result.notes.append(f"{aim.thing.words} stays where it is, as asked")
+                continue
             after = set(aim.after)
             if command.after_last and first:
                 after.add(first - 1)
@@ -107,7 +114,25 @@ def derive(understood: Understood, eyes: Eyes, *, strict: bool = True, literal: 
     return result
 
 
+def _staying(understood: Understood, eyes: Eyes) -> frozenset[int]:
+    """Numbers of the things that the words say must not be moved."""
+    return frozenset(number for what in understood.spared for number in _numbers(what, eyes))
+
+
+def _numbers(description: Description, eyes: Eyes) -> list[int]:
+    """Numbers of the things that a description means."""
+    if description.quantity == "one":
+        number = eyes.number(description)
+        return [] if number is None else [number]
+    found = eyes.find(replace(description, quantity="all"))
+    return [match.thing.number for match in found if match.thing is not None]
+
+
 def _of_command(command: Command, eyes: Eyes, result: Aims, strict: bool) -> list[Aim]:
+    if command.kind in ("arrange", "follow", "restore"):
+        from wonderful_team.models.offline.answers.showing import shown_aims
+
+        return shown_aims(command, eyes, result)
     goal = command.to
     into = goal is not None and goal.how == "in" and goal.what is not None
     # What goes into something is smaller than it: that settles words which fit both.
@@ -130,7 +155,13 @@ def _of_command(command: Command, eyes: Eyes, result: Aims, strict: bool) -> lis
         if to is not None and command.conditional and to.number is None:
             result.notes.append(f"there is no {to.words}")
             continue
-        if goal.how in ("in", "on") and to is not None and not result.literal and already(eyes, thing, to):
+        moved_before = any(aim.thing.number == thing.number for aim in result.aims if thing.number is not None)
+        if (
+            goal.how in ("in", "on")
+            and to is not None
+            and not (result.literal or moved_before)
+            and already(eyes, thing, to)
+        ):
             result.notes.append(f"{thing.words} is already {goal.how} {to.words}")
             continue
         aims.append(Aim(command.kind, thing, goal.how, to, other, goal.side))
@@ -141,8 +172,20 @@ def _things(description: Description, eyes: Eyes, result: Aims, strict: bool, pl
     if description.quantity == "one":
         return [_one(description, eyes, result, strict, fits_in=place)]
     wanted = description if description.quantity == "all" else replace(description, quantity="all")
-    matches = [match for match in eyes.find(wanted) if match.thing is not None]
+    order = wanted.superlative if description.quantity == "number" and description.number > 1 else None
+    if order is not None:
+        wanted = replace(wanted, superlative=None)
+    left_out = {number for item in description.excluded for number in _numbers(item, eyes)}
+    matches = [match for match in eyes.find(wanted) if match.thing is not None and match.thing.number not in left_out]
+    if wanted.shape is not None:
+        # Of all that resemble it, those of that very shape: a disc is no square, though it comes near.
+        matches = [m for m in matches if m.thing is not None and _has_shape(m.thing, wanted.shape)] or matches
     matches.sort(key=lambda match: match.box.x0)
+    if order is not None:
+        matches.sort(key=lambda match: superlative_key(match.thing, order))
+    if place is not None:
+        # What goes into something is neither that thing itself nor larger than it.
+        matches = [m for m in matches if m.thing is not None and m.thing.number != place.number] or matches
     if description.quantity == "number":
         matches = matches[: description.number]
     if not matches:
@@ -155,6 +198,10 @@ def _things(description: Description, eyes: Eyes, result: Aims, strict: bool, pl
             Named(unique_words(eyes, match.thing, noun, description.name, description.shape), match.thing.number)
         )
     return named
+
+
+def _has_shape(thing: Thing, shape: str) -> bool:
+    return thing.look.shapes[shape] >= SAME_SHAPE * max(thing.look.shapes.values())
 
 
 def _one(

@@ -2,10 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
+from wonderful_team.contracts import ShownSlot
 from wonderful_team.geometry import Box
+from wonderful_team.models.offline.answers.eyes import eyes_of
+from wonderful_team.models.offline.description import Description
 from wonderful_team.models.offline.vision import BoxFit, Scene, free_spots, see
 from wonderful_team.pictures import Picture, Point
 
+PLACE_SLACK = 0.25
+"""How far the middle of a box may lie from the place shown, in shares of the place's sides."""
 FREE_ENOUGH = 0.08
 """Share of a box that things may cover while it still counts as free."""
 
@@ -38,3 +45,16 @@ def nearest_free(scene: Scene, box: Box) -> Point:
         return box.centre
     cx, cy = box.centre
     return min((spot.point for spot in spots), key=lambda point: (point[0] - cx) ** 2 + (point[1] - cy) ** 2)
+
+
+def judge_place(description: Description, crop: Picture, box: Box, slots: Sequence[ShownSlot]) -> BoxFit:
+    """How a box stands to the place that one of the instruction's pictures shows."""
+    found = eyes_of(crop, slots).find(description)
+    if not found:
+        return BoxFit("absent", None, None, 0.0, None, (), (), 0.0, f"no picture shows the {description.text}")
+    there = found[0].box
+    iou = there.iou(box)
+    near = max(abs(there.centre[0] - box.centre[0]) / there.width, abs(there.centre[1] - box.centre[1]) / there.height)
+    if near < PLACE_SLACK:
+        return BoxFit("tight", None, there, iou, None, (), (), 1.0, f"{found[0].why}, {near:.2f} of its sides away")
+    return BoxFit("empty", None, there, iou, None, (), (), 1.0, f"{found[0].why}, not in the box")

@@ -22,8 +22,14 @@ from wonderful_team.contracts import (
     ShownSlot,
 )
 from wonderful_team.geometry import Box
-from wonderful_team.models.offline.answers.areas import judge_area, nearest_free
-from wonderful_team.models.offline.answers.eyes import examples_of, eyes_of, is_free_area, target_description
+from wonderful_team.models.offline.answers.areas import judge_area, judge_place, nearest_free
+from wonderful_team.models.offline.answers.eyes import (
+    examples_of,
+    eyes_of,
+    is_free_area,
+    shape_alone,
+    target_description,
+)
 from wonderful_team.models.offline.answers.finding import middle_of, push_goal
 from wonderful_team.models.offline.vision import BoxFit, fit_box, see, strip_presence
 from wonderful_team.pictures import BoxMark, Picture, Point
@@ -52,13 +58,17 @@ def measure(target: Target, crop: Picture, box: Box, examples: Sequence[ShownSlo
     description = target_description(target)
     if is_free_area(description):
         return judge_area(crop, box)
-    return fit_box(crop, box, description, examples_of(examples))
+    if description.placed is not None:
+        return judge_place(description, crop, box, examples)
+    known = examples_of(examples)
+    return fit_box(crop, box, shape_alone(description, known), known)
 
 
 def answer_presence(question: Presence) -> PresenceAnswer:
     """Per edge, whether the target's colours show in the strips."""
     description = target_description(question.target)
     examples = examples_of(question.examples)
+    description = shape_alone(description, examples)
     shows = {
         (strip.edge, strip.side): strip_presence(strip.picture, description, examples) for strip in question.strips
     }
@@ -182,10 +192,15 @@ def answer_choose_point(question: ChoosePoint) -> PointChoice:
     points = question.candidates.points
     description = target_description(question.target)
     box = marked_box(question.crop)
+    if description.placed is not None:
+        fit = judge_place(description, question.crop, box, question.examples)
+        wanted = (fit.best or box).centre
+        return _nearest(points, wanted, range(1, len(points) + 1), fit.why)
     if is_free_area(description):
         spot = nearest_free(see(question.crop), box)
         return _nearest(points, spot, range(1, len(points) + 1), "the freest place in the box")
-    fit = fit_box(question.crop, box, description, examples_of(question.examples))
+    known = examples_of(question.examples)
+    fit = fit_box(question.crop, box, shape_alone(description, known), known)
     if fit.target is None:
         return _nearest(points, box.centre, range(1, len(points) + 1), f"{fit.why}; nearest to the middle of the box")
     if question.role in ("pick", "grasp"):

@@ -22,6 +22,7 @@ from wonderful_team.contracts.shown import ShownTask
 from wonderful_team.errors import NotUnderstoodError
 from wonderful_team.models.offline.answers.aims import Aim, Aims, Named, derive
 from wonderful_team.models.offline.answers.eyes import Eyes, eyes_of_task
+from wonderful_team.models.offline.answers.instruction import read_task
 from wonderful_team.models.offline.description import Description
 from wonderful_team.models.offline.language import describe, render, try_understand, understand
 from wonderful_team.models.offline.language.wording import relation_words
@@ -41,9 +42,11 @@ class _Writer:
     targets: list[TargetDraft] = field(default_factory=list)
 
     def target(self, description: Description, use: PointRole, kind: str | None = None) -> str:
-        like = [description.like] if description.like in self.slots and description.like else []
+        like = [name for name in (description.since, description.like) if name and name in self.slots]
         words = render(replace(description, related=()))
-        where = " and ".join(relation_words(related) for related in description.related)
+        if description.placed is not None:
+            words = render(replace(description, like=None))
+        where = "; ".join(relation_words(related) for related in description.related)
         what = kind or ("area" if description.noun == "area" else "object")
         for position, known in enumerate(self.targets):
             if (known.words, known.where, known.like) == (words, where, like):
@@ -63,7 +66,7 @@ def aim_text(aim: Aim) -> str:
         return f"rotate {thing} by {abs(aim.rotate_deg):g} degrees {way}"
     verb = "push" if aim.kind == "push" else "put"
     if aim.how == "origin":
-        return f"{verb} {thing} back to its original place"
+        return f"{verb} {thing} " + (f"to where the {aim.to.words} was" if aim.to else "back to its original place")
     if aim.how == "side":
         return f"{verb} {thing} {_side_words(aim.side)}"
     assert aim.to is not None  # every other destination has a reference
@@ -125,7 +128,7 @@ def draft(task: ShownTask, with_targets: bool, advice: Sequence[str] = ()) -> tu
     Raises:
         NotUnderstoodError: The instruction holds unknown words, or names a picture that was not given.
     """
-    understood = understand(task.instruction)
+    understood = read_task(task)
     missing = [name for name in re.findall(r"\{([^{}]+)\}", task.instruction) if name not in task.slot_names]
     if missing:
         raise NotUnderstoodError(
@@ -141,6 +144,8 @@ def draft(task: ShownTask, with_targets: bool, advice: Sequence[str] = ()) -> tu
             result,
         )
     result.aims = cleared(result.aims, eyes)
+    if understood.nothing_else:
+        result.notes.append("nothing else is moved, as asked")
     reasoning = _reasoning(understood.used, result, eyes)
     if advice:
         result.aims, told = _advised(result.aims, advice, eyes)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 from wonderful_team.contracts import ShownSlot, ShownTask
 from wonderful_team.models.offline.description import COLOURS, SHAPES, Description
@@ -26,6 +26,8 @@ NEARLY_EQUAL = 0.06
 """Two scores closer than this, both good, are a genuine ambiguity (0 to 1)."""
 GOOD = 0.55
 """A match with at least this score fits (0 to 1)."""
+COLOURLESS = 0.6
+"""From this degree of grey and plainness on, an example picture shows a shape and no looks (0 to 1)."""
 WHOLE = frozenset(
     ("whole", "centre", "center", "middle", "body", "inside", "interior", "surface", "top", "all", "top surface")
 )
@@ -34,19 +36,34 @@ WHOLE = frozenset(
 
 @dataclass(frozen=True, eq=False)
 class Eyes:
-    """One picture and the example pictures shown with it."""
+    """One picture and the instruction's pictures shown with it.
+
+    Attributes:
+        examples: What the pictures of single things show, by name.
+        pictures: The instruction's pictures of a whole table (scenes, frames), by name: the main camera's.
+        looked_at: The picture that `scene` was seen in.
+    """
 
     scene: Scene
     examples: Mapping[str, Example]
+    pictures: Mapping[str, Picture] = field(default_factory=dict)
+    looked_at: Picture | None = None
 
     def find(self, description: Description) -> list[Match]:
         """What fits, best first; empty when nothing does or it cannot be judged by eye."""
+        if description.placed is not None:
+            from wonderful_team.models.offline.answers.showing import place_shown
+
+            return place_shown(description, self)
         if description.like is not None and description.like not in self.examples:
             return []
         if is_free_area(description) and description.superlative is not None:
             return self._spots_at(description)
         try:
             found = resolve(self.scene, description, self.examples)
+            if not found or description.superlative is not None:
+                by_shape = shape_alone(description, self.examples)
+                found = resolve(self.scene, by_shape, self.examples) if by_shape is not description else found
             if not found and description.noun == "object" and description.shape is not None:
                 # "the blue square" may well be a flat one, such as a sheet of paper.
                 found = resolve(self.scene, replace(description, noun="thing"), self.examples)
@@ -79,15 +96,31 @@ class Eyes:
         return next((thing for thing in self.scene.things if thing.number == number), None)
 
 
+def shape_alone(description: Description, examples: Mapping[str, Example]) -> Description:
+    """The same description, its example counting for its shape only where the picture shows a plain grey thing."""
+    example = examples.get(description.like or "")
+    if example is None or description.like_only is not None:
+        return description
+    look = example.look
+    colourless = look.memberships["grey"] + look.memberships["white"] + look.memberships["black"]
+    if colourless < COLOURLESS or look.patterns["plain"] < COLOURLESS:
+        return description
+    return replace(description, like_only="shape")
+
+
 def is_free_area(description: Description) -> bool:
     """Whether free table is meant and not a thing or coloured region with looks of its own."""
+    if description.placed is not None:
+        return False
     looks = description.colours or description.pattern or description.material or description.shape or description.like
     return description.noun == "area" and not looks
 
 
 def eyes_of(picture: Picture, slots: Iterable[ShownSlot]) -> Eyes:
-    """Look at a picture and at the instruction's pictures of single objects."""
-    return Eyes(see(picture), examples_of(slots))
+    """Look at a picture and at the instruction's pictures."""
+    slots = tuple(slots)
+    tables = {slot.name: slot.pictures[0] for slot in slots if slot.kind != "object" and slot.pictures}
+    return Eyes(see(picture), examples_of(slots), tables, picture)
 
 
 def examples_of(slots: Iterable[ShownSlot]) -> dict[str, Example]:
@@ -122,6 +155,10 @@ def target_description(target: Target) -> Description:
     if target.part and target.part.lower().strip() not in WHOLE:
         describe(target.part)  # refuses by name: parts are not told apart by eye
         words = f"{target.part} {target.words}" if try_describe(f"{target.part} {target.words}") else words
+    placed = try_describe(words)
+    if placed is not None and placed.placed is not None:
+        since = target.like[0] if len(target.like) > 1 else None
+        return replace(placed, like=target.like[-1] if target.like else placed.like, since=since)
     if target.like:
         description = try_describe(words, target.where) or try_describe(words)
         if description is None:

@@ -5,13 +5,14 @@ from __future__ import annotations
 import numpy as np
 
 from wonderful_team.contracts import Advice, JudgeOutcome, Outcome, Replan, VerdictDraft
+from wonderful_team.errors import NotUnderstoodError
 from wonderful_team.geometry import Box, Frame
 from wonderful_team.models.offline.answers.aims import already, derive
 from wonderful_team.models.offline.answers.eyes import Eyes, eyes_of, eyes_of_task
+from wonderful_team.models.offline.answers.instruction import read_task
 from wonderful_team.models.offline.answers.roles import Task, tasks_of
 from wonderful_team.models.offline.answers.turning import turned_deg
 from wonderful_team.models.offline.description import Description
-from wonderful_team.models.offline.language import try_understand
 from wonderful_team.models.offline.vision import Thing, strip_presence
 from wonderful_team.models.offline.vision.things import covers
 from wonderful_team.pictures import BoxMark, Picture
@@ -68,6 +69,8 @@ class _Judge:
             return self._turned(task, thing, now)
         if task.place is None:
             return self._back(task, thing, now)
+        if task.aim is not None and task.aim.how == "origin":
+            return self._took_place(task, thing, now)
         return self._at_place(task, thing, now)
 
     def cause(self, subgoal: str, evidence: str) -> str:
@@ -160,6 +163,19 @@ class _Judge:
             "done" if moved <= 1.0 else "not_done"
         ), f"the {task.thing.words} lies {moved:.1f} radii from where it was"
 
+    def _took_place(self, task: Task, was: Thing, now: Thing) -> tuple[str, str]:
+        """Whether a thing lies where another one was."""
+        assert task.thing is not None  # checked by the caller
+        assert task.place is not None  # checked by the caller
+        number = task.aim.to.number if task.aim is not None and task.aim.to is not None else None
+        other = self._was(task.place, number)
+        if other is None:
+            return "unclear", f"the {task.place.words} does not show in the picture before"
+        gap = float(np.hypot(now.centre[0] - other.centre[0], now.centre[1] - other.centre[1]))
+        away = gap / max(was.radius_px, other.radius_px, 1.0)
+        status = "done" if away <= 1.0 else "not_done"
+        return status, f"the {task.thing.words} lies {away:.1f} radii from where the {task.place.words} was"
+
     def _turned(self, task: Task, was: Thing, now: Thing) -> tuple[str, str]:
         assert task.thing is not None  # checked by the caller
         if self._moved(was, now) > 2.0:
@@ -213,8 +229,9 @@ def answer_replan(question: Replan) -> Advice:
 
 def _nothing_left(question: Replan) -> bool:
     """Whether the instruction asks for nothing more in the picture as it is now."""
-    understood = try_understand(question.task.instruction)
-    if understood is None:
+    try:
+        understood = read_task(question.task)
+    except NotUnderstoodError:
         return False
     eyes = eyes_of_task(question.task)
     return not [

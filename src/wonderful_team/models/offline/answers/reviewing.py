@@ -15,7 +15,8 @@ from wonderful_team.errors import NotUnderstoodError
 from wonderful_team.models.offline.answers.aims import Aim, Aims, Named, derive
 from wonderful_team.models.offline.answers.drafting import aim_text, cleared
 from wonderful_team.models.offline.answers.eyes import Eyes, eyes_of_task, target_description
-from wonderful_team.models.offline.language import try_understand, understand
+from wonderful_team.models.offline.answers.instruction import read_task
+from wonderful_team.models.offline.language import try_understand
 from wonderful_team.types import Subgoal, Target
 
 
@@ -50,7 +51,7 @@ def findings(
         NotUnderstoodError: The instruction itself cannot be read.
     """
     eyes = eyes_of_task(task)
-    wanted = derive(understand(task.instruction), eyes, strict=False)
+    wanted = derive(read_task(task), eyes, strict=False)
     wanted.aims = cleared(wanted.aims, eyes)
     read = [read_subgoal(subgoal, targets, eyes) for subgoal in subgoals]
     found = _cannot_be_done(read, step_kinds)

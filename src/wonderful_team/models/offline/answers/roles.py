@@ -47,7 +47,7 @@ def tasks_of(subgoal: Subgoal, targets: Sequence[Target], eyes: Eyes) -> list[Ta
 def _task(subgoal: Subgoal, aim: Aim, known: Sequence[tuple[Target, Named | None]]) -> Task:
     thing = _player(aim.thing, known, TO_MOVE, None)
     place = None
-    if aim.kind != "rotate" and aim.how != "origin":
+    if aim.kind != "rotate" and (aim.how != "origin" or aim.to is not None):
         if aim.how in ("side", "between") or aim.to is None:
             place = _spot(known, thing)
         else:

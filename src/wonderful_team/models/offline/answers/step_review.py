@@ -115,7 +115,12 @@ def _wrong_place(end: Place, task: Task, eyes: Eyes) -> str:
     wanted = place_of(task, eyes)
     same_spot = isinstance(end, At) and task.thing is not None and end.target == task.thing.id
     if wanted["how"] == "origin":
-        return "" if isinstance(end, OriginOf) or same_spot else f"why does it leave its place for {end.target}"
+        other = task.thing is not None and wanted["target"] != task.thing.id
+        if other:
+            right = isinstance(end, OriginOf) and end.target == wanted["target"]
+            return "" if right else f"must it not go to where {wanted['target']} stood"
+        own = isinstance(end, OriginOf) and end.target == wanted["target"]
+        return "" if own or same_spot else f"why does it leave its place for {end.target}"
     if end.target != wanted["target"]:
         return f"is {end.target} the right place"
     if isinstance(end, OriginOf):

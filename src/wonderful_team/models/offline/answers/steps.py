@@ -89,6 +89,8 @@ def place_of(task: Task, eyes: Eyes) -> dict[str, object]:
     how = task.aim.how if task.aim is not None else ""
     if task.place is None:
         return {"target": task.thing.id, "how": "origin", "side": None}
+    if how == "origin":
+        return {"target": task.place.id, "how": "origin", "side": None}
     if how in SIDES:
         return {"target": task.place.id, "how": "beside", "side": how}
     if how == "near" and task.place.kind == "object":

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import cv2
 import numpy as np
 
@@ -29,6 +31,18 @@ def turned_deg(before: Picture, was: Thing, after: Picture, now: Thing, asked_de
     asked = _fit(_rotated(first, asked_deg), second)
     if asked >= fits.max() - CLEARLY * 0.5:
         return asked_deg % 360
+    return float(turns[int(fits.argmax())])
+
+
+def common_turn_deg(pairs: Sequence[tuple[Picture, Thing, Picture, Thing]]) -> float | None:
+    """The clockwise turn [degrees, 0 to 360) that fits all pairs (before, thing, after, thing) best; None when all fit alike."""
+    turns = np.arange(0.0, 360.0, STEP_DEG)
+    fits = np.zeros(len(turns))
+    for before, was, after, now in pairs:
+        first, second = _patch(before, was), _patch(after, now)
+        fits += np.array([_fit(_rotated(first, turn), second) for turn in turns])
+    if fits.max() - fits.min() < CLEARLY:
+        return None
     return float(turns[int(fits.argmax())])
 
 

@@ -22,10 +22,25 @@ PRONOUN = "it"
 
 def thing_of(tree: Tree[Token]) -> Description:
     """The description of an `np`."""
+    if isinstance(tree.children[0], Token) and tree.children[0].type == "PLACE_OF":
+        return _place_of(tree)
     description = Description(noun="object", text="")
     for child in tree.children:
         if isinstance(child, Tree):
             description = CHANGES[str(child.data)](child)(description)
+    if description.quantity == "all" and any(token.type == "OF_TWO" for token in tokens_in(tree)):
+        description = replace(description, quantity="one")
+    return replace(description, text=render(description))
+
+
+def _place_of(tree: Tree[Token]) -> Description:
+    """ "the place of the red star in {scene}": where that picture shows it."""
+    thing = thing_of(next(trees(tree, "np")))
+    like = next((str(value_of(tokens_in(slot)[-1])) for slot in trees(tree, "in_slot")), None)
+    if like is None:
+        like, thing = thing.like, replace(thing, like=None)
+        thing = replace(thing, text=render(thing))
+    description = Description(noun="area", text="", placed=thing, like=like)
     return replace(description, text=render(description))
 
 
@@ -40,6 +55,9 @@ def related_of(tree: Tree[Token]) -> Related:
 
 def _quantity(tree: Tree[Token]) -> Change:
     kinds = {token.type: token for token in tokens_in(tree)}
+    if "ONE_OF" in kinds and "NUMBER" not in kinds:
+        # Any of several will do.
+        return lambda d: replace(d, quantity="each" if "EACH" in kinds else "number", number=1)
     if "NUMBER" in kinds:
         number = int(float(value_of(kinds["NUMBER"])))
         return lambda d: replace(d, quantity="one" if number == 1 else "number", number=number)
@@ -80,6 +98,8 @@ def _head_word(description: Description, token: Token) -> Description:
             return replace(description, noun="thing", quantity="all")
         case "IT" | "THEY":
             return replace(description, noun="thing", name=PRONOUN)
+        case "FORMER" | "LATTER":
+            return replace(description, noun="thing", name=token.type.lower())
         case "TABLE":
             return replace(description, noun="area", name="table")
         case _:
@@ -157,6 +177,9 @@ def _plain_post(tree: Tree[Token]) -> Change:
     kinds = [token.type for token in tree.children if isinstance(token, Token)]
 
     def change(description: Description) -> Description:
+        if "EXCEPT" in kinds:
+            spared = tuple(_of_kind(np, description) for np in trees(tree, "np"))
+            return replace(description, excluded=(*description.excluded, *spared))
         if "SAME" in kinds:
             aspect = str(value_of(next(token for token in tokens_in(tree) if token.type == "ASPECT")))
             reference = thing_of(next(trees(tree, "np")))
@@ -186,7 +209,22 @@ def _plain_post(tree: Tree[Token]) -> Change:
     return change
 
 
+def _of_kind(tree: Tree[Token], whole: Description) -> Description:
+    """What "except the red one" leaves out is of the kind that it is left out of."""
+    spared = thing_of(tree)
+    heads = [token.type for head in trees(tree, "head") for token in tokens_in(head)]
+    if heads == ["ONE"]:
+        spared = replace(spared, noun=whole.noun, name=whole.name, shape=spared.shape or whole.shape)
+        spared = replace(spared, text=render(spared))
+    return spared
+
+
 def _post(tree: Tree[Token]) -> Change:
+    beside = next((token for token in tokens_in(tree) if token.type == "BESIDE_IT"), None)
+    if beside is not None:
+        it = (Description(noun="thing", text="it", name=PRONOUN),)
+        both = (Related(value_of(beside), it), Related("near", it))
+        return lambda d: replace(d, related=(*d.related, *both))
     related = related_of(tree)
     if len(related.to) == 1 and related.to[0].like is not None and "scene" in related.to[0].like:
         # "in {scene}" says which picture shows it; the thing itself is looked for on the table.

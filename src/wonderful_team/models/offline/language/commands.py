@@ -7,7 +7,7 @@ from typing import Literal, TypeAlias
 
 from wonderful_team.models.offline.description import Description
 
-CommandKind: TypeAlias = Literal["put", "rotate", "push"]
+CommandKind: TypeAlias = Literal["put", "rotate", "push", "arrange", "follow", "restore"]
 Where: TypeAlias = Literal[
     "in", "on", "left", "right", "above", "below", "near", "between", "origin", "matching", "side"
 ]
@@ -21,7 +21,7 @@ class Destination:
     Attributes:
         how: in or on a thing; on a named side of it; near it; between two; origin (where it stood); matching (the one that
             shares `aspect` with the thing moved); side (towards a side of the picture, `side`).
-        what: The reference, None for origin and side; the kind of thing that must match for matching.
+        what: The reference, None for side and for its own origin; for origin the thing whose place it takes; the kind of thing that must match for matching.
         other: The second reference of between.
         aspect: What must be shared for matching.
         side: leftmost | rightmost | topmost | bottommost, for side.
@@ -42,6 +42,7 @@ class Command:
         rotate_deg: Clockwise seen from above; for rotate only.
         conditional: Only where the destination exists ("if such an area exists").
         after_last: The words say that the command before it comes first ("then").
+        pictures: Names of the instruction's pictures that show what to do: the goal for arrange, the frames for follow.
     """
 
     kind: CommandKind
@@ -50,6 +51,7 @@ class Command:
     rotate_deg: float = 0.0
     conditional: bool = False
     after_last: bool = False
+    pictures: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -59,8 +61,12 @@ class Understood:
     Attributes:
         commands: In order of execution.
         used: The words that carried meaning, in order, as written.
+        nothing_else: The words say that nothing but what they name may be moved.
+        spared: Things that the words say must stay where they are.
     """
 
     text: str
     commands: tuple[Command, ...]
     used: tuple[str, ...]
+    nothing_else: bool = False
+    spared: tuple[Description, ...] = ()

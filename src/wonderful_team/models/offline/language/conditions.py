@@ -43,7 +43,8 @@ def open_conditions(text: str) -> tuple[str, bool]:
     A condition that comes first and names what "it" is ("if there is an area of the same colour, put each fruit into
     it") lends its words to the pronoun. A clause with any other word stays, so that its words are refused by name.
     """
-    text = _SCENE.sub(" ", text)
+    if not re.search(r"\bplace of\b", text):
+        text = _SCENE.sub(" ", text)
     text, leaves = _without(text, _LEAVE, _LEAVE_WORDS)
     text, named = _leading(text)
     if named:
@@ -91,7 +92,12 @@ def _without(text: str, pattern: re.Pattern[str], allowed: frozenset[str] | set[
     def drop(found: re.Match[str]) -> str:
         nonlocal cut
         words = re.findall(r"[a-z']+", found.group(0).lower())
-        if all(word in allowed for word in words):
+        stood = re.search(
+            r"where\W+(?:it|they|everything|all)\W+(?:was|were|stood|lay|came|started|had)",
+            found.group(0),
+            re.IGNORECASE,
+        )
+        if all(word in allowed for word in words) and not stood:
             cut = True
             return " "
         return found.group(0)

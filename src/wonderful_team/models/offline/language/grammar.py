@@ -16,7 +16,7 @@ KINDS = (
     "PUT TAKE ROTATE STACK PUSH SORT GIVE WANT LEAVE IN INTO ON ONTO TO NEAR BY ABOVE BELOW BETWEEN OF WITH FROM AS AND THEN THAT "
     "WHOSE FOR CONTAIN FILL THERE IT ITS THEY MATCH SAME SHARE AUX EACH ALL ONE EVERYTHING REST WHERE COLOUR PATTERN SHAPE NOUN ASPECT "
     "SUPER SIDE ORDINAL NUMBER DARK ORANGE TABLE TURN FREE ORIGIN LEFT_OF RIGHT_OF FAR SIDE_POST ANGLE SHAPED LIKE "
-    "ON_TABLE CORNER MATERIAL LOOK SLOT LETTER COMMA SEP"
+    "ON_TABLE CORNER MATERIAL LOOK SLOT LETTER COMMA SEP EXCEPT ONE_OF OF_TWO FORMER LATTER SWAP PLACE_OF BESIDE_IT"
 )
 
 GRAMMAR = rf"""
@@ -24,7 +24,7 @@ GRAMMAR = rf"""
 
 sentence: SHARE? (clause | ellipsis) (join (clause | ellipsis))*
 join: THEN | SEP | AND | COMMA
-?clause: put | contain | rotate | stack | push | sort
+?clause: put | contain | rotate | stack | push | sort | swap
 ellipsis: things goal
 
 put: _put_words
@@ -68,16 +68,18 @@ angle: (BY | TO | OF)? ANGLE (TURN | SIDE_POST | IN? TURN)?
 stack: STACK things (COMMA? (ON | ONTO | IN | INTO) np)+
 push: PUSH things goal | WANT things AUX* PUSH goal | things AUX+ PUSH goal
     | PUSH things SIDE | PUSH goal things | TAKE things (AND | COMMA | THEN)? PUSH IT? goal
+swap: SWAP np (AND | WITH | FOR) np
 sort: MATCH things (WITH | TO | AND) goal
     | SORT things THAT (EACH (ONE | NOUN)? | ALL | IT | THEY) AUX* PUT? goal
     | SORT things (BY | ON | IN | INTO | TO) ASPECT
     | SORT things goal
     | SORT things (BY | ON) (ITS | SAME)? ASPECT goal
 
-goal: goal_at | goal_between | goal_origin | goal_match | goal_side | goal_there
+goal: goal_at | goal_where | goal_between | goal_origin | goal_match | goal_side | goal_there
 goal_at: ORIGIN? where np
-goal_between: (IN | INTO | TO)? BETWEEN np AND np
+goal_between: (IN | INTO | TO)? BETWEEN np (AND np)?
 goal_origin: ORIGIN
+goal_where: (TO | IN | ON)? WHERE np AUX
 goal_side: SIDE_POST ON_TABLE? | (TO | IN | ON)? CORNER ON_TABLE?
 goal_there: THERE | (IN | INTO | ON | ONTO | TO) THAT NOUN
 goal_match: where? matched
@@ -109,13 +111,14 @@ had_match: THAT? (SHARE | WITH) matched
 
 np: THAT? quantity? adj* head plain_post*
     | THAT? quantity? adj* head plain_post* post+
-quantity: EACH | ALL | NUMBER | ALL NUMBER | REST
-adj: colour | PATTERN PATTERN? | (MATERIAL | LOOK) PATTERN? ASPECT? | SHAPE | SHAPE SHAPED | SUPER | SIDE | ORDINAL | ORDINAL SUPER | FREE
+    | PLACE_OF np in_slot?
+quantity: EACH | ALL | NUMBER | ALL NUMBER | REST | ONE_OF NUMBER? | EACH ONE_OF
+adj: colour | PATTERN PATTERN? | (MATERIAL | LOOK) PATTERN? ASPECT? | SHAPE | SHAPE SHAPED | SUPER | SIDE | ORDINAL | ORDINAL SUPER | SUPER OF_TWO | SUPER ONE OF_TWO | FREE
     | SLOT ASPECT? | NOUN | SLOT SHAPED | COMMA adj | LETTER
 colour: DARK? (COLOUR | ORANGE) ASPECT? ((AND | COMMA) DARK? (COLOUR | ORANGE) ASPECT?)* | DARK ASPECT?
-head: NOUN | SHAPE | LETTER | ORANGE | SLOT | ONE | EVERYTHING | IT | TABLE | NOUN LETTER | THEY
+head: NOUN | SHAPE | LETTER | ORANGE | SLOT | ONE | EVERYTHING | IT | TABLE | NOUN LETTER | THEY | FORMER | LATTER
 plain_post: SIDE_POST | ON_TABLE | CORNER | (IN | ON)? CORNER | FROM SIDE_POST | FROM SIDE
-    | in_slot | LIKE SLOT | THAT LIKE SLOT | OF SLOT | AS SLOT | THAT AUX? LIKE np
+    | in_slot | LIKE SLOT | THAT LIKE SLOT | THAT? MATCH SLOT | colour | PATTERN | OF SLOT | AS SLOT | THAT AUX? LIKE np
     | THAT AUX colour | THAT AUX PATTERN | (OF | WITH | IN) colour? (MATERIAL | LOOK) ASPECT? | THAT AUX (MATERIAL | LOOK) | THAT AUX SHAPE | THAT AUX SUPER | SUPER
     | THAT? AUX SIDE_POST | THAT AUX FREE | THAT AUX ORDINAL (FROM SIDE)?
     | (WITH | IN | OF | SHARE | THAT SHARE) colour? PATTERN (ASPECT)?
@@ -124,11 +127,13 @@ plain_post: SIDE_POST | ON_TABLE | CORNER | (IN | ON)? CORNER | FROM SIDE_POST |
     | (WITH | OF | THAT SHARE) SLOT ASPECT
     | IN ASPECT
     | (WITH | OF | IN | THAT SHARE | THAT AUX)+ SAME ASPECT (AS | OF) np
-    | SUPER TO np
+    | SUPER TO np | THAT AUX SUPER TO np | COMMA? EXCEPT (FOR | IN)? np (spared np)*
     | SHAPED SLOT | SHAPED SHAPE | SHAPED LETTER
+spared: AND | COMMA
 in_slot: (IN | FROM | ON) SLOT
 post: THAT? AUX* PUT? relation np
     | THAT? AUX* BETWEEN np AND np
+    | THAT? AUX* BESIDE_IT
 relation: LEFT_OF | RIGHT_OF | ABOVE | BELOW | near | FAR | ON | IN
 """
 """`goal` against `post`: "the block left of the bowl" may end a noun phrase or start a goal; the reader picks the tree
@@ -185,6 +190,19 @@ def simplest(tree: Tree[Token]) -> tuple[Tree[Token], float]:
             cost += child_cost
             if best.data == "things" and tree.data != "things":
                 cost += 0.5 * sum(1 for _ in best.find_data("post"))
+            if (
+                best.data == "plain_post"
+                and len(best.children) == 1
+                and (
+                    getattr(best.children[0], "data", "") == "colour"
+                    or getattr(best.children[0], "type", "") == "PATTERN"
+                )
+            ):
+                cost += 0.6  # a colour after its noun ("everything red")
+            if best.data == "plain_post" and any(
+                isinstance(item, Token) and item.type == "EXCEPT" for item in best.children
+            ):
+                cost -= 0.3 * len(best.children)
             if best.data == "adj" and any(
                 isinstance(item, Token) and item.type in ("NOUN", "LETTER") for item in best.children
             ):

@@ -11,11 +11,14 @@ from functools import lru_cache
 
 from wonderful_team.errors import NotUnderstoodError
 from wonderful_team.models.offline.description import Description
+from wonderful_team.models.offline.language.asides import set_aside, without_reasons
 from wonderful_team.models.offline.language.changes import related_of, thing_of
-from wonderful_team.models.offline.language.commands import Understood
+from wonderful_team.models.offline.language.commands import Command, Understood
 from wonderful_team.models.offline.language.conditions import open_conditions
 from wonderful_team.models.offline.language.grammar import parse
 from wonderful_team.models.offline.language.meaning import Meaning
+from wonderful_team.models.offline.language.ordering import in_order
+from wonderful_team.models.offline.language.slots import BY_PARTS, VERBS, Unclear, gist_of_matching, read_clauses
 from wonderful_team.models.offline.language.tokens import Token, refusal, tokenise
 from wonderful_team.models.offline.language.vocabulary import known_words
 
@@ -27,15 +30,41 @@ def understand(text: str) -> Understood:
     Raises:
         NotUnderstoodError: A word is unknown, or the words do not make an instruction; says which.
     """
-    plain, conditional = open_conditions(text)
+    asides = set_aside(in_order(without_reasons(text)), try_describe)
+    plain, conditional = open_conditions(asides.text)
     tokens = _joined(tokenise(plain))
-    tree = parse(tokens, "sentence")
-    if tree is None:
-        raise NotUnderstoodError(_no_sentence(text, tokens))
-    commands = Meaning().commands(tree)
-    if conditional:
+    commands = _commands(tokens, asides.text, text)
+    if conditional or asides.others_without:
         commands = tuple(replace(command, conditional=True) for command in commands)
-    return Understood(text, commands, tuple(token.text for token in tokens))
+    used = tuple(token.text for token in tokens)
+    return Understood(text, commands, used, asides.nothing_else, asides.spared)
+
+
+def _commands(tokens: list[Token], words: str, text: str) -> tuple[Command, ...]:
+    """Commands by the grammar; by parts where it knows no such order of words; by the gist where all says "matching"."""
+    tree = None if any(token.kind in BY_PARTS for token in tokens) else parse(tokens, "sentence")
+    missed = ""
+    if tree is not None:
+        try:
+            return Meaning().commands(tree)
+        except NotUnderstoodError as error:
+            missed = str(error)
+    try:
+        every = _joined(
+            tokenise(re.sub(r"\b(?:if|when|whenever|wherever|provided)\b", " ", words, flags=re.IGNORECASE))
+        )
+        gist = gist_of_matching(every)
+        if gist is not None:
+            return (gist,)
+    except NotUnderstoodError:
+        pass
+    try:
+        commands = read_clauses(tokens, Meaning())
+    except (Unclear, NotUnderstoodError) as error:
+        raise NotUnderstoodError(_no_sentence(text, tokens, missed or str(error))) from error
+    if not commands:
+        raise NotUnderstoodError(_no_sentence(text, tokens, "nothing in it says what to do"))
+    return commands
 
 
 @lru_cache(maxsize=2048)
@@ -72,6 +101,11 @@ def try_describe(words: str, where: str = "") -> Description | None:
 
 
 def _with_where(description: Description, where: str) -> Description:
+    parts = [part for part in where.split(";") if part.strip()]
+    if len(parts) > 1:
+        for part in parts:
+            description = _with_where(description, part)
+        return description
     tokens = [token for token in tokenise(where) if token.kind not in ("SEP", "COMMA")]
     if not tokens or all(token.kind in ("ON_TABLE", "TABLE", "ON") for token in tokens):
         return description
@@ -97,6 +131,7 @@ def _noun_words(words: str) -> str:
 
 def _joined(tokens: list[Token]) -> list[Token]:
     """Runs of commas, stops, "and" and "then" become one; none at either end."""
+    tokens = _without_and(tokens)
     rank = {"COMMA": 0, "AND": 1, "SEP": 2, "THEN": 3}
     joined: list[Token] = []
     for token in tokens:
@@ -112,13 +147,33 @@ def _joined(tokens: list[Token]) -> list[Token]:
     return joined
 
 
-def _no_sentence(text: str, tokens: list[Token]) -> str:
+def _without_and(tokens: list[Token]) -> list[Token]:
+    """ "all fruits but the lime": "but" leaves out; a stop after "build a tower" says nothing."""
+    out: list[Token] = []
+    for at, token in enumerate(tokens):
+        if token.kind == "SEP" and out and out[-1].kind == "STACK":
+            continue
+        after = tokens[at + 1].kind if at + 1 < len(tokens) else ""
+        many = any(item.kind in ("EACH", "ALL", "EVERYTHING") for item in out[-4:])
+        if (
+            token.text == "but"
+            and many
+            and after not in VERBS
+            and out[-1].kind in ("NOUN", "SHAPE", "EVERYTHING", "ONE")
+        ):
+            out.append(Token("EXCEPT", "except", token.text))
+        else:
+            out.append(token)
+    return out
+
+
+def _no_sentence(text: str, tokens: list[Token], missing: str) -> str:
     if not tokens:
         return refusal(tokens, [text.strip()])
     return (
-        f"I know every word, but they do not make an instruction for me: {text.strip()!r}. "
-        f"I used: {', '.join(token.text for token in tokens)}. I understand: put X into/onto/left of/beside Y, "
-        "rotate X by N degrees, stack X on Y, push X to Y, sort or put each X into the Y of the same colour. "
+        f"I used: {', '.join(token.text for token in tokens)}. I do not know what is meant by {text.strip()!r}: {missing}. "
+        "The words are known, but they do not make an instruction for me. I understand: put X into/onto/left of/beside Y, "
+        "rotate X by N degrees, stack X on Y, push X to Y, swap X and Y, sort or put each X into the Y of the same colour. "
         f"I know: {known_words()}. For other wordings name a vision-language model: --model anthropic:..., or probe your "
         "own server."
     )

@@ -13,19 +13,20 @@ ARTICLES = frozenset(("the", "a", "an", "this", "these", "those", "some"))
 
 FILLERS = frozenset(
     """please kindly could can would will you i we me us now just simply carefully gently slowly precisely exactly
-    directly straight robot arm gripper hand hey hi hello ok okay thanks thank  like love d ll let lets first
+    directly straight robot arm gripper hand hey hi hello ok okay thanks thank  like love d ll let lets
     firstly finally lastly next  also too again lying located standing sitting situated resting positioned found
-    currently together once so task job goal your my our   safely properly correctly respective respectively
+    currently once so task job goal your my our   safely properly correctly respective
     entire whole  own real alone picture image shown displayed pictured seen visible workspace scene desk
-    surface tabletop here away down up overall around bright vivid respectively suitable appropriate proper  individual
-    desktop single mind actually then able""".split()
+    surface tabletop here away down up overall around bright vivid suitable appropriate proper  individual
+    desktop single mind actually then able nice happy glad shall perhaps maybe kind happily yes well quite
+    simple simply current presently""".split()
 )
 """Words that are skipped: politeness, addressing the robot, and words that do not change what is asked."""
 
 _COLOURS: dict[str, str] = {
     "red": "red crimson scarlet ruby vermilion maroon",
     "yellow": "yellow gold golden",
-    "green": "green lime emerald",
+    "green": "green emerald",
     "cyan": "cyan turquoise teal aqua",
     "blue": "blue navy azure cobalt",
     "purple": "purple violet lilac lavender mauve",
@@ -73,22 +74,30 @@ _NOUNS: dict[str, str] = {
     "ball": "ball sphere",
 }
 _CONTAINERS = "container bowl dish plate pan tray box bin basket receptacle pallet holder"
-_FRUITS = "apple banana lemon pear plum strawberry grape blueberry cherry peach kiwi tomato mango melon"
+_FRUITS = (
+    "apple apricot avocado banana blackberry blueberry cherry coconut fig grape grapefruit kiwi lemon lime mandarin mango "
+    "melon peach pear plum strawberry tangerine tomato watermelon"
+)
 _PLURALS = {"strawberry": "strawberries", "blueberry": "blueberries", "cherry": "cherries", "peach": "peaches",
             "box": "boxes", "dish": "dishes", "cross": "crosses", "patch": "patches", "tomato": "tomatoes",
-            "mango": "mangoes", "kiwi": "kiwis"}  # fmt: skip
+            "mango": "mangoes", "kiwi": "kiwis", "blackberry": "blackberries"}  # fmt: skip
 
 _VERBS: dict[str, str] = {
     "PUT": "put place move bring drop set lay transfer relocate deposit shift position carry deliver insert load placed "
     "moved brought dropped laid transferred relocated deposited shifted carried delivered inserted loaded putting "
     "placing moving bringing dropping transferring stick store throw toss slot pop stow stash dump "
     "plop tuck add hand send haul convey transport lower slip pass stored thrown",
-    "TAKE": "take grab pick get lift fetch find locate grasp identify seize collect gather",
-    "ROTATE": "rotate turn spin rotated turned spun rotation twist rotating turning spinning revolve swivel reorient orient pivot",
+    "TAKE": "take grab pick get lift fetch find locate grasp identify seize collect gather see spot notice consider taking "
+    "picking grabbing choose select look",
+    "ROTATE": "rotate turn spin rotated turned rotates turns spins spun rotation twist rotating turning spinning revolve swivel reorient orient pivot",
     "STACK": "stack pile stacked piled stacking",
+    "SWAP": "swap exchange interchange switch swapped exchanged switched swapping exchanging switching trade",
+    "RETURN": "return restore returned restored returning restoring undo reset",
+    "REMOVE": "remove removed removing",
+    "FACE": "point face points faces pointing facing pointed",
     "PUSH": "push slide pushed slid shove nudge pushing sliding drag",
-    "SORT": "sort distribute  group sorted distributed sorting allocate assign organise organize arrange",
-    "GIVE": "give perform apply make do execute",
+    "SORT": "sort distribute pair unite combine couple  group sorted distributed sorting allocate assign organise organize arrange",
+    "GIVE": "give perform apply make do execute undergo undergoes receive receives does makes",
     "WANT": "want wish",
     "LEAVE": "leave ignore skip keep",
 }
@@ -111,22 +120,31 @@ _SMALL: dict[str, str] = {
     "CONTAIN": "contain hold",
     "FILL": "fill",
     "THEN": "then afterwards afterward subsequently thereafter",
-    "THAT": "that which",
+    "THAT": "that which until till",
     "WHOSE": "whose",
     "FOR": "for",
     "THERE": "there",
     "IT": "it them itself themselves",
-    "ITS": "its their",
+    "ITS": "its their theirs",
     "THEY": "they",
-    "MATCH": "match matches matching matched fits corresponds correspond fitting belonging",
+    "MATCH": "match matches matching matched suits suit suiting fits corresponds correspond fitting belonging",
     "SAME": "same identical corresponding equal",
-    "SHARE": "shares share sharing has have",
-    "AUX": "should must shall be is are been being goes go belongs belong ends end ought gets",
+    "SHARE": "shares share sharing has have shows contains holds",
+    "AUX": "should must shall be is are been being goes go belongs belong was were stood ends end ought gets lies lie stands stand sits sit rests wants wait comes come going",
     "EACH": "each every",
     "ALL": "all both",
     "ONE": "one ones",
+    "RESPECTIVELY": "respectively",
     "EVERYTHING": "everything",
     "REST": "rest others other remaining",
+    "EXCEPT": "except excluding excepting save besides",
+    "ACCORDING": "accordingly according",
+    "FORMER": "former",
+    "LATTER": "latter",
+    "MEASURE": "angle amount",
+    "OPPOSITE": "backwards backward",
+    "OFF": "off out",
+    "ENOUGH": "enough wanted needed required desired due called",
     "WHERE": "where",
 }
 _ASPECTS: dict[str, str] = {
@@ -157,13 +175,29 @@ _SUPERLATIVES: dict[str, str] = {
     "topmost": "topmost uppermost",
     "bottommost": "bottommost lowermost lowest",
     "middle": "middle central centre center",
-    "tallest": "tallest highest tall",
-    "shortest": "shortest short",
+    "tallest": "tallest highest tall taller",
+    "shortest": "shortest short shorter",
     "nearest": "nearest closest",
+    "darkest": "darkest",
+    "lightest": "lightest palest brightest",
 }
 _SIDES = {"left": "leftmost", "right": "rightmost", "top": "topmost", "bottom": "bottommost", "upper": "topmost",
           "lower": "bottommost"}  # fmt: skip
-_ORDINALS = {"second": 2, "third": 3, "fourth": 4, "fifth": 5, "2nd": 2, "3rd": 3, "4th": 4, "5th": 5}
+_ORDINALS = {
+    "first": 1,
+    "1st": 1,
+    "last": -1,
+    "sixth": 6,
+    "6th": 6,
+    "second": 2,
+    "third": 3,
+    "fourth": 4,
+    "fifth": 5,
+    "2nd": 2,
+    "3rd": 3,
+    "4th": 4,
+    "5th": 5,
+}
 NUMBERS = {"two": 2, "three": 3, "four": 4, "five": 5, "six": 6, "seven": 7, "eight": 8, "nine": 9, "ten": 10,
            "fifteen": 15, "twenty": 20, "thirty": 30, "forty": 40, "fortyfive": 45, "fifty": 50, "sixty": 60,
            "seventy": 70, "eighty": 80, "ninety": 90, "hundred": 100}  # fmt: skip
@@ -224,6 +258,34 @@ def _noun(words: dict[str, Entry], word: str, value: tuple[str, str]) -> None:
 
 WORDS: dict[str, Entry] = _words()
 """Single words."""
+
+
+def _origin_phrases() -> list[str]:
+    """Ways of saying "back to where it was"."""
+    olds = "original initial old former first previous own starting earlier".split()
+    places = "place position location spot container bowl area pose point home".split()
+    phrases = [
+        f"{to} {whose} {old} {place}"
+        for to in ("to", "into", "in", "back to", "back into", "at", "back in", "back onto", "onto")
+        for whose in ("its", "their", "the")
+        for old in olds
+        for place in (*places, *(place + "s" for place in places))
+    ]
+    for it in ("it", "they", "everything", "all"):
+        for was in ("was", "were", "came from", "stood", "lay", "started", "had been", "used to be", "began", "has been",
+                    "was before", "were before", "was at first", "was originally", "were originally", "belonged"):  # fmt: skip
+            phrases += [f"{to}where {it} {was}" for to in ("", "to ", "back to ", "back ")]
+    phrases += [
+        "back again",
+        "back home",
+        "back there",
+        "back to start",
+        "to its home",
+        "to the start",
+        "back to its home",
+    ]
+    return phrases
+
 
 PHRASES: dict[tuple[str, ...], Entry] = {
     tuple(word for word in words.split() if word not in ARTICLES): entry
@@ -305,7 +367,8 @@ PHRASES: dict[tuple[str, ...], Entry] = {
         (("NOUN", ("fruit", "", True)), ("pieces of fruit",)),
         (("ROTATE", "rotate"), ("turn around", "turn round", "rotate around", "spin around")),
         (("STACK", "stack"), ("pile up", "stack up")),
-        (("SORT", "sort"), ("sort out",)),
+        (("SORT", "sort"), ("sort out", "bring together", "put together")),
+        (("SKIP", "skip"), ("together",)),
         (("TURN", -1.0), ("counter clockwise", "anti clockwise", "against the clock", "opposite to clockwise")),
         (("TURN", 1.0), ("in clockwise direction", "clock wise", "in a clockwise direction",
                          "in the clockwise direction")),
@@ -319,6 +382,61 @@ PHRASES: dict[tuple[str, ...], Entry] = {
                             "half of a turn", "one half turn", "half way round", "halfway round", "halfway around")),
         (("ANGLE", 270.0), ("three quarter turn", "three quarters of a turn", "a three quarter turn",
                             "three quarters turn")),
+        (("ANGLE", 120.0), ("a third of a turn", "one third of a turn", "third of a turn", "a third of a full turn",
+                            "a third of a rotation")),
+        (("ANGLE", 240.0), ("two thirds of a turn", "two thirds of a rotation", "two thirds of a full turn")),
+        (("ANGLE", 60.0), ("a sixth of a turn", "one sixth of a turn", "a sixth of a full turn")),
+        (("SAMEANGLE", None), ("that much", "by that much", "the same amount", "the same angle", "as much", "that angle",
+                               "this angle", "that amount", "this much", "just as far", "as far", "equally far",
+                               "the same way", "likewise", "the same extent", "this amount", "exactly that much",
+                               "the given angle", "just as much")),
+        (("OPPOSITE", 180.0), ("the other way", "the other way round", "the other way around", "the opposite direction",
+                               "the opposite way", "other direction", "in the opposite direction",
+                               "in the other direction", "the reverse direction", "the opposite side",
+                               "the other side", "in the reverse direction", "to the opposite side",
+                               "the reverse of its direction", "to the other side")),
+        (("STACK", "tower"), ("build a tower", "make a tower", "build a stack", "make a stack", "create a tower",
+                              "form a tower", "construct a tower", "erect a tower", "create a stack", "form a stack",
+                              "build up a tower", "make a pile", "build a pile", "set up a tower", "building a tower",
+                              "construct a stack", "assemble a tower", "assemble a stack")),
+        (("SWAP", "swap"), ("trade places", "change places", "switch places", "swap places", "exchange places",
+                            "trade positions", "swap positions", "exchange positions", "switch positions",
+                            "change positions", "swap the places of", "swap the positions of",
+                            "exchange the positions of", "exchange the places of", "switch the positions of",
+                            "switch the places of", "interchange the positions of", "interchange the places of",
+                            "swap round", "swap around", "switch around", "take each other s place",
+                            "take each others places", "take each other s places")),
+        (("REMOVE", "remove"), ("get rid of", "take away", "clear away", "clear", "put away", "put aside", "set aside",
+                                "move aside", "move out of the way", "take out", "take off")),
+        (("PLACE_OF", "place"), ("the place of", "the right place of", "the right place for", "the place for", "the home of",
+                                 "the destination of", "the destination for", "the proper place of",
+                                 "the proper place for", "the target of", "the spot for")),
+        (("ON_TABLE", "table"), ("on the wrong place", "in the wrong place", "at the wrong place", "in a wrong place",
+                                 "at a wrong place", "in the wrong spot", "not where it should be")),
+        (("EXCEPT", "except"), ("except for", "apart from", "other than", "but not", "with the exception of", "save for",
+                                "aside from", "all but not", "not including", "leaving out", "without counting",
+                                "though not", "not counting", "but for")),
+        (("OFF", "off"), ("out of", "off of", "away off", "from out of", "off from")),
+        (("ONE_OF", 1.0), ("one of", "any one of", "any of", "a single one of", "either of", "just one of",
+                           "exactly one of")),
+        (("OF_TWO", "of"), ("of the two", "of both", "of the three", "out of the two", "among the", "of all",
+                            "out of all")),
+        (("ACCORDING", "according"), ("according to", "depending on", "in accordance with", "as determined by",
+                                      "on the basis of", "based on", "with regard to", "with respect to")),
+        (("SKIP", "skip"), ("what about", "how about", "d be happy if you", "d be glad if you", "would be happy if you",
+                            "would be glad if you", "it would be nice if you", "it would be nice to have",
+                            "it would be good if you", "would be nice if", "shall we", "would you be so kind as to",
+                            "would be great if you", "it would be great if you", "i d appreciate it if you",
+                            "i would appreciate it if you", "i d ask you to", "time to", "what i need is",
+                            "what i want is", "what you should do is", "what you have to do is", "is it possible to",
+                            "would it be possible to", "do me a favour and", "do me a favor and", "be a dear and",
+                            "in the end", "at the end", "as a first step", "as a last step", "to start with",
+                            "to begin with", "as the first thing", "as the last thing", "the task", "for me",
+                            "on its own", "for now", "right now", "at once", "if you would", "if you like",
+                            "one after the other", "one after another", "one by one", "in any order",
+                            "the following", "as it stands")),
+        (("SIDE_POST", "leftmost"), ("towards the left", "toward the left", "to its left")),
+        (("SIDE_POST", "rightmost"), ("towards the right", "toward the right", "to its right")),
         (("ANGLE", 45.0), ("an eighth of a turn", "one eighth of a turn", "an eighth turn")),
         (("ANGLE", 360.0), ("a full turn", "full turn", "a complete turn", "one full turn", "a full rotation")),
         (("ORIGIN", "origin"), ("back to its original place", "back to where it was", "back where it was",
@@ -327,7 +445,7 @@ PHRASES: dict[tuple[str, ...], Entry] = {
                                 "back to its origin", "to its origin", "back to its initial position",
                                 "where it was before", "back to where it came from", "to its old place",
                                 "back to its old place", "where it was", "back in its place", "to its starting point",
-                                "back to where it stood", "where it stood")),
+                                "back to where it stood", "where it stood", *_origin_phrases())),
         (("SHAPE", ("l-shape", False)), ("l shaped", "l shape", "shape of an l", "shape of the letter l")),
         (("SHAPED", "shaped"), ("shaped", "shaped like", "in the shape of", "formed like", "with the shape of")),
         (("PATTERN", "checkered"), ("checker board", "chess board")),

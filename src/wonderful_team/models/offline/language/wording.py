@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from wonderful_team.models.offline.description import Description, Related
 
 _RELATION_WORDS = {"left_of": "left of", "right_of": "right of", "above": "above", "below": "below", "near": "next to",
@@ -14,6 +16,10 @@ _FROM = {"leftmost": "left", "rightmost": "right", "topmost": "top", "bottommost
 
 def render(description: Description) -> str:
     """Plain words for a description, without an article; ends with its relations."""
+    if description.placed is not None:
+        return f"place of the {render(description.placed)}" + (
+            f" in {{{description.like}}}" if description.like else ""
+        )
     words, tail = _counted(description)
     words += _looks(description) + _head(description)
     if _is_corner(description):
@@ -21,6 +27,8 @@ def render(description: Description) -> str:
     if description.like and description.like_only is None:
         tail.append(f"shown in {{{description.like}}}")
     tail += [relation_words(related) for related in description.related]
+    if description.excluded:
+        tail.append("except the " + " and the ".join(render(item) for item in description.excluded))
     return " ".join([*words, *tail])
 
 
@@ -97,3 +105,12 @@ def _is_corner(description: Description) -> bool:
 def _corner(description: Description) -> str:
     names = {"topmost": "top", "bottommost": "bottom", "leftmost": "left", "rightmost": "right"}
     return " ".join(names[word] for word in description.name.split())
+
+
+def split_colours(thing: Description) -> list[Description]:
+    """ "the red, green and blue blocks" are three kinds of thing, not one in three colours."""
+    if thing.quantity not in ("all", "each", "number") or len(thing.colours) <= 1 or thing.pattern or thing.material:
+        return [thing]
+    quantity = "one" if thing.quantity == "number" and thing.number == len(thing.colours) else thing.quantity
+    parts = [replace(thing, colours=(colour,), quantity=quantity, number=1) for colour in thing.colours]
+    return [replace(part, text=render(part)) for part in parts]

@@ -37,6 +37,10 @@ FRUITS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
 """Everyday looks of fruit: colours and outlines."""
 
 
+RIVAL_FRUIT = 0.5
+"""A fruit that fits at most this share as well as another fruit is that other one: a green round fruit is a lime, no apple."""
+
+
 def named_score(thing: Thing, description: Description) -> float:
     """How well a particular name fits: a letter, or a fruit; 1 for names that say nothing to the eye."""
     name = description.name
@@ -45,12 +49,21 @@ def named_score(thing: Thing, description: Description) -> float:
         own, best = letters[name.upper()], max(letters.values())
         return float(np.clip((own - 0.3) / 0.35, 0, 1) * np.clip((own / max(best, 1e-6) - 0.6) / 0.3, 0, 1))
     if name.lower() in FRUITS:
-        colours, outlines = FRUITS[name.lower()]
-        shown = sum(thing.look.memberships[colour] for colour in colours)
-        form = max(_form(thing.look, outline) for outline in outlines)
-        first = thing.look.memberships[colours[0]]
-        return float(np.clip(shown / 0.55, 0, 1) * (0.35 + 0.65 * form) * (0.45 + 0.55 * min(1.0, first / 0.5)))
+        own = _fruit_fit(thing, name.lower(), named=bool(description.colours))
+        if description.colours:
+            return own  # "the green apple": the words say which of its colours is meant
+        best = max(_fruit_fit(thing, other, named=False) for other in FRUITS)
+        return own * float(np.clip((own / max(best, 1e-6) - RIVAL_FRUIT) / (0.85 - RIVAL_FRUIT), 0, 1))
     return 1.0
+
+
+def _fruit_fit(thing: Thing, name: str, *, named: bool) -> float:
+    """How well a fruit's colours and outline fit; its first colour counts most unless the words name one."""
+    colours, outlines = FRUITS[name]
+    shown = sum(thing.look.memberships[colour] for colour in colours)
+    form = max(_form(thing.look, outline) for outline in outlines)
+    first = 1.0 if named else thing.look.memberships[colours[0]]
+    return float(np.clip(shown / 0.55, 0, 1) * (0.35 + 0.65 * form) * (0.45 + 0.55 * min(1.0, first / 0.5)))
 
 
 def _form(look: Look, outline: str) -> float:

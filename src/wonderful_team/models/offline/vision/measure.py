@@ -12,7 +12,7 @@ from wonderful_team.geometry import Box
 from wonderful_team.geometry.arrays import Array
 from wonderful_team.models.offline.description import COLOURS, Description
 from wonderful_team.models.offline.vision.colours import memberships, to_lab
-from wonderful_team.models.offline.vision.resolve import suits
+from wonderful_team.models.offline.vision.resolve import FITS, suits
 from wonderful_team.models.offline.vision.scene import see, shrink, working_zoom
 from wonderful_team.models.offline.vision.table import find_table
 from wonderful_team.models.offline.vision.things import _BINS, Example, Thing
@@ -21,8 +21,9 @@ from wonderful_team.pictures import Picture
 Side: TypeAlias = Literal["left", "top", "right", "bottom"]
 SIDES: tuple[Side, ...] = ("left", "top", "right", "bottom")
 
-SURE = 0.5
-"""Score from which a thing alone in a crop is taken for the target: stricter than among the rivals of a whole scene."""
+SURE = FITS
+"""Score from which a thing alone in a crop is taken for the target: the same as in a scene, so that what was found there
+is not judged absent in its own crop."""
 
 TIGHT = 0.72
 """Intersection over union with the measured outline from which a box is good."""

@@ -174,3 +174,11 @@ def same_outline(one: Outline, other: Outline) -> float:
     solidity_gap = abs(one.solidity - other.solidity)
     score = np.clip((iou - 0.55) / 0.4, 0, 1) * np.clip(1 - gap / 0.35, 0, 1)
     return float(score * np.clip(1 - 1.2 * hole_gap, 0, 1) * np.clip(1 - 1.2 * solidity_gap, 0, 1))
+
+
+def same_form(one: Outline, other: Outline) -> float:
+    """How alike two outer edges are, holes and sizes left out, 0 to 1: a ring and a disc are both round."""
+    spectrum = np.conj(np.fft.rfft(other.profile)) * np.fft.rfft(one.profile)
+    shared = np.fft.irfft(spectrum, n=ANGLES).max()
+    gap = np.sqrt(max((one.profile**2).mean() + (other.profile**2).mean() - 2 * shared / ANGLES, 0.0))
+    return float(np.clip(1 - gap / 0.12, 0, 1) * np.clip(1 - 1.5 * abs(one.solidity - other.solidity), 0, 1))

@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
+import cv2
 import numpy as np
 
 from wonderful_team.models.offline.vision.examples import alike_colour, alike_pattern
-from wonderful_team.models.offline.vision.outlines import same_outline
+from wonderful_team.models.offline.vision.outlines import Outline, filled, same_form, study_outline
 from wonderful_team.models.offline.vision.things import Match, Scene, Thing, covers
 
 DIRECTIONS = {"left_of": (-1.0, 0.0), "right_of": (1.0, 0.0), "above": (0.0, -1.0), "below": (0.0, 1.0)}
@@ -36,11 +37,20 @@ def relation_score(relation: str, thing: Thing, others: Sequence[Thing], scene: 
         case "same_colour":
             return alike_colour(thing.look, other.look)
         case "same_pattern":
-            return alike_pattern(thing.look, other.look)
+            # A texture is a surface as a whole: its colours and how they are spread.
+            return alike_colour(thing.look, other.look) * (0.4 + 0.6 * alike_pattern(thing.look, other.look))
         case "same_shape":
-            return same_outline(thing.look.outline, other.look.outline)
+            return same_form(_body(thing), _body(other))
         case _:
             raise ValueError(f"unknown relation {relation!r}")
+
+
+def _body(thing: Thing) -> Outline:
+    """The outer edge of a thing without thin parts that stick out, such as a handle."""
+    size = max(3, int(0.55 * thing.radius_px / thing.zoom) | 1)
+    whole = np.pad(filled(thing.mask), size).astype(np.uint8)
+    opened = cv2.morphologyEx(whole, cv2.MORPH_OPEN, cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (size, size)))
+    return study_outline(opened > 0 if opened.any() else whole > 0)
 
 
 def direction_score(relation: str, point: tuple[float, float], origin: tuple[float, float]) -> float:
@@ -77,13 +87,13 @@ def pick_superlative(scene: Scene, matches: list[Match], superlative: str, ordin
         return []
     if superlative == "middle":
         return _middle(placed)
-    keys = [_key(match.thing, superlative, scene) for match in placed if match.thing is not None]
+    keys = [superlative_key(match.thing, superlative) for match in placed if match.thing is not None]
     order = np.argsort(keys, kind="stable")
     chosen = int(order[ordinal - 1])
     neighbours = [int(order[k]) for k in (ordinal - 2, ordinal) if 0 <= k < len(order)]
     scale = (
         max(abs(keys[chosen]), 1e-6)
-        if superlative in ("largest", "smallest", "tallest", "shortest")
+        if superlative in ("largest", "smallest", "tallest", "shortest", "darkest", "lightest")
         else (0.5 * placed[chosen].box.width)
     )
     lead = min((abs(keys[k] - keys[chosen]) / scale for k in neighbours), default=1.0)
@@ -92,7 +102,7 @@ def pick_superlative(scene: Scene, matches: list[Match], superlative: str, ordin
     return [replace(best, score=best.score * sure, why=f"{best.why}, {superlative} {sure:.2f}")]
 
 
-def _key(thing: Thing, superlative: str, scene: Scene) -> float:
+def superlative_key(thing: Thing, superlative: str) -> float:
     """Sort key: the smallest is picked."""
     match superlative:
         case "largest":
@@ -107,6 +117,10 @@ def _key(thing: Thing, superlative: str, scene: Scene) -> float:
             return thing.centre[1]
         case "bottommost" | "nearest":  # the picture's bottom is nearest to the viewer
             return -thing.centre[1]
+        case "darkest" | "lightest":
+            light = sum(colour.lab[0] * colour.share for colour in thing.look.colours)
+            light /= max(sum(colour.share for colour in thing.look.colours), 1e-6)
+            return light if superlative == "darkest" else -light
         case "tallest":
             return -(thing.height_m or 0.0)
         case "shortest":

@@ -19,6 +19,9 @@ from wonderful_team.pictures import Point
 FITS = 0.4
 """Score from which a thing is taken to fit a description."""
 
+NEAR_BEST = 0.75
+"""Share of the best score from which things like an example are compared with each other."""
+
 _WEIGHTS = {"colour": 0.7, "pattern": 0.5, "outline": 1.0, "size": 0.35}
 """How much each aspect of an example counts (exponents of a weighted geometric mean)."""
 
@@ -40,6 +43,10 @@ def resolve(scene: Scene, description: Description, examples: Mapping[str, Examp
     for related in description.related:
         matches = _related(scene, matches, related.relation, related.to, examples)
     if description.superlative is not None:
+        if description.like is not None and matches:
+            # "the taller {thing}": only what is really like it is compared.
+            top = max(match.score for match in matches)
+            matches = [match for match in matches if match.score >= NEAR_BEST * top]
         matches = pick_superlative(scene, matches, description.superlative, description.ordinal)
     matches.sort(key=lambda match: -match.score)
     return _with_margins(matches)

@@ -1,0 +1,89 @@
+"""What a service says of a model without being asked a question: how long its context is."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+_NAMES = (
+    "max_model_len",
+    "context_length",
+    "max_context_length",
+    "context_window",
+    "inputTokenLimit",
+    "n_ctx",
+    "loaded_context_length",
+)
+"""Fields with a context length: vLLM and SGLang, OpenRouter and LM Studio, others, Google, llama.cpp."""
+
+
+def context_length(
+    api: str, base_url: str, model: str, key: str | None, *, timeout_s: float = 5.0, direct: bool = True
+) -> tuple[int, str] | None:
+    """The model's context length [tokens] and where that stands; None when the service does not say.
+
+    Args:
+        api: As providers call it: server, openrouter, google, …
+        base_url: Address of the service, without a trailing slash.
+        model: What the service calls the model.
+        key: Sent as the service wants it; None for none.
+        timeout_s: For each place asked.
+        direct: Never through a proxy.
+    """
+    for method, url, body in _places(api, base_url, model):
+        found = _fetched(method, url, body, key, api, timeout_s, direct)
+        tokens = _length(found, model)
+        if tokens is not None:
+            return tokens, f"{method} {url}"
+    return None
+
+
+def _places(api: str, base_url: str, model: str) -> Iterator[tuple[str, str, Mapping[str, Any] | None]]:
+    """Where the length may stand, in order."""
+    if api == "google":
+        yield "GET", f"{base_url}/v1beta/models/{model}", None
+        return
+    if api in ("server", "openrouter", "openai-chat"):
+        yield "GET", f"{base_url}/models", None
+    if api == "server":
+        root = base_url.removesuffix("/v1")
+        yield "GET", f"{root}/props", None  # llama.cpp
+        yield "POST", f"{root}/api/show", {"model": model}  # Ollama
+
+
+def _fetched(
+    method: str, url: str, body: Mapping[str, Any] | None, key: str | None, api: str, timeout_s: float, direct: bool
+) -> Any:
+    import httpx2
+
+    headers = {} if not key else {"x-goog-api-key": key} if api == "google" else {"Authorization": f"Bearer {key}"}
+    try:
+        with httpx2.Client(timeout=timeout_s, trust_env=not direct, follow_redirects=False) as client:
+            reply = client.request(method, url, headers=headers, json=body)
+            return json.loads(reply.text) if reply.status_code == 200 else None
+    except (httpx2.HTTPError, ValueError):
+        # Most services have only one of these places.
+        return None
+
+
+def _length(found: Any, model: str) -> int | None:
+    """The length in what came back: in the model's own entry of a list, else anywhere in it."""
+    if isinstance(found, dict):
+        listed = found.get("data", found.get("models"))
+        if isinstance(listed, list):
+            own = [
+                entry for entry in listed if isinstance(entry, dict) and model in (entry.get("id"), entry.get("name"))
+            ]
+            return next((tokens for entry in own if (tokens := _anywhere(entry)) is not None), None)
+    return _anywhere(found)
+
+
+def _anywhere(value: Any) -> int | None:
+    if not isinstance(value, dict):
+        return None
+    for name, item in value.items():
+        is_length = name in _NAMES or (name.endswith(".context_length") and "." in name)
+        if is_length and isinstance(item, int) and not isinstance(item, bool) and item > 0:
+            return item
+    return next((tokens for item in value.values() if (tokens := _anywhere(item)) is not None), None)

@@ -1,0 +1,62 @@
+"""Which family a model's name suggests. Only a first guess: a served name says little, and a saved profile wins."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from typing import Literal, TypeAlias
+
+from wonderful_team.models.conventions import CONVENTIONS, Convention
+
+Sure: TypeAlias = Literal["documented", "reported", "unknown"]
+
+
+@dataclass(frozen=True)
+class Family:
+    """What is believed of a family of models before it is measured.
+
+    Attributes:
+        convention: The numbers it uses for places in a picture.
+        sure: documented (by its maker), reported (in public threads), unknown (nothing is known: pixels are asked for).
+        weak_pointing: It needs labelled axes on whole views to point well.
+        native_boxes: It was trained to give boxes.
+        max_pictures: Most pictures that one request may hold; None when nothing is known.
+    """
+
+    name: str
+    convention: Convention
+    sure: Sure = "reported"
+    weak_pointing: bool = False
+    native_boxes: bool = True
+    max_pictures: int | None = None
+
+
+def _family(
+    name: str, sure: Sure = "reported", *, weak: bool = False, boxes: bool = True, most: int | None = None
+) -> Family:
+    return Family(name, CONVENTIONS[name], sure, weak, boxes, most)
+
+
+UNKNOWN = Family("unknown", CONVENTIONS["pixels"], "unknown", weak_pointing=True, native_boxes=False)
+
+_PATTERNS: tuple[tuple[str, Family], ...] = (
+    (r"gemini|robotics-er", _family("gemini", "documented", most=3000)),
+    (r"claude", _family("claude", "documented", most=100)),
+    (r"gemma", _family("gemma")),
+    (r"\bgpt|chatgpt|\bo[134](-|$)", _family("gpt", weak=True, boxes=False, most=500)),
+    (r"qwen-?2[._]?5-?(omni|vl)|qwen2_5", _family("qwen2.5-vl")),
+    (r"qwen-?2-?vl", _family("qwen2-vl")),
+    (r"qwen-?(3|[4-9])|qwen.*vl", _family("qwen3-vl")),
+    (r"molmo-?2", _family("molmo2", boxes=False)),
+    (r"molmo", _family("molmo1", boxes=False)),
+    (r"internvl", _family("internvl")),
+    (r"moondream", _family("moondream", "documented")),
+)
+
+FAMILIES: dict[str, Family] = {family.name: family for _, family in _PATTERNS}
+
+
+def guess_family(model_name: str) -> Family:
+    """The family that a name suggests, or `UNKNOWN`, which asks for plain pixels with labelled axes."""
+    name = model_name.lower()
+    return next((family for pattern, family in _PATTERNS if re.search(pattern, name)), UNKNOWN)

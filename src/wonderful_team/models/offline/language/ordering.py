@@ -1,0 +1,63 @@
+"""Clauses brought into the order in which they are to be done, and turns of phrase opened, before words are read."""
+
+from __future__ import annotations
+
+import re
+
+_HAVING = r"(?:(?:you(?: have| ve|'ve)?|having|we have|it is|the robot has)\s+)?"
+_AFTER = r"(?:after|once|when|as soon as)"
+_VERBISH = r"(?:put|plac|mov|rotat|turn|stack|push|sort|swap|drop|spin|set|bring|brought|transfer|slid|pick|lift|done|finish)[a-z]*"
+_OPENED = (
+    (r"\b(?:whatever|anything that|all that|everything which)\s+(?:is|are)\b", "everything that is"),
+    (r"\banything\b(?! else)", "everything"),
+    (r"\bthe same\s+(?=\{)", "the "),
+    (
+        r"\b(in|into|onto|on|inside) the same (?:one|place|container|bowl|box|area|object|region|spot)\b(?! (?:of|colou?r|as))",
+        r"\1 it",
+    ),
+    (
+        r"(?:\b(?:that|which)\s+)?(?:\b(?:was|is|stood|lay|had been|sat)\s+)?(?:\b(?:previously|formerly|originally|initially|before|at "
+        r"first|once)\s+)?(?:just |right |directly |immediately )?\b(?:at|to|on|in|towards)\s+its\s+(?:immediate\s+)?(?P<side>north|south|east|"
+        r"west|left|right|top|bottom|upper|lower)(?:\s+(?:hand )?side)?\b(?:\s+(?:before|at first|originally|previously))?",
+        r" beside_\g<side> ",
+    ),
+    (
+        r"(?:\b(?:that|which)\s+)?(?:\bwas\s+)?(?:\b(?:previously|formerly|originally|initially)\s+)(?=(?:north|south|east|west|left|right) of )",
+        " ",
+    ),
+    (r"\b(?:northern|northward) (?:neighbou?r)\b", "object beside_north"),
+    (r"\b(?:southern|southward) (?:neighbou?r)\b", "object beside_south"),
+    (r"\b(?:eastern|right(?: hand)?) (?:neighbou?r)\b", "object beside_east"),
+    (r"\b(?:western|left(?: hand)?) (?:neighbou?r)\b", "object beside_west"),
+    (
+        r"\b(?:its|the) (?:old |former |previous )?neighbou?r (?:to|in|on|at) the (north|south|east|west|left|right)\b",
+        r"the object beside_\1",
+    ),
+    (
+        r"\bwhat(?:ever)?\s+(?:is(?: shown)?|you (?:can )?see|can be seen|shows)\s+in\s+(?:the (?:picture|image) )?(?=\{)",
+        "the object shown in ",
+    ),
+    (r"\ba (?:little|bit)\b(?= (?:to|further|more|left|right|up|down|towards|closer|away|bit))", "slightly"),
+    (r"(^|[.;,]\s*)(?:and )?(?:second|third|fourth|fifth|sixth)(?:ly)?\s*,", r"\1 then "),
+    (r"(^|[.;]\s*)(?:step )?\(?\d\s*[.):]\s+(?=[a-z])", r"\1 "),
+    (r"(?<![\w.])[-\u2212](?=\d)", "minus "),
+    (r"\b(?:do|proceed) (?:as follows|the following|this|these things)\s*[:.]", " "),
+    (r"\bhere is what (?:to do|you should do)\s*[:.]", " "),
+)
+_THEN_A = (
+    rf"^\s*(?:please,?\s+)?before\s+{_HAVING}(?P<second>[^,;.]+),\s*(?P<first>[^;.]+)\.?\s*$",
+    rf"^\s*(?P<second>[^;.]+?),?\s+(?:but )?(?:only )?{_AFTER}\s+{_HAVING}(?P<first>{_VERBISH}\b[^;.]+?)\.?\s*$",
+    rf"^\s*(?:please,?\s+)?{_AFTER}\s+{_HAVING}(?P<first>{_VERBISH}\b[^,;.]+),\s*(?P<second>[^;]+)$",
+    rf"^\s*(?P<first>[^;.]+?),?\s+before\s+{_HAVING}(?P<second>{_VERBISH}\b[^;.]+?)\.?\s*$",
+)
+
+
+def in_order(text: str) -> str:
+    """The same instruction with what comes first said first, and "then" between."""
+    for pattern, plain in _OPENED:
+        text = re.sub(pattern, plain, text, flags=re.IGNORECASE)
+    for pattern in _THEN_A:
+        found = re.match(pattern, text, re.IGNORECASE)
+        if found is not None:
+            return f"{found.group('first').strip(' .,')}, then {found.group('second').strip()}"
+    return text

@@ -1,0 +1,149 @@
+"""What went wrong at a provider, sorted by whose fault it is and whether trying again can help. No key passes through."""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import dataclass
+from typing import Any
+
+from wonderful_team.errors import (
+    ContextTooLongError,
+    ModelAuthError,
+    ModelConnectionError,
+    ModelQuotaError,
+    ModelRateLimitError,
+    ModelServerError,
+    ModelTimeoutError,
+    RequestRejectedError,
+    TooManyPicturesError,
+    UnknownModelError,
+    WonderfulTeamError,
+)
+
+_LONGEST_BODY = 300
+_CONTEXT = re.compile(
+    r"context (length|window|size)|maximum context|too many tokens|prompt is too long|max_model_len|input token count",
+    re.I,
+)
+_PICTURES = re.compile(
+    r"(at most|too many|maximum (number )?of|limit of|up to|more than)\D{0,20}?(\d+)?\D{0,20}?(image|picture|multi-?modal)"
+    r"|(image|picture)s?\b.{0,40}(limit|at most|too many|exceed)",
+    re.I,
+)
+_SCHEMA = re.compile(
+    r"response_format|json_schema|guided|structured output|output_config|output_format|response_schema|grammar", re.I
+)
+_THINKING = re.compile(r"chat_template_kwargs|reasoning_effort|enable_thinking", re.I)
+_BAD_KEY = re.compile(
+    r"\bapi.?key\b.{0,40}(not valid|invalid|incorrect|expired|missing)|(invalid|incorrect) api.?key", re.I
+)
+_KEYS = re.compile(r"\b(sk|key|AIza|gsk|xai|or)-?[A-Za-z0-9_\-*]{12,}|Bearer\s+\S+", re.I)
+
+
+@dataclass(frozen=True)
+class Fault:
+    """One failed try.
+
+    Attributes:
+        error: What is raised when nothing else helps.
+        retry: Trying the same again may help.
+        wait_s: How long the provider asked to wait.
+        picture_limit: How many pictures it takes, when that is what it refused; 0 when it did not say.
+        schema: It refused the schema.
+        thinking: It refused the switch for thinking.
+        billed: It may have worked on the request, so the request may cost something.
+    """
+
+    error: WonderfulTeamError
+    retry: bool = False
+    wait_s: float | None = None
+    picture_limit: int | None = None
+    schema: bool = False
+    thinking: bool = False
+    billed: bool = False
+
+
+def scrubbed(text: str, key: str | None) -> str:
+    """The text without the key, and without anything that looks like one."""
+    if key and len(key) > 3:
+        text = text.replace(key, "[key]")
+    return _KEYS.sub("[key]", text)
+
+
+def fault_of(error: BaseException, name: str, where: str, key: str | None, key_names: str) -> Fault:
+    """Sort an error of the library; `key` is taken out of every text, `key_names` are the variables that may hold it."""
+    from pydantic_ai import exceptions as lib
+
+    said = _said(error, key)
+    match error:
+        case lib.ModelAuthenticationError():
+            return Fault(ModelAuthError(f"{name}: {where} refused the key; it is read from {key_names} ({said})"))
+        case lib.ModelNotFoundError():
+            return Fault(UnknownModelError(f"{name}: {where} has no such model, or is not the right address ({said})"))
+        case lib.ModelQuotaExceededError():
+            return Fault(ModelQuotaError(f"{name}: no credit or quota left ({said})"))
+        case lib.ModelContextWindowExceededError():
+            return Fault(ContextTooLongError(f"{name}: the request is longer than the model's context ({said})"))
+        case lib.ModelRateLimitError():
+            fault = ModelRateLimitError(f"{name}: the provider asks for fewer requests ({said})")
+            return Fault(fault, True, _asked_wait(error))
+        case lib.ModelTimeoutError() | lib.ModelRequestTimeout():
+            return Fault(ModelTimeoutError(f"{name}: {where} did not answer in time"), True, billed=True)
+        case lib.ModelConnectionError():
+            sent = error.phase not in ("connect", "pool")
+            what = "the connection broke" if sent else "cannot be reached"
+            return Fault(ModelConnectionError(f"{name}: {where}: {what} ({said})"), True, billed=sent)
+        case lib.ModelUnavailableError() | lib.ModelServerError():
+            return Fault(ModelServerError(f"{name}: the provider failed ({said})"), True, _asked_wait(error))
+        case lib.ModelHTTPError():
+            return _rejected(error.status_code, name, where, said, _asked_wait(error))
+        case lib.ModelRequestRejectedError():
+            return _rejected(400, name, where, said, None)
+        case lib.UserError():
+            return Fault(RequestRejectedError(f"{name}: the client library refuses the request ({said})"), schema=True)
+        case _:
+            # A reply that is none: empty choices, HTML, an error in a reply that says 200.
+            return Fault(ModelServerError(f"{name}: the reply is not one ({said})"), True, billed=True)
+
+
+def _rejected(status: int, name: str, where: str, said: str, wait_s: float | None) -> Fault:
+    """A reply with a status of its own; 4xx are final unless another form of the request may do."""
+    if status in (408, 409, 425) or status >= 500:
+        return Fault(ModelServerError(f"{name}: the provider failed ({said})"), True, wait_s)
+    if 300 <= status < 400:
+        return Fault(UnknownModelError(f"{name}: {where} sends elsewhere (status {status}); give the final address"))
+    if _BAD_KEY.search(said):
+        return Fault(ModelAuthError(f"{name}: {where} refused the key ({said})"))
+    pictures = _PICTURES.search(said)
+    if pictures is not None:
+        limit = int(pictures.group(3)) if pictures.group(3) else 0
+        return Fault(TooManyPicturesError(f"{name}: too many pictures in one request ({said})"), picture_limit=limit)
+    if status == 413 or _CONTEXT.search(said):
+        return Fault(ContextTooLongError(f"{name}: the request is longer than the model takes ({said})"))
+    rejected = RequestRejectedError(f"{name}: {where} refused the request ({said})")
+    return Fault(rejected, schema=bool(_SCHEMA.search(said)), thinking=bool(_THINKING.search(said)))
+
+
+def _asked_wait(error: Any) -> float | None:
+    """How long the provider asks to wait; the library reads whole seconds only, some servers send fractions."""
+    if error.retry_after is not None:
+        return float(error.retry_after)
+    try:
+        seconds = float((getattr(error, "headers", None) or {}).get("retry-after", "nan"))
+    except ValueError:
+        return None
+    return seconds if 0 <= seconds < math.inf else None
+
+
+def _said(error: BaseException, key: str | None) -> str:
+    """What the provider said, short and without the key."""
+    body: Any = getattr(error, "body", None)
+    if isinstance(body, dict):
+        inner = body.get("error", body)
+        body = inner.get("message", inner) if isinstance(inner, dict) else inner
+    status = getattr(error, "status_code", None)
+    text = str(body) if body else f"{type(error).__name__}: {error}"
+    text = " ".join(scrubbed(text, key).split())
+    text = text if len(text) <= _LONGEST_BODY else text[: _LONGEST_BODY - 1] + "…"
+    return f"status {status}: {text}" if status is not None else text

@@ -1,0 +1,215 @@
+"""The one file that touches the client library: it builds its models and messages, and nothing else imports it early.
+
+Only `pydantic_ai.models.*.request` is used: no agent, no tools, no retries of its own, so every word that goes out is ours.
+"""
+
+from __future__ import annotations
+
+import importlib
+import importlib.metadata
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, cast
+
+from wonderful_team.errors import MissingExtraError
+from wonderful_team.models.providers.specs import Spec, is_loopback
+from wonderful_team.models.wire import Composed
+
+if TYPE_CHECKING:
+    import httpx2
+    from pydantic_ai.messages import ModelMessage, ModelResponse
+    from pydantic_ai.models import Model as LibraryModel
+
+LIBRARY = "pydantic-ai-slim"
+_MODULES = {
+    "anthropic": "pydantic_ai.models.anthropic",
+    "google": "pydantic_ai.models.google",
+    "openrouter": "pydantic_ai.models.openrouter",
+}
+NO_KEY = "none"
+"""Sent to servers that ask for no key: the clients insist on some word."""
+
+
+def library_version() -> str:
+    """Name and version of the client library, for records and cache keys.
+
+    Raises:
+        MissingExtraError: It is not installed.
+    """
+    try:
+        return f"{LIBRARY} {importlib.metadata.version(LIBRARY)}"
+    except importlib.metadata.PackageNotFoundError as error:
+        raise MissingExtraError("models of vendors and servers", "vendors") from error
+
+
+def preload(api: str, text: str) -> None:
+    """Import what a service needs, now: it takes seconds, which no request's deadline should pay for.
+
+    Raises:
+        MissingExtraError: It is not installed.
+    """
+    try:
+        for name in ("httpx2", "pydantic_ai.direct", _MODULES.get(api, "pydantic_ai.models.openai")):
+            importlib.import_module(name)
+    except ImportError as error:
+        raise MissingExtraError(f"model {text!r}", "vendors") from error
+
+
+def http_client(spec: Spec, timeout_s: float, local_only: bool) -> httpx2.AsyncClient:
+    """A connection pool of our own: no redirects (a key must not follow one), no proxy for this machine."""
+    import httpx2
+
+    limits = httpx2.Limits(max_connections=64, max_keepalive_connections=16)
+    timeout = httpx2.Timeout(timeout_s, connect=min(10.0, timeout_s))
+    outside = not (local_only or is_loopback(spec.base_url))
+    return httpx2.AsyncClient(timeout=timeout, limits=limits, follow_redirects=False, trust_env=outside)
+
+
+def build_model(spec: Spec, model: str, key: str | None, client: httpx2.AsyncClient) -> LibraryModel:
+    """The library's model for a spec, on our connection pool.
+
+    Raises:
+        MissingExtraError: A vendor's client is not installed.
+    """
+    try:
+        return _BUILDERS[spec.api](spec, model, key or NO_KEY, client)
+    except ImportError as error:
+        raise MissingExtraError(f"model {spec.text!r}", "vendors") from error
+
+
+def _openai_client(spec: Spec, key: str, client: httpx2.AsyncClient) -> Any:
+    from openai import AsyncOpenAI
+
+    return AsyncOpenAI(base_url=spec.base_url, api_key=key, http_client=client, max_retries=0)
+
+
+def _chat(spec: Spec, model: str, key: str, client: httpx2.AsyncClient) -> LibraryModel:
+    from pydantic_ai.models.openai import OpenAIChatModel
+    from pydantic_ai.providers.openai import OpenAIProvider
+
+    return OpenAIChatModel(model, provider=OpenAIProvider(openai_client=_openai_client(spec, key, client)))
+
+
+def _responses(spec: Spec, model: str, key: str, client: httpx2.AsyncClient) -> LibraryModel:
+    from pydantic_ai.models.openai import OpenAIResponsesModel
+    from pydantic_ai.providers.openai import OpenAIProvider
+
+    return OpenAIResponsesModel(model, provider=OpenAIProvider(openai_client=_openai_client(spec, key, client)))
+
+
+def _server(spec: Spec, model: str, key: str, client: httpx2.AsyncClient) -> LibraryModel:
+    from pydantic_ai.models.openai import OpenAIChatModel
+    from pydantic_ai.profiles.openai import OpenAIJsonSchemaTransformer, OpenAIModelProfile
+    from pydantic_ai.providers.openai_compatible import OpenAICompatibleProvider
+
+    # A served name says nothing about the server, so the library's guesses by name are replaced by the plain protocol.
+    profile = OpenAIModelProfile(
+        json_schema_transformer=OpenAIJsonSchemaTransformer,
+        supports_json_schema_output=True,
+        supports_json_object_output=True,
+        native_output_requires_schema_in_instructions=False,
+        openai_chat_supports_max_completion_tokens=False,
+        openai_supports_strict_tool_definition=False,
+    )
+    provider = OpenAICompatibleProvider(
+        "server", openai_client=_openai_client(spec, key, client), profile=lambda _: profile
+    )
+    return OpenAIChatModel(model, provider=provider)
+
+
+def _openrouter(spec: Spec, model: str, key: str, client: httpx2.AsyncClient) -> LibraryModel:
+    from pydantic_ai.models.openrouter import OpenRouterModel
+    from pydantic_ai.providers.openrouter import OpenRouterProvider
+
+    class Lenient(OpenRouterModel):
+        """The library insists on the name of who ran the model; gateways that speak the format may leave it out."""
+
+        def _validate_completion(self, response: Any) -> Any:
+            response.provider = getattr(response, "provider", None) or "unknown"
+            return super()._validate_completion(response)
+
+    return Lenient(model, provider=OpenRouterProvider(openai_client=_openai_client(spec, key, client)))
+
+
+def _anthropic(spec: Spec, model: str, key: str, client: httpx2.AsyncClient) -> LibraryModel:
+    from anthropic import AsyncAnthropic
+    from pydantic_ai.models.anthropic import AnthropicModel
+    from pydantic_ai.providers.anthropic import AnthropicProvider
+
+    sdk = AsyncAnthropic(base_url=spec.base_url, api_key=key, http_client=client, max_retries=0)
+    return AnthropicModel(model, provider=AnthropicProvider(anthropic_client=sdk))
+
+
+def _google(spec: Spec, model: str, key: str, client: httpx2.AsyncClient) -> LibraryModel:
+    from pydantic_ai.models.google import GoogleModel
+    from pydantic_ai.providers.google import GoogleProvider
+
+    return GoogleModel(model, provider=GoogleProvider(api_key=key, base_url=spec.base_url, http_client=client))
+
+
+_BUILDERS = {
+    "openai-chat": _chat,
+    "openai-responses": _responses,
+    "server": _server,
+    "openrouter": _openrouter,
+    "anthropic": _anthropic,
+    "google": _google,
+}
+
+
+def messages_of(composed: Composed, turns: Sequence[tuple[str, str]]) -> list[ModelMessage]:
+    """System words, the request, and after it the model's earlier answers, each with what was wrong with it.
+
+    A turn is (what the model said, what it was told), in order.
+    """
+    from pydantic_ai.messages import (
+        BinaryImage,
+        ModelRequest,
+        ModelResponse,
+        SystemPromptPart,
+        TextPart,
+        UserContent,
+        UserPromptPart,
+    )
+
+    content: list[UserContent] = [
+        piece if isinstance(piece, str) else BinaryImage(piece, media_type="image/png") for piece in composed.pieces
+    ]
+    first: list[Any] = [SystemPromptPart(composed.system)] if composed.system else []
+    messages: list[ModelMessage] = [ModelRequest(parts=[*first, UserPromptPart(content)])]
+    for said, told in turns:
+        messages.append(ModelResponse(parts=[TextPart(said or "(empty)")]))
+        messages.append(ModelRequest(parts=[UserPromptPart(told)]))
+    return messages
+
+
+async def send(
+    model: LibraryModel,
+    messages: list[ModelMessage],
+    settings: dict[str, Any],
+    schema: dict[str, Any] | None,
+    name: str,
+) -> ModelResponse:
+    """One HTTP request that asks for an answer in `schema` (None: plain text); the library's own errors come through."""
+    from pydantic_ai.direct import model_request
+    from pydantic_ai.models import ModelRequestParameters
+    from pydantic_ai.output import OutputObjectDefinition
+    from pydantic_ai.settings import ModelSettings
+
+    # No template: the library must add no words to the request.
+    parameters = ModelRequestParameters(prompted_output_template=False)
+    if schema is not None:
+        output = OutputObjectDefinition(json_schema=schema, name=name, strict=True)
+        parameters = ModelRequestParameters(output_mode="native", output_object=output, prompted_output_template=False)
+    return await model_request(
+        model, messages, model_settings=cast(ModelSettings, settings), model_request_parameters=parameters
+    )
+
+
+def enforces_schemas(model: LibraryModel) -> bool:
+    """Whether the library believes that this model's service keeps answers to a schema."""
+    return bool(model.profile.get("supports_json_schema_output", False))
+
+
+def hides_schemas(model: LibraryModel) -> bool:
+    """Whether the service constrains the answer without showing the schema to the model."""
+    return bool(model.profile.get("native_output_requires_schema_in_instructions", False))

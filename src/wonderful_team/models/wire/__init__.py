@@ -1,0 +1,20 @@
+"""Requests and answers in a model's own terms: schema, numbers, pictures and words, both ways."""
+
+from wonderful_team.models.wire.composing import Composed, compose
+from wonderful_team.models.wire.form import Form
+from wonderful_team.models.wire.reading import Reading, read_json
+from wonderful_team.models.wire.showing import Shown, paste, show, ticks_of
+from wonderful_team.models.wire.unreadable import Unreadable
+
+__all__ = [
+    "Composed",
+    "Form",
+    "Reading",
+    "Shown",
+    "Unreadable",
+    "compose",
+    "paste",
+    "read_json",
+    "show",
+    "ticks_of",
+]

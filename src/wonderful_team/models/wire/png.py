@@ -1,0 +1,45 @@
+"""PNG files, quickly: a picture is encoded for every request, so time counts more than the last kilobyte.
+
+One filter for the whole picture (each row minus the row above), and zlib's two fast strategies: runs for drawings and
+simulators, Huffman codes alone for photos with noise. Twice as fast as a general encoder, and smaller than its fast setting.
+"""
+
+from __future__ import annotations
+
+import struct
+import zlib
+
+import numpy as np
+
+from wonderful_team.geometry.arrays import Array
+from wonderful_team.pictures import checked_rgb
+
+_SIGNATURE = b"\x89PNG\r\n\x1a\n"
+_UP = 2  # filter type 2 of the PNG specification: the byte above is subtracted
+_TRUECOLOUR_8 = (8, 2, 0, 0, 0)  # bits, colour type, and the only compression, filter and interlace methods
+_RUNS_FROM = 0.3  # share of unchanged bytes from which runs are worth looking for
+
+
+def fast_png(rgb: Array) -> bytes:
+    """The bytes of a PNG file.
+
+    Args:
+        rgb: Shape (H, W, 3), uint8.
+    """
+    image = checked_rgb(rgb)
+    height, width, _ = image.shape
+    rows = np.ascontiguousarray(image).reshape(height, width * 3)
+    filtered = np.empty((height, 1 + width * 3), np.uint8)
+    filtered[:, 0] = _UP
+    filtered[0, 1:] = rows[0]
+    np.subtract(rows[1:], rows[:-1], out=filtered[1:, 1:])
+    sample = filtered[:: max(1, height // 32)]
+    runs = np.count_nonzero(sample) < (1 - _RUNS_FROM) * sample.size
+    packer = zlib.compressobj(1, zlib.DEFLATED, 15, 9, zlib.Z_RLE if runs else zlib.Z_HUFFMAN_ONLY)
+    packed = packer.compress(filtered.data) + packer.flush()
+    header = struct.pack(">IIBBBBB", width, height, *_TRUECOLOUR_8)
+    return _SIGNATURE + _chunk(b"IHDR", header) + _chunk(b"IDAT", packed) + _chunk(b"IEND", b"")
+
+
+def _chunk(kind: bytes, body: bytes) -> bytes:
+    return struct.pack(">I", len(body)) + kind + body + struct.pack(">I", zlib.crc32(body, zlib.crc32(kind)))

@@ -1,0 +1,188 @@
+"""Pictures as a model is sent them: in the size it looks at, marks drawn with its own ticks, encoded; or all on one sheet."""
+
+from __future__ import annotations
+
+import threading
+from collections import OrderedDict
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import cv2
+import numpy as np
+
+from wonderful_team.geometry import Box, Frame
+from wonderful_team.geometry.arrays import Array
+from wonderful_team.images import Ticks, draw
+from wonderful_team.images.canvas import Canvas
+from wonderful_team.models.conventions import PIXELS, Convention, Size
+from wonderful_team.models.wire.png import fast_png
+from wonderful_team.pictures import (
+    Axes,
+    BoxMark,
+    Candidates,
+    LineMark,
+    Mark,
+    PathMark,
+    Picture,
+    Point,
+    PointMark,
+)
+
+_TICKS = {"pixels": Ticks.PIXELS, "thousandths": Ticks.THOUSANDTHS, "percent": Ticks.PERCENT, "unit": Ticks.UNIT}
+GAP_PX = 12
+"""Grey space round each picture on a sheet."""
+HEAD_PX = 30
+"""Grey space above each picture, where its number stands."""
+_NUMBER_PX = 18
+SHEET_WIDTH_PX = 1600
+_SHEET_GREY = 200
+
+
+@dataclass(frozen=True, eq=False)
+class Shown:
+    """One picture as it is sent.
+
+    Attributes:
+        picture: At the size sent, marks at their places there.
+        rgb: With the marks drawn, shape (H, W, 3), uint8.
+        origin_px: Where its top-left corner lies on the sheet; (0, 0) when it is sent alone.
+        scale: Pixels sent per pixel of our picture, along x and y.
+    """
+
+    picture: Picture
+    rgb: Array
+    origin_px: Point = (0.0, 0.0)
+    scale: tuple[float, float] = (1.0, 1.0)
+
+    def to_ours(self, sent_px: Array) -> Array:
+        """Pixels of what was sent (the sheet, or the picture alone) to pixels of our picture, shape (N, 2)."""
+        return np.asarray((sent_px - self.origin_px) / self.scale)
+
+    def to_sent(self, ours_px: Array) -> Array:
+        """The inverse of `to_ours`."""
+        return np.asarray(ours_px * np.asarray(self.scale) + self.origin_px)
+
+
+def ticks_of(convention: Convention) -> Ticks:
+    """What the numbers on drawn axes mean to a model of this convention."""
+    return _TICKS[convention.unit]
+
+
+def show(picture: Picture, convention: Convention = PIXELS) -> Shown:
+    """The picture in the size that the model looks at, its marks drawn with the model's ticks."""
+    sent = scaled(picture, convention.seen_size(picture.size_px))
+    scale = (sent.size_px[0] / picture.size_px[0], sent.size_px[1] / picture.size_px[1])
+    return Shown(sent, draw(sent, ticks_of(convention)), scale=scale)
+
+
+def paste(pictures: Sequence[Picture], convention: Convention = PIXELS) -> tuple[Array, list[Shown]]:
+    """All pictures on one sheet, for servers that take one picture per request.
+
+    Tick labels name the sheet's own numbers, so positions are positions on the sheet.
+
+    Returns:
+        The sheet, shape (H, W, 3), uint8, in the size that the model looks at; and where each picture lies on it.
+    """
+    places, size = _shelves([picture.size_px for picture in pictures])
+    seen = convention.seen_size(size)
+    zoom = (seen[0] / size[0], seen[1] / size[1])
+    canvas = Canvas.over(np.full((seen[1], seen[0], 3), _SHEET_GREY, np.uint8))
+    shown = []
+    for number, (picture, (left, top)) in enumerate(zip(pictures, places, strict=True), start=1):
+        x0, y0 = round(left * zoom[0]), round(top * zoom[1])
+        width, height = (max(1, round(side * z)) for side, z in zip(picture.size_px, zoom, strict=True))
+        width, height = min(width, seen[0] - x0), min(height, seen[1] - y0)
+        sent = scaled(picture, (width, height))
+        whole = Frame(
+            sent.frame.view_id,
+            sent.frame.T_view_picture @ np.array([[1.0, 0, -x0], [0, 1.0, -y0], [0, 0, 1.0]]),
+            seen,
+            Box(0, 0, *seen),
+        )
+        sent = replace(sent, marks=tuple(Axes(whole) if isinstance(mark, Axes) else mark for mark in sent.marks))
+        rgb = draw(sent, ticks_of(convention))
+        canvas.rgb[y0 : y0 + height, x0 : x0 + width] = rgb
+        high = canvas.plate_size(str(number), _NUMBER_PX)[1]
+        canvas.plate(str(number), x0, max(0, y0 - high - 1), font_px=_NUMBER_PX)
+        scale = (width / picture.size_px[0], height / picture.size_px[1])
+        shown.append(Shown(sent, rgb, (float(x0), float(y0)), scale))
+    return canvas.rgb, shown
+
+
+_KEPT = 32
+_shown: OrderedDict[tuple[int, Convention], tuple[Picture, Shown, bytes]] = OrderedDict()
+_lock = threading.Lock()
+
+
+def show_encoded(picture: Picture, convention: Convention = PIXELS) -> tuple[Shown, bytes]:
+    """`show` and its PNG bytes; the last ones are kept, for samples and second tries that show the same again."""
+    key = (id(picture), convention)
+    with _lock:
+        held = _shown.get(key)
+        # The entry holds the picture, so its id cannot have passed to another.
+        if held is not None:
+            _shown.move_to_end(key)
+            return held[1], held[2]
+    shown = show(picture, convention)
+    png = fast_png(shown.rgb)
+    with _lock:
+        _shown[key] = (picture, shown, png)
+        while len(_shown) > _KEPT:
+            _shown.popitem(last=False)
+    return shown, png
+
+
+def scaled(picture: Picture, size_px: Size) -> Picture:
+    """The same picture in another size, its marks moved along."""
+    if size_px == picture.size_px:
+        return picture
+    sx, sy = (new / old for new, old in zip(size_px, picture.size_px, strict=True))
+    way = cv2.INTER_AREA if sx * sy < 1 else cv2.INTER_CUBIC
+    rgb = np.asarray(cv2.resize(picture.rgb, size_px, interpolation=way))
+    return Picture(
+        picture.name,
+        rgb,
+        _scaled_frame(picture.frame, size_px),
+        None,
+        tuple(_scaled_mark(mark, sx, sy) for mark in picture.marks),
+    )
+
+
+def _scaled_frame(frame: Frame, size_px: Size) -> Frame:
+    sx, sy = (new / old for new, old in zip(size_px, frame.size_px, strict=True))
+    matrix = frame.T_view_picture @ np.diag([1 / sx, 1 / sy, 1.0])
+    return Frame(frame.view_id, matrix, size_px, _scaled_box(frame.valid, sx, sy))
+
+
+def _scaled_box(box: Box, sx: float, sy: float) -> Box:
+    return Box(box.x0 * sx, box.y0 * sy, box.x1 * sx, box.y1 * sy)
+
+
+def _scaled_mark(mark: Mark, sx: float, sy: float) -> Mark:
+    def at(point: Point) -> Point:
+        return point[0] * sx, point[1] * sy
+
+    match mark:
+        case BoxMark():
+            return replace(mark, box=_scaled_box(mark.box, sx, sy))
+        case PointMark():
+            return replace(mark, point=at(mark.point))
+        case Candidates() | PathMark():
+            return replace(mark, points=tuple(at(point) for point in mark.points))
+        case LineMark():
+            return LineMark(at(mark.start), at(mark.end))
+        case Axes():
+            return mark
+
+
+def _shelves(sizes: Sequence[Size]) -> tuple[list[tuple[int, int]], Size]:
+    """Top-left corners of pictures set in rows, in order, and the size of the sheet that holds them."""
+    limit = max(SHEET_WIDTH_PX, *(width + 2 * GAP_PX for width, _ in sizes))
+    places, x, y, row, widest = [], GAP_PX, HEAD_PX, 0, 0
+    for width, height in sizes:
+        if x > GAP_PX and x + width + GAP_PX > limit:
+            x, y, row = GAP_PX, y + row + HEAD_PX, 0
+        places.append((x, y))
+        x, row = x + width + GAP_PX, max(row, height)
+        widest = max(widest, x)
+    return places, (widest, y + row + GAP_PX)

@@ -1,0 +1,165 @@
+"""`probe` in Python: from a model's name to what it can do, measured."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from wonderful_team import registry
+from wonderful_team.errors import ConfigError
+from wonderful_team.interfaces import Model
+from wonderful_team.lab.measure import LabScene, LabTarget
+from wonderful_team.lab.probe import Options, Probed, Subject, Tell, probe
+from wonderful_team.lab.server_facts import context_length
+from wonderful_team.loading import is_file_name
+from wonderful_team.models.budget import Caps
+from wonderful_team.models.families import guess_family
+from wonderful_team.models.profiles import Profile, check_name, load_profile, profile_names
+from wonderful_team.runtime.loop import Caller
+from wonderful_team.types import Usage
+
+if TYPE_CHECKING:
+    from wonderful_team.models.providers import Provider
+
+RENDERED_TASKS = ("tabletop/visual_manipulation", "tabletop/rotate", "tabletop/scene_understanding")
+MILLION = 1_000_000
+TRIES = 3
+"""Most tries at one request: a probe should not wait long for a service that fails."""
+
+
+def probe_model(
+    model: str | Model,
+    *,
+    save: str | None = None,
+    full: bool = False,
+    scenes: int = 12,
+    rendered: int = 4,
+    seed: int = 0,
+    most_pictures: int = 16,
+    price: str | None = None,
+    allow_unpriced: bool = False,
+    local_only: bool = False,
+    max_calls: int | None = None,
+    max_tokens: int | None = None,
+    max_seconds: float | None = None,
+    max_usd: float | None = None,
+    deadline: float = 120.0,
+    concurrency: int = 4,
+    tell: Tell = lambda line: None,
+) -> Probed:
+    """Measure a model. The profile is returned, not written; `models.profiles.save_profile` keeps it.
+
+    Args:
+        model: A name as `--model` takes it (a saved profile is measured anew), or an object with `answer(request)`.
+        save: Name of the profile.
+        full: Measure errors too.
+        scenes: How many drawn scenes they are measured on.
+        rendered: How many rendered scenes they are measured on as well.
+        seed: Of all pictures.
+        most_pictures: Largest request that is tried.
+        price: "IN,OUT" in US dollars per million tokens.
+        allow_unpriced: Accept a model of unknown price without a cap on tokens.
+        local_only: Refuse models outside this machine and private networks.
+        max_calls: Cap on calls.
+        max_tokens: Cap on tokens.
+        max_seconds: Cap on the time from the first call.
+        max_usd: Cap on money.
+        deadline: Longest time for one request [s].
+        concurrency: Most calls at once.
+        tell: Given one line at a time, as things are found.
+
+    Raises:
+        ConfigError: A wrong name, key or option; an unknown price without a cap.
+        ModelUnavailableError: The service does not answer.
+        BudgetReached: A cap was met before even the convention was known.
+    """
+    if save is not None:
+        check_name(save)
+    caps = Caps(max_calls, max_tokens, max_seconds, max_usd)
+    subject = _subject(model, price, local_only, deadline, caps, allow_unpriced)
+    options = Options(
+        save or "", seed, most_pictures, full, scenes, rendered_scenes(rendered, seed) if full else (), caps, concurrency,
+        deadline,
+    )  # fmt: skip
+    with Caller() as caller:
+        probed: Probed = caller.wait_for(probe(subject, options, tell))
+    return probed
+
+
+def _subject(
+    model: str | Model, price: str | None, local_only: bool, deadline_s: float, caps: Caps, allow_unpriced: bool
+) -> Subject:
+    from wonderful_team.models.providers import check_prices, is_provider_spec, make_provider, model_options
+    from wonderful_team.models.providers.library import library_version
+
+    named: str | Model = model
+    if isinstance(model, str) and not is_file_name(model) and model in profile_names():
+        named = load_profile(model).model
+    if not isinstance(named, str) or not is_provider_spec(named):
+        held = registry.make_model(named)
+        return Subject(registry.model_label(named), lambda profile, thinking: held, provider=False)
+    name = named
+    given = model_options(None, price, local_only, ()).price_of("*")
+
+    def make(profile: Profile | None, thinking: Any) -> Provider:
+        return make_provider(
+            name,
+            profile=profile,
+            thinking=thinking,
+            price=given,
+            local_only=local_only,
+            deadline_s=deadline_s,
+            tries=TRIES,
+        )
+
+    first = make(None, None)
+    check_prices([first], caps, allow_unpriced)
+    spec, served = first.spec, first.model
+    family = guess_family(served)
+    full_name = name if spec.model else f"{spec.base_url}#{served}"
+    # The server was asked for its model once; from here on it is named.
+    name = full_name
+    prices = [first.prices.usd(usage) for usage in (Usage(tokens_in=MILLION), Usage(tokens_out=MILLION))]
+    return Subject(
+        full_name, make, True, family.convention, family.max_pictures,
+        None if spec.official else spec.base_url,
+        lambda: context_length(spec.api, spec.base_url, served, first.key, direct=local_only),
+        (prices[0], prices[1]), library_version(),
+    )  # fmt: skip
+
+
+def rendered_scenes(count: int, seed: int) -> tuple[LabScene, ...]:
+    """Rendered table tops whose truth is known: every thing that a colour and a shape tell from all others.
+
+    Args:
+        count: How many.
+        seed: Of the first; seeds below 1000 are for development, and so are these scenes.
+    """
+    return tuple(_rendered(RENDERED_TASKS[k % len(RENDERED_TASKS)], seed + k) for k in range(count))
+
+
+def _rendered(task: str, seed: int) -> LabScene:
+    from wonderful_team.geometry import Box
+
+    world = registry.make_world(task, seed=seed)
+    try:
+        view = world.observe().main
+        truth = registry.privileged(world)
+        if truth is None:
+            raise ConfigError(f"{task}: this world keeps no truth to measure against")
+        things, masks = truth.truth()["things"], world.privileged.masks()  # type: ignore[attr-defined]
+    finally:
+        world.close()
+    words = {name: f"{thing['texture']} {thing['shape']}" for name, thing in things.items()}
+    targets = []
+    for name, mask in masks.items():
+        if not mask.any() or list(words.values()).count(words[name]) > 1:
+            continue
+        rows, columns = mask.nonzero()
+        box = Box(float(columns.min()), float(rows.min()), float(columns.max() + 1), float(rows.max() + 1))
+        middle = (float(columns.mean()) + 0.5, float(rows.mean()) + 0.5)
+        targets.append(LabTarget(words[name], box, middle))
+    absent = next((f"{colour} star" for colour in ("pink", "cyan") if f"{colour} star" not in words.values()), None)
+    return LabScene(view, tuple(targets), (absent,) if absent else (), f"rendered {task}", seed)
+
+
+__all__ = ["Probed", "probe_model", "rendered_scenes"]

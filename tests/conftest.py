@@ -9,7 +9,7 @@ import pytest
 from wonderful_team.models.cache_store import FILE_VARIABLE
 from wonderful_team.runs import OUT_VARIABLE
 
-SECRET_ENDINGS = ("_API_KEY", "_TOKEN", "_SECRET")
+SECRET_ENDINGS = ("_KEY", "_TOKEN", "_SECRET")
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:

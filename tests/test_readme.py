@@ -59,11 +59,11 @@ def test_every_command_stands_in_the_readme() -> None:
     assert [command for command in COMMANDS if f"| `{command}" not in table] == []
 
 
-def test_the_one_command_for_a_real_model_says_when_it_comes(capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_one_command_for_a_real_model_asks_for_the_key_that_is_missing(capsys: pytest.CaptureFixture[str]) -> None:
     found = re.search(r"`wonderful-team (run [^`]*--model [^`]*)`", README)
     assert found is not None
     assert run(shlex.split(found[1])) == 2
-    assert "next release" in capsys.readouterr().err
+    assert "ANTHROPIC_API_KEY" in capsys.readouterr().err
 
 
 def test_files_that_the_docs_name_exist() -> None:

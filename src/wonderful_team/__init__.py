@@ -15,13 +15,15 @@ if TYPE_CHECKING:
     from wonderful_team.api import Method, Team, make_world, rollout, task
     from wonderful_team.errors import WonderfulTeamError
     from wonderful_team.geometry import AffineCamera, Box, PinholeCamera, PlanarCamera
-    from wonderful_team.interfaces import Act, Done, GaveUp, Model, Policy, Situation, World
+    from wonderful_team.interfaces import Act, Done, GaveUp, Model, Policy, Score, Situation, World
     from wonderful_team.made import FoundTarget, MadePlan, RecordedTrial
     from wonderful_team.observe import Observation
     from wonderful_team.photos import instruction_with_pictures
+    from wonderful_team.probing import probe_model
     from wonderful_team.registry import make_model
     from wonderful_team.runtime import Approval
     from wonderful_team.sims.tabletop import Scene
+    from wonderful_team.studies import Study
     from wonderful_team.types import (
         Answer,
         Instruction,
@@ -65,8 +67,10 @@ _HOMES: dict[str, str] = {
     "RecordedTrial": "made",
     "Request": "types",
     "Scene": "sims.tabletop",
+    "Score": "interfaces",
     "Situation": "interfaces",
     "StepReport": "types",
+    "Study": "studies",
     "Team": "api",
     "Trial": "types",
     "View": "types",
@@ -75,6 +79,7 @@ _HOMES: dict[str, str] = {
     "World": "interfaces",
     "instruction_with_pictures": "photos",
     "make_model": "registry",
+    "probe_model": "probing",
     "make_world": "api",
     "rollout": "api",
     "task": "api",
@@ -111,8 +116,10 @@ __all__ = [
     "RecordedTrial",
     "Request",
     "Scene",
+    "Score",
     "Situation",
     "StepReport",
+    "Study",
     "Team",
     "Trial",
     "View",

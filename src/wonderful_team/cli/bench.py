@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import math
+import shlex
+import sys
+import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -14,6 +18,7 @@ if TYPE_CHECKING:
     from wonderful_team.evals.study import Standing
 
 INTERRUPTED, BUDGET = 130, 5
+QUIET_S = 10.0
 
 
 @click.command(
@@ -29,11 +34,12 @@ INTERRUPTED, BUDGET = 130, 5
 @click.option("--repeats", type=click.IntRange(1), default=1, show_default=True, help="How often each scene is run.")
 @click.option("--replans", type=click.IntRange(0), help="Plans after the first; default the suite's protocol.")
 @click.option("--isolate", type=click.Choice(["planning", "grounding"]), help="Truth answers for the other part.")
-@click.option("--perturb", metavar="KIND=0..3", help="A harder tier: clutter, lighting, camera, texture or paraphrase.")
+@click.option("--perturb", metavar="KIND=0..3", help="A harder tier: lighting, camera, texture or paraphrase.")
 @click.option(
     "--no-control", "refused", multiple=True, metavar="NAME|all", help="Leave a control out; may be repeated."
 )
 @click.option("--estimate", is_flag=True, help="Say what it would take, from a few pilot trials, and run no more.")
+@click.option("--pilot", type=click.IntRange(1), help="With --estimate: so many trials per condition, also paid ones.")
 @click.option("--store", type=PATH, default=Path("study.db"), show_default=True, help="Where trials are kept.")
 @click.option("--jobs", type=click.IntRange(1), help="Worker processes. [default: one per core]")
 @click.option("--at-once", type=click.IntRange(1), default=1, show_default=True, help="Trials in flight per process.")
@@ -55,13 +61,14 @@ def command(**options: Any) -> int:
     """Run methods and models over suites with controls; what ended stays in the store, and the same command resumes."""
     from wonderful_team.studies import Study
 
-    study = Study.from_options(**options)
+    words = shlex.join(["wonderful-team", *(click.get_current_context().obj or ())])
+    study = Study.from_options(**options, command=words)
     for note in study.notes:
         click.echo(f"note: {note}", err=True)
     if options["estimate"]:
-        estimate = study.estimate()
+        estimate = study.estimate(options["pilot"] or 2, paid_pilot=options["pilot"] is not None)
         return finish("bench", text=estimate.text(), result=estimate.to_json(), as_json=options["as_json"], code=0)
-    ended = study.run(report=_tell)
+    ended = study.run(report=Teller())
     code = 0 if not ended.why else BUDGET if "cap" in ended.why else INTERRUPTED
     lines = study.lines()
     if ended.why:
@@ -70,5 +77,22 @@ def command(**options: Any) -> int:
     return finish("bench", text="\n".join(lines), result=study.to_json(ended), as_json=options["as_json"], code=code)
 
 
-def _tell(text: str, standing: Standing | None) -> None:
-    click.echo(text if standing is None else standing.line(), err=True)
+class Teller:
+    """Progress on stderr: one line that renews itself on a terminal, and a line every ten seconds elsewhere."""
+
+    def __init__(self) -> None:
+        self._terminal = sys.stderr.isatty()
+        self._last_s, self._last = -math.inf, ""
+
+    def __call__(self, text: str, standing: Standing | None) -> None:
+        if standing is None:
+            click.echo(("\n" if self._terminal and self._last else "") + text, err=True)
+            return
+        line = standing.line()
+        whole = standing.done == standing.total
+        if self._terminal:
+            click.echo(f"\r{line:<{len(self._last)}}", nl=whole, err=True)
+        elif line != self._last and (whole or time.monotonic() - self._last_s >= QUIET_S):
+            click.echo(line, err=True)
+            self._last_s = time.monotonic()
+        self._last = line

@@ -162,4 +162,4 @@ def _cache() -> Finding:
 def _keys() -> Finding:
     found = [name for name in KEYS if os.environ.get(name)]
     text = f"{', '.join(found)} set" if found else "none set"
-    return Finding("keys", True, f"{text} (this release never uses one: offline needs none)")
+    return Finding("keys", True, f"{text}; a key is used only by a model that you name, never by itself")

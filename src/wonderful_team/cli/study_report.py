@@ -54,4 +54,6 @@ def command(
         "latex": [str(path) for path in made.latex],
     }
     text = to_markdown(summary, baseline).rstrip()
-    return finish("report", text=text, result=result, as_json=as_json, code=0, last_line=f"page: {shown_path(made.page)}")
+    return finish(
+        "report", text=text, result=result, as_json=as_json, code=0, last_line=f"page: {shown_path(made.page)}"
+    )

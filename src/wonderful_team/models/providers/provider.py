@@ -280,9 +280,10 @@ class Provider:
             reading = self._read(composed, said, thought)
             value, repairs = reading.value, reading.repairs
         except ValueError as error:
-            if response.finish_reason == "length":
-                raise self._cut_off(request, limit, ticket) from None
             value = Unreadable(str(error), said)
+        if response.finish_reason == "length" and not _whole(request, value):
+            # Half an answer may still hold a whole object inside: that is no wrong answer to send back, but a cut one.
+            raise self._cut_off(request, limit, ticket)
         return Answer(value, usage, response.model_name or self.model, said, repairs=repairs)
 
     def _read(self, composed: Composed, said: str, thought: str) -> Reading:
@@ -368,3 +369,12 @@ def _as_said(previous: Any) -> str:
     if isinstance(previous, str):
         return previous
     return json.dumps(previous, default=str)
+
+
+def _whole(request: Request, value: Any) -> bool:
+    """Whether a value has everything that the question asks for."""
+    try:
+        request.output.model_validate(value)
+    except ValueError:
+        return False
+    return True

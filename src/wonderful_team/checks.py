@@ -1,0 +1,107 @@
+"""`check` of one's own world, task, method or model: names become things, and the right checks are run on them."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from wonderful_team import registry
+from wonderful_team.api import Method
+from wonderful_team.errors import ConfigError
+from wonderful_team.evals.checking import SEEDS, Findings, check_controls, check_looks, contact_sheet
+from wonderful_team.evals.controls import CONTROLS, NO_MODEL
+from wonderful_team.evals.statistics import Rate
+from wonderful_team.evals.trials import Condition, RunSettings, TrialResult, TrialSpec
+from wonderful_team.evals.workers import run_safely
+from wonderful_team.loading import load_from_file
+from wonderful_team.trial_runs import run_trial
+
+TRIED_IN = "tabletop/rotate"
+"""Where methods and models are tried."""
+
+
+def kind_of(name: str) -> str:
+    """What FILE.py:NAME is: world (tasks included), method or model.
+
+    Raises:
+        ConfigError: None of them.
+    """
+    thing = load_from_file(name, "check")
+    if inspect.isfunction(thing) and registry.task_made_of(thing) is not None:
+        return "world"
+    for kind, need in (("world", "observe"), ("method", "decide"), ("model", "answer")):
+        if callable(getattr(thing, need, None)):
+            return kind
+    raise ConfigError(
+        f"{name}: nothing that can be checked; valid: a task made with wonderful_team.task, a world (observe), "
+        "a method (decide) or a model (answer)"
+    )
+
+
+def check(name: str, sheet: Path, seeds: int | None = None) -> Findings:
+    """Check FILE.py:NAME; writes the contact sheet of a world.
+
+    Raises:
+        ConfigError: It cannot be loaded.
+    """
+    kind = kind_of(name)
+    findings = Findings()
+    if kind == "world":
+        _check_world(name, sheet, range(seeds or SEEDS), findings)
+    else:
+        # A model may cost money: one scene unless more are asked for.
+        _check_thinking(kind, name, range(seeds or (SEEDS if kind == "method" else 1)), findings)
+    return findings
+
+
+def _check_world(name: str, sheet: Path, seeds: Sequence[int], findings: Findings) -> None:
+    tiles = check_looks(lambda seed: registry.make_world(name, seed), seeds, findings)
+    contact_sheet(tiles, sheet)
+    findings.notes.append(f"contact sheet: {sheet}")
+    world = registry.make_world(name, seeds[0])
+    try:
+        scored = registry.privileged(world) is not None
+    finally:
+        world.close()
+    if not scored:
+        findings.notes.append("no truth (an attribute `privileged` with score, truth, oracle): trials stay unscored")
+        return
+    check_controls({control: _run(name, Condition(control, NO_MODEL), seeds) for control in CONTROLS}, findings)
+
+
+def _check_thinking(kind: str, name: str, seeds: Sequence[int], findings: Findings) -> None:
+    condition = Condition(name, "offline") if kind == "method" else Condition("team", name)
+    Method(model=condition.model, method=condition.method).policy()
+    findings.good.append(f"loads as a {kind}")
+    results = _run(TRIED_IN, condition, seeds)
+    broken = [one for one in results if one.outcome == "error"]
+    findings.add(
+        not broken,
+        f"{len(results)} trials in {TRIED_IN} without an error",
+        f"{len(broken)} of {len(results)} trials broke: {broken[0].reason if broken else ''}",
+    )
+    refused = [one for one in results if one.stage == "gate"]
+    findings.add(
+        not refused,
+        "the gate admitted its actions",
+        f"the gate refused {len(refused)} of {len(results)}: {refused[0].reason if refused else ''}",
+    )
+    scored = [one for one in results if one.outcome in ("success", "failure")]
+    won = sum(one.outcome == "success" for one in scored)
+    findings.notes.append(f"{TRIED_IN}: {Rate(won, len(scored))}, {sum(one.calls for one in results)} model calls")
+    if kind == "model":
+        asked = sum(one.calls for one in results)
+        findings.add(asked > 0, f"it answered {asked} questions", "it was asked nothing")
+    elif seeds:
+        first, again = results[0], _run(TRIED_IN, condition, seeds[:1])[0]
+        same = (first.outcome, first.stage) == (again.outcome, again.stage)
+        findings.add(
+            same, "the same scene ends the same way twice", "the same scene ended in two ways: seed what is random"
+        )
+
+
+def _run(task: str, condition: Condition, seeds: Sequence[int]) -> list[TrialResult]:
+    settings: Any = RunSettings(pages="none")
+    return [run_safely(run_trial, TrialSpec(task, seed, condition), settings) for seed in seeds]

@@ -1,0 +1,158 @@
+"""Methods that bound every study: an oracle that must succeed, and two that must not. A wrong scorer shows here first."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from wonderful_team.actions import (
+    Action,
+    At,
+    Beside,
+    CloseStep,
+    FollowStep,
+    HomeStep,
+    MoveStep,
+    NavigateStep,
+    OpenStep,
+    PickPlace,
+    PickPlaceStep,
+    Push,
+    PushStep,
+    RotateGripperStep,
+    Step,
+)
+from wonderful_team.errors import ConfigError
+from wonderful_team.interfaces import Act, Decision, Done, Policy, Privileged, Situation
+from wonderful_team.types import Limits, PlannedAction
+
+ORACLE, NO_OP, RANDOM = "oracle", "no-op", "random"
+CONTROLS: dict[str, str] = {
+    ORACLE: "control: the simulator's own solution; must succeed",
+    NO_OP: "control: does nothing; must fail",
+    RANDOM: "control: one random action for each of the oracle's; must fail nearly always",
+}
+NO_MODEL = "-"
+
+
+class OracleControl:
+    """Runs the simulator's own solution, asked for anew after every action for as long as something is left to do."""
+
+    name = ORACLE
+    chunks = True
+
+    def __init__(self, truth: Privileged) -> None:
+        self._truth = truth
+        self._count = 0
+
+    def decide(self, situation: Situation) -> Decision:
+        actions = list(self._truth.oracle())
+        if not actions or situation.refused is not None or self._count >= 50:
+            return Done("the oracle has nothing left to do")
+        self._count += 1
+        return Act((planned(actions[0], self._count),))
+
+
+class NoOpControl:
+    """Says at once that it is done."""
+
+    name = NO_OP
+
+    def decide(self, situation: Situation) -> Decision:
+        return Done("the no-op control does nothing")
+
+
+class RandomControl:
+    """As many actions as the oracle would take, each at random within the workspace."""
+
+    name = RANDOM
+
+    def __init__(self, seed: int, actions: int) -> None:
+        self._rng = np.random.default_rng([seed, 0x5EED])
+        self._left = max(1, actions)
+
+    def decide(self, situation: Situation) -> Decision:
+        if situation.executed or situation.refused is not None:
+            return Done("the random control has acted")
+        kinds = [kind for kind in situation.vocabulary.kinds if kind in ("pick_place", "push")]
+        if not kinds:
+            return Done(f"the random control knows pick_place and push; this world runs {situation.vocabulary.kinds}")
+        chosen = [kinds[int(self._rng.integers(len(kinds)))] for _ in range(self._left)]
+        return Act(tuple(planned(self._action(k, situation.limits), n) for n, k in enumerate(chosen, start=1)))
+
+    def _action(self, kind: str, limits: Limits) -> Action:
+        low, high = np.array(limits.low_m), np.array(limits.high_m)
+        ends = self._rng.uniform(low + 0.02 * (high - low), high - 0.02 * (high - low), size=(2, 3))
+        ends[:, 2] = np.clip(0.0, low[2], high[2])
+        if kind == "push":
+            return Push(ends[0], ends[1])
+        return PickPlace(ends[0], ends[1], float(self._rng.uniform(-np.pi, np.pi)))
+
+
+def make_control(name: str, seed: int, truth: Privileged | None) -> Policy:
+    """The control of that name.
+
+    Raises:
+        ConfigError: The world offers no truth, which oracle and random need.
+    """
+    if name == NO_OP:
+        return NoOpControl()
+    if truth is None:
+        raise ConfigError(f"the {name} control needs a world with truth (an attribute `privileged`); this one has none")
+    if name == ORACLE:
+        return OracleControl(truth)
+    return RandomControl(seed, len(list(truth.oracle())))
+
+
+def planned(action: Action, number: int) -> PlannedAction:
+    """An action as a method hands it over; its step names what truth knows and no picture shows."""
+    return PlannedAction(_step(action, f"G{number}"), action)
+
+
+def _step(action: Action, subgoal: str) -> Step:
+    thing, place = "(from truth)", At("(from truth)")
+    match action.kind:
+        case "pick_place":
+            return PickPlaceStep(subgoal, thing, place)
+        case "push":
+            return PushStep(subgoal, Beside(thing, "left"), place)
+        case "gripper":
+            return OpenStep(subgoal) if getattr(action, "state", "") == "open" else CloseStep(subgoal)
+        case "rotate_gripper":
+            return RotateGripperStep(subgoal, float(np.degrees(-getattr(action, "yaw_rad", 0.0))))
+        case "home":
+            return HomeStep(subgoal)
+        case "navigate":
+            return NavigateStep(subgoal, place)
+        case "trajectory":
+            return FollowStep(subgoal, thing)
+    return MoveStep(subgoal, place)
+
+
+def control_faults(successes: dict[str, tuple[int, int]]) -> list[str]:
+    """What the controls say against a task's scorer or oracle.
+
+    Args:
+        successes: (successes, scored trials) of oracle, no-op and random, where they ran.
+    """
+    faults: list[str] = []
+    won, n = successes.get(ORACLE, (0, 0))
+    if won < n:
+        faults.append(
+            f"the oracle fails {n - won} of {n}: its solution or the scorer is wrong, or the scene is unsolvable"
+        )
+    won, n = successes.get(NO_OP, (0, 0))
+    if won:
+        faults.append(
+            f"doing nothing succeeds in {won} of {n}: the scorer is wrong, or the scene is solved at the start"
+        )
+    won, n = successes.get(RANDOM, (0, 0))
+    if n and won > max(1, 0.1 * n):
+        faults.append(f"random actions succeed in {won} of {n}: the scorer is too lenient, or the task is trivial")
+    return faults
+
+
+def control_names(refused: Sequence[str] = ()) -> tuple[str, ...]:
+    """The controls that run, less those refused."""
+    return tuple(name for name in CONTROLS if name not in refused)

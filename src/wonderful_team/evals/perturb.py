@@ -1,0 +1,138 @@
+"""Harder tiers of any world with pictures, scored separately: what the cameras see changes, the task does not."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import cv2
+import numpy as np
+
+from wonderful_team.actions import Action
+from wonderful_team.errors import ConfigError
+from wonderful_team.geometry import AffineCamera, PinholeCamera, PlanarCamera
+from wonderful_team.geometry.arrays import Array
+from wonderful_team.geometry.cameras import Camera
+from wonderful_team.interfaces import World
+from wonderful_team.types import Instruction, Observation, StepReport, View
+
+KINDS = ("lighting", "camera", "texture", "paraphrase")
+LEVELS = (0, 1, 2, 3)
+PHRASES = {
+    1: "Please do this: {text}",
+    2: "I would like the robot to take care of something on the table. {text} That is all.",
+    3: "There is one thing to be done here before we can go on, so read this carefully and do no more than it says: {text}",
+}
+
+
+def check_perturbation(words: str) -> None:
+    """Whether "KIND=LEVEL" (or "") is valid.
+
+    Raises:
+        ConfigError: Another kind or level.
+    """
+    if not words:
+        return
+    kind, _, level = words.partition("=")
+    if kind not in KINDS or level not in map(str, LEVELS):
+        raise ConfigError(f"perturbation {words!r}: valid is KIND=0..3 with KIND one of {', '.join(KINDS)}")
+
+
+def perturbed(world: World, words: str, seed: int) -> World:
+    """The world as a harder tier shows it; level 0 leaves it alone."""
+    check_perturbation(words)
+    kind, _, level = words.partition("=")
+    return world if level == "0" else PerturbedWorld(world, kind, int(level), seed)
+
+
+class PerturbedWorld:
+    """Changes what is seen or said of a world; actions and truth pass through."""
+
+    def __init__(self, world: World, kind: str, level: int, seed: int) -> None:
+        self._world, self._kind, self._level = world, kind, level
+        self._rng_seed = [seed, level, KINDS.index(kind)]
+        self.vocabulary, self.limits = world.vocabulary, world.limits
+        self.horizon: int | None = getattr(world, "horizon", None)
+        self.privileged = getattr(world, "privileged", None)
+        said = world.instruction
+        if kind == "paraphrase":
+            said = Instruction(PHRASES[level].format(text=said.text), dict(said.slots))
+        self.instruction = said
+
+    def observe(self) -> Observation:
+        """The views, changed the same way at every look."""
+        seen = self._world.observe()
+        if self._kind == "paraphrase":
+            return seen
+        change = {"lighting": self._relit, "camera": self._turned, "texture": self._mottled}[self._kind]
+        return replace(seen, views={name: change(view) for name, view in seen.views.items()})
+
+    def execute(self, action: Action) -> StepReport:
+        return self._world.execute(action)
+
+    def stop(self) -> None:
+        self._world.stop()
+
+    def close(self) -> None:
+        self._world.close()
+
+    def _relit(self, view: View) -> View:
+        """Exposure, a colour cast, and light that falls off to one side: up to 15, 30, 45 % by level."""
+        rng = np.random.default_rng(self._rng_seed)
+        strength = 0.15 * self._level
+        gain = 1.0 + strength * rng.uniform(-1.0, 0.6)
+        cast = 1.0 + 0.5 * strength * rng.uniform(-1.0, 1.0, size=3)
+        slope = np.linspace(-1.0, 1.0, view.rgb.shape[1])[None, :, None] * strength * rng.choice([-1.0, 1.0]) / 2
+        lit = view.rgb.astype(np.float64) * gain * cast * (1.0 + slope)
+        return replace(view, rgb=np.clip(np.rint(lit), 0, 255).astype(np.uint8))
+
+    def _turned(self, view: View) -> View:
+        """The camera rolls by 4, 8, 12 degrees and stands as much farther away as keeps the whole view in the picture.
+
+        Its model moves with the picture.
+        """
+        rng = np.random.default_rng(self._rng_seed)
+        width, height = view.size_px
+        roll_deg = 4.0 * self._level * float(rng.choice([-1.0, 1.0]))
+        longer, shorter = max(width, height), min(width, height)
+        turn = math.radians(abs(roll_deg))
+        scale = 1.0 / (math.cos(turn) + longer / shorter * math.sin(turn))
+        A = cv2.getRotationMatrix2D((width / 2, height / 2), roll_deg, scale)
+        # OpenCV puts the centre of the first pixel at 0; here it lies at 0.5.
+        for_cv = A.copy()
+        for_cv[:, 2] += A[:, :2] @ (0.5, 0.5) - 0.5
+        rgb = cv2.warpAffine(view.rgb, for_cv, (width, height), flags=cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE)
+        depth_m = None
+        if view.depth_m is not None:
+            depth_m = cv2.warpAffine(
+                view.depth_m, for_cv, (width, height), flags=cv2.INTER_NEAREST, borderValue=float("nan")
+            )
+        return replace(view, rgb=rgb, depth_m=depth_m, camera=None if view.camera is None else moved(view.camera, A))
+
+    def _mottled(self, view: View) -> View:
+        """Every surface carries blotches of other brightness, about 8, 16, 24 % by level, a fortieth of the width apart."""
+        rng = np.random.default_rng(self._rng_seed)
+        height, width = view.rgb.shape[:2]
+        coarse = rng.uniform(-1.0, 1.0, size=(max(2, 40 * height // width), 40)).astype(np.float32)
+        blotches = cv2.resize(coarse, (width, height), interpolation=cv2.INTER_CUBIC)[:, :, None]
+        covered = view.rgb.astype(np.float64) * (1.0 + 0.08 * self._level * blotches)
+        return replace(view, rgb=np.clip(np.rint(covered), 0, 255).astype(np.uint8))
+
+
+def moved(camera: Camera, A: Array) -> Camera:
+    """The camera whose pixels are those of `camera` mapped by A, shape (2, 3).
+
+    Raises:
+        ConfigError: A camera of another kind.
+    """
+    whole = np.vstack([A, (0.0, 0.0, 1.0)])
+    match camera:
+        case PinholeCamera():
+            return PinholeCamera(whole @ camera.K, camera.T_base_cam)
+        case AffineCamera():
+            pixels = A[:, :2] @ camera.matrix[:2]
+            pixels[:, 3] += A[:, 2]
+            return AffineCamera(np.vstack([pixels, camera.matrix[2]]))
+        case PlanarCamera():
+            return PlanarCamera(camera.H_table_px @ np.linalg.inv(whole), camera.plane_z_m)
+    raise ConfigError(f"perturbation camera: a {type(camera).__name__} cannot be moved; pinhole, affine and planar can")

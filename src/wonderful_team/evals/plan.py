@@ -1,0 +1,149 @@
+"""What a study asks for: suites x methods x models x seeds x repeats, as a list of trials."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from wonderful_team.errors import ConfigError
+from wonderful_team.evals.controls import CONTROLS, NO_MODEL
+from wonderful_team.evals.suites import Suite, default_seeds
+from wonderful_team.evals.trials import Condition, TrialSpec
+
+OFFLINE = "offline"
+ISOLATES = ("planning", "grounding")
+
+
+@dataclass(frozen=True)
+class StudyPlan:
+    """What is to be run.
+
+    Attributes:
+        suites: Tasks with their protocols.
+        methods, models: Names; every method runs with every model.
+        seeds: For every task; None for each suite's own.
+        repeats: How often each scene is run.
+        controls: Names of the controls that run too, `offline` among them.
+        isolate: "" | planning | grounding.
+        perturb: "" or KIND=LEVEL.
+        replans: None for each suite's own protocol.
+        shard: (I, N): only the I-th of N parts, counted from 1; a scene's trials stay together.
+
+    Raises:
+        ConfigError: A value out of range.
+    """
+
+    suites: tuple[Suite, ...]
+    methods: tuple[str, ...] = ("team",)
+    models: tuple[str, ...] = (OFFLINE,)
+    seeds: tuple[int, ...] | None = None
+    repeats: int = 1
+    controls: tuple[str, ...] = (*CONTROLS, OFFLINE)
+    isolate: str = ""
+    perturb: str = ""
+    replans: int | None = None
+    shard: tuple[int, int] = (1, 1)
+    note: Mapping[str, Any] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        if self.repeats < 1:
+            raise ConfigError(f"repeats must be at least 1, got {self.repeats}")
+        if self.isolate and self.isolate not in ISOLATES:
+            raise ConfigError(f"isolate {self.isolate!r}: valid are {', '.join(ISOLATES)}")
+        part, parts = self.shard
+        if not 1 <= part <= parts:
+            raise ConfigError(f"shard {part}/{parts}: valid is I/N with I from 1 to N")
+        for name, words in (("method", self.methods), ("model", self.models)):
+            if not words or len(set(words)) < len(words):
+                raise ConfigError(f"{name}s {', '.join(words) or '(none)'}: name at least one, none twice")
+
+    def conditions(self, suite: Suite) -> tuple[Condition, ...]:
+        """What is compared on a suite; controls last."""
+        replans = suite.protocol.replans if self.replans is None else self.replans
+        asked = [
+            Condition(method, NO_MODEL if method in CONTROLS else model, self.isolate, self.perturb, replans)
+            for method in self.methods
+            for model in self.models
+        ]
+        photos = suite.name.endswith(".json")
+        bounds = [] if photos else [name for name in self.controls if name in CONTROLS]
+        asked += [Condition(name, NO_MODEL, "", self.perturb, 0) for name in bounds]
+        if OFFLINE in self.controls:
+            asked.append(Condition("team", OFFLINE, "", self.perturb, replans))
+        return tuple(dict.fromkeys(asked))
+
+    def trials(self) -> Iterator[TrialSpec]:
+        """Every trial of this shard, seed by seed, so that a study cut short is balanced."""
+        seen: set[str] = set()
+        for repeat in range(self.repeats):
+            for place in range(max(len(self.seeds_of(suite)) for suite in self.suites)):
+                for suite in self.suites:
+                    seeds = self.seeds_of(suite)
+                    for task in suite.tasks if place < len(seeds) else ():
+                        if not self._mine(task, seeds[place], repeat):
+                            continue
+                        for condition in self.conditions(suite):
+                            spec = TrialSpec(task, seeds[place], condition, repeat)
+                            if _is_repeatable(condition) and repeat or spec.key in seen:
+                                continue
+                            seen.add(spec.key)
+                            yield spec
+
+    def seeds_of(self, suite: Suite) -> tuple[int, ...]:
+        if suite.name.endswith(".json"):
+            # A photo is one scene: its number takes the place of a seed.
+            return tuple(range(int(self.note.get(f"photos:{suite.name}", 1))))
+        return self.seeds if self.seeds is not None else default_seeds(suite.protocol)
+
+    def _mine(self, task: str, seed: int, repeat: int) -> bool:
+        part, parts = self.shard
+        digest = hashlib.sha256(f"{task}#{seed}#{repeat}".encode()).digest()
+        return int.from_bytes(digest[:8], "big") % parts == part - 1
+
+    @property
+    def name(self) -> str:
+        """Hash of what is asked for: the same request goes on where it stopped."""
+        return hashlib.sha256(json.dumps([spec.key for spec in self.trials()]).encode()).hexdigest()[:12]
+
+    def request(self) -> dict[str, Any]:
+        """What the store remembers of it."""
+        return {
+            "suites": [suite.name for suite in self.suites],
+            "notes": [f"{suite.name}: {suite.note}" for suite in self.suites if suite.note],
+            "protocols": sorted({suite.protocol.name for suite in self.suites}),
+            "command": "",
+            "methods": list(self.methods),
+            "models": list(self.models),
+            "seeds": None if self.seeds is None else list(self.seeds),
+            "repeats": self.repeats,
+            "controls": list(self.controls),
+            "isolate": self.isolate,
+            "perturb": self.perturb,
+            "shard": list(self.shard),
+            **{key: value for key, value in self.note.items() if not key.startswith("photos:")},
+        }
+
+
+def _is_repeatable(condition: Condition) -> bool:
+    """Controls are deterministic: repeating one tells nothing."""
+    return condition.method in CONTROLS
+
+
+def read_shard(words: str) -> tuple[int, int]:
+    """(I, N) from "I/N".
+
+    Raises:
+        ConfigError: Another form.
+    """
+    part, slash, parts = words.partition("/")
+    if not (slash and part.isdigit() and parts.isdigit() and 1 <= int(part) <= int(parts)):
+        raise ConfigError(f"shard {words!r}: valid is I/N with I from 1 to N, as in 1/4")
+    return int(part), int(parts)
+
+
+def split_names(words: Sequence[str]) -> tuple[str, ...]:
+    """Names from repeated options that may hold several with commas."""
+    return tuple(name.strip() for word in words for name in word.split(",") if name.strip())

@@ -1,0 +1,88 @@
+"""Plots of a study by matplotlib, as SVG text that goes into the page."""
+
+from __future__ import annotations
+
+import io
+import warnings
+from typing import Any
+
+from wonderful_team.errors import MissingExtraError
+from wonderful_team.evals.statistics import wilson_interval
+from wonderful_team.evals.summary import Summary
+from wonderful_team.evals.trials import Condition
+
+_MARKS = "osD^vP*X<>"
+_BLUE, _GREY = "#2b5c8a", "#8a8f98"
+
+
+def rate_plot(summary: Summary) -> str:
+    """Success of every condition with its 95 % interval; controls in grey."""
+    conditions = [one for one in (*summary.compared, *summary.bounds) if summary.cell(one).rate.n]
+    figure, axes = _figure(7.2, 0.9 + 0.42 * max(1, len(conditions)))
+    for place, one in enumerate(reversed(conditions)):
+        rate = summary.cell(one).rate
+        low, high = wilson_interval(rate.successes, rate.n)
+        share = rate.successes / rate.n
+        errors = [[100 * max(0.0, share - low)], [100 * max(0.0, high - share)]]
+        axes.errorbar(100 * share, place, xerr=errors, fmt="o", color=_colour(one, summary), capsize=4)
+    axes.set_yticks(range(len(conditions)), [_named(one, summary) for one in reversed(conditions)])
+    axes.set_ylim(-0.6, len(conditions) - 0.4)
+    axes.set_xlim(-3, 103)
+    axes.set_xlabel("success [%], 95 % Wilson interval")
+    return _svg(figure)
+
+
+def cost_plot(summary: Summary) -> str:
+    """Success against cost per trial: money where all prices are known, else calls; one point per condition."""
+    conditions = [one for one in (*summary.compared, *summary.bounds) if summary.cell(one).rate.n]
+    cells = {one: summary.cell(one) for one in conditions}
+    paid = [cell for cell in cells.values() if cell.usd_per_trial]
+    in_money = bool(paid) and all(cell.usd_per_trial is not None for cell in cells.values())
+    figure, axes = _figure(8.6, 3.4)
+    for place, (one, cell) in enumerate(cells.items()):
+        across = cell.usd_per_trial if in_money else cell.mean("calls")
+        low, high = wilson_interval(cell.rate.successes, cell.rate.n)
+        share = cell.rate.successes / cell.rate.n
+        errors = [[100 * max(0.0, share - low)], [100 * max(0.0, high - share)]]
+        style = {"fmt": _MARKS[place % len(_MARKS)], "capsize": 4, "label": one.label, "alpha": 0.8}
+        axes.errorbar(across or 0.0, 100 * share, yerr=errors, color=f"C{place % 10}", **style)
+    axes.set_ylim(-5, 108)
+    axes.margins(x=0.1)
+    axes.legend(fontsize=8, loc="center left", bbox_to_anchor=(1.01, 0.5), frameon=False)
+    axes.set_xlabel("USD per trial" if in_money else "model calls per trial (no price is known, or nothing was paid)")
+    axes.set_ylabel("success [%]")
+    return _svg(figure)
+
+
+def _named(one: Condition, summary: Summary) -> str:
+    rate = summary.cell(one).rate
+    return f"{one.label} ({rate.successes}/{rate.n})"
+
+
+def _colour(one: Condition, summary: Summary) -> str:
+    return _GREY if one in summary.bounds else _BLUE
+
+
+def _figure(width_in: float, height_in: float) -> tuple[Any, Any]:
+    try:
+        with warnings.catch_warnings():
+            # What matplotlib's own dependencies deprecate is not ours to fix.
+            warnings.simplefilter("ignore")
+            from matplotlib.figure import Figure
+    except ModuleNotFoundError as error:
+        raise MissingExtraError("plots in the report", "report") from error
+    figure = Figure(figsize=(width_in, height_in), layout="constrained")
+    axes = figure.add_subplot()
+    axes.grid(visible=True, color="#e4e7eb")
+    axes.set_axisbelow(True)
+    for side in ("top", "right"):
+        axes.spines[side].set_visible(False)
+    return figure, axes
+
+
+def _svg(figure: Any) -> str:
+    out = io.StringIO()
+    # No clock in what is written: the same store gives the same page.
+    figure.savefig(out, format="svg", metadata={"Date": None})
+    text = out.getvalue()
+    return text[text.index("<svg") :]

@@ -1,0 +1,220 @@
+"""A study's figures as CSV, Markdown, LaTeX, JSON and a pandas frame."""
+
+from __future__ import annotations
+
+import csv
+import importlib
+import io
+import json
+from collections.abc import Sequence
+from typing import Any
+
+from wonderful_team.errors import MissingExtraError
+from wonderful_team.evals.paper import paper_figure
+from wonderful_team.evals.statistics import wilson_interval
+from wonderful_team.evals.summary import Cell, Summary
+from wonderful_team.evals.trials import Row
+
+_RESULT = (
+    "outcome",
+    "stage",
+    "reason",
+    "calls",
+    "tokens",
+    "pictures",
+    "usd",
+    "seconds",
+    "rounds",
+    "page",
+    "instruction",
+)
+
+
+def trial_record(row: Row) -> dict[str, Any]:
+    """One trial flat, for a line of a table; None for everything that is not known yet."""
+    spec, result = row.spec, row.result
+    condition = spec.condition
+    flat: dict[str, Any] = {
+        "task": spec.task,
+        "seed": spec.seed,
+        "repeat": spec.repeat,
+        "method": condition.method,
+        "model": condition.model,
+        "isolate": condition.isolate,
+        "perturb": condition.perturb,
+        "replans": condition.replans,
+    }
+    flat |= {name: None if result is None else getattr(result, name) for name in _RESULT}
+    flat["provenance"] = None if result is None else " ".join(result.provenance)
+    flat["versions"] = None if result is None else json.dumps(dict(result.versions))
+    return flat | ({} if result is None else {f"fact {name}": value for name, value in result.facts.items()})
+
+
+def to_csv(rows: Sequence[Row]) -> str:
+    """One line per trial."""
+    records = [trial_record(row) for row in rows]
+    columns = list(dict.fromkeys(name for record in records for name in record))
+    out = io.StringIO()
+    writer = csv.DictWriter(out, columns, restval="", lineterminator="\n")
+    writer.writeheader()
+    writer.writerows(records)
+    return out.getvalue()
+
+
+def to_frame(rows: Sequence[Row]) -> Any:
+    """One line per trial as a pandas frame.
+
+    Raises:
+        MissingExtraError: pandas is not installed.
+    """
+    try:
+        pandas = importlib.import_module("pandas")
+    except ModuleNotFoundError as error:
+        raise MissingExtraError("a pandas frame", "report") from error
+    return pandas.DataFrame([trial_record(row) for row in rows])
+
+
+def condition_json(cell: Cell) -> dict[str, Any]:
+    """A cell for machines."""
+    rate = cell.rate
+    return {
+        "method": cell.condition.method,
+        "model": cell.condition.model,
+        "isolate": cell.condition.isolate,
+        "perturb": cell.condition.perturb,
+        "replans": cell.condition.replans,
+        "successes": rate.successes,
+        "scored": rate.n,
+        "success": rate.share,
+        "interval": list(wilson_interval(rate.successes, rate.n)) if rate.n else None,
+        "errors": cell.count("error"),
+        "unscored": cell.count("unscored"),
+        "missing": cell.missing,
+        "retried": cell.retried,
+        "seeds": cell.seed_range,
+        "usd": cell.usd,
+        "usd_per_trial": cell.usd_per_trial,
+        "usd_per_success": cell.usd_per_success,
+        **{f"mean_{name}": cell.mean(name) for name in ("seconds", "calls", "rounds", "tokens")},
+        "provenance": list(cell.badges),
+    }
+
+
+HEAD = (
+    "method · model",
+    "success",
+    "95 %",
+    "n",
+    "errors",
+    "unscored",
+    "seeds",
+    "USD/trial",
+    "USD/success",
+    "s",
+    "calls",
+    "rounds",
+)
+
+
+def cell_words(cell: Cell) -> tuple[str, ...]:
+    """The line of a cell, in the order of HEAD."""
+    rate = cell.rate
+    badges = f" [{', '.join(cell.badges)}]" if cell.badges else ""
+    interval = "no data"
+    if rate.n:
+        low, high = wilson_interval(rate.successes, rate.n)
+        interval = f"{100 * low:.1f} to {100 * high:.1f}"
+    return (
+        cell.condition.label + badges,
+        "no data" if rate.share is None else f"{100 * rate.share:.1f} %",
+        interval,
+        str(rate.n),
+        str(cell.count("error")),
+        str(cell.count("unscored")),
+        cell.seed_range,
+        number(cell.usd_per_trial, 4),
+        "no success" if cell.results and not cell.count("success") else number(cell.usd_per_success, 4),
+        *(number(cell.mean(name), 1) for name in ("seconds", "calls", "rounds")),
+    )
+
+
+def number(value: float | None, digits: int) -> str:
+    """A figure, or that it is not known."""
+    return "unknown" if value is None else f"{value:.{digits}f}"
+
+
+def task_table(summary: Summary) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
+    """Success per task and condition, each compared method's column of the paper beside it."""
+    head: list[str] = ["task"]
+    conditions = (*summary.compared, *summary.bounds)
+    with_paper = {
+        one
+        for one in summary.compared
+        if not one.isolate and any(paper_figure(task, one.method) for task in summary.tasks)
+    }
+    for one in conditions:
+        head += [one.label] + ([f"paper ({one.method})"] if one in with_paper else [])
+    lines = []
+    for task in summary.tasks:
+        line = [task]
+        for one in conditions:
+            line.append(rate_words(summary.cell(one, task)))
+            if one in with_paper:
+                line.append(str(paper_figure(task, one.method) or "-"))
+        lines.append(tuple(line))
+    return tuple(head), lines
+
+
+def rate_words(cell: Cell) -> str:
+    """A rate with n and interval in one field."""
+    rate = cell.rate
+    if not rate.n:
+        return "no data"
+    low, high = wilson_interval(rate.successes, rate.n)
+    return f"{100 * rate.successes / rate.n:.0f} % (n = {rate.n}; {100 * low:.0f} to {100 * high:.0f})"
+
+
+def to_markdown(summary: Summary, baseline: str | None = None) -> str:
+    """Answer, warnings and the two main tables."""
+    parts = ["\n".join(summary.headline(baseline))]
+    warnings = summary.warnings()
+    if warnings:
+        parts.append("\n".join(f"- warning: {text}" for text in warnings))
+    parts.append(_markdown(HEAD, [cell_words(summary.cell(one)) for one in (*summary.compared, *summary.bounds)]))
+    parts.append(_markdown(*task_table(summary)))
+    return "\n\n".join(parts) + "\n"
+
+
+def _markdown(head: Sequence[str], lines: Sequence[Sequence[str]]) -> str:
+    rows = [head, ["---"] * len(head), *lines]
+    return "\n".join("| " + " | ".join(word.replace("|", "\\|") for word in row) + " |" for row in rows)
+
+
+def to_latex(head: Sequence[str], lines: Sequence[Sequence[str]], caption: str) -> str:
+    """A table environment for booktabs."""
+    body = "\n".join("    " + " & ".join(_tex(word) for word in line) + r" \\" for line in lines)
+    return (
+        "\\begin{table}\n  \\centering\n"
+        f"  \\caption{{{_tex(caption)}}}\n"
+        f"  \\begin{{tabular}}{{l{'r' * (len(head) - 1)}}}\n    \\toprule\n"
+        f"    {' & '.join(_tex(word) for word in head)} \\\\\n    \\midrule\n{body}\n    \\bottomrule\n"
+        "  \\end{tabular}\n\\end{table}\n"
+    )
+
+
+_TEX = {
+    "%": r"\%",
+    "_": r"\_",
+    "&": r"\&",
+    "#": r"\#",
+    "$": r"\$",
+    "·": r"$\cdot$",
+    "{": r"\{",
+    "}": r"\}",
+    "~": r"\textasciitilde{}",
+    "^": r"\textasciicircum{}",
+}
+
+
+def _tex(word: str) -> str:
+    return "".join(_TEX.get(letter, letter) for letter in word.replace("\\", "/"))

@@ -1,0 +1,256 @@
+"""Run a study: workers over a store, with progress, caps, and a clean end however it ends."""
+
+from __future__ import annotations
+
+import multiprocessing
+import multiprocessing.connection
+import os
+import socket
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+from wonderful_team.errors import ConfigError
+from wonderful_team.evals.limits import ProcessLimiter
+from wonderful_team.evals.plan import StudyPlan
+from wonderful_team.evals.spending import CapReached, Spending, WaitForCost, remaining
+from wonderful_team.evals.store import Store
+from wonderful_team.evals.trials import RunSettings, SpendingCaps, TrialRunner
+from wonderful_team.evals.workers import POLL_S, Work, work_until_done, worker_main
+
+STARTS_THAT_FAIL = 3
+_THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
+
+
+@dataclass(frozen=True)
+class Standing:
+    """Where a study stands.
+
+    Attributes:
+        total, done: Trials asked for and ended.
+        here: Trials that ended since this command began.
+        outcomes: How many ended with each outcome.
+    """
+
+    total: int
+    done: int
+    here: int
+    outcomes: dict[str, int]
+    spent: Spending
+    seconds: float
+
+    @property
+    def seconds_left(self) -> float | None:
+        """At the rate so far; None before anything ended."""
+        return (self.total - self.done) * self.seconds / self.here if self.here else None
+
+    def line(self) -> str:
+        """For a terminal."""
+        rate = f"{self.here / self.seconds:.2g} trials/s" if self.seconds else ""
+        counts = "  ".join(f"{name} {count}" for name, count in sorted(self.outcomes.items(), reverse=True))
+        money = f"{self.spent.usd:.2f} USD" if not self.spent.unpriced else f"{self.spent.usd:.2f} USD + unknown"
+        left = "" if self.seconds_left is None else f"  {_duration(self.seconds_left)} left"
+        return f"{self.done}/{self.total}  {counts}  {self.spent.calls} calls  {money}  {rate}{left}"
+
+
+@dataclass(frozen=True)
+class Finish:
+    """How a run of a study ended: `why` is "" when all trials ended, else what stopped it."""
+
+    standing: Standing
+    why: str = ""
+
+
+Report = Callable[[str, Standing | None], None]
+"""Told a message, or "" with where the study stands."""
+
+
+def run_study(
+    plan: StudyPlan,
+    store: str | Path,
+    runner: TrialRunner,
+    *,
+    settings: RunSettings | None = None,
+    caps: SpendingCaps | None = None,
+    jobs: int | None = None,
+    at_once: int = 1,
+    calls_at_once: int | None = None,
+    retry_errors: bool = False,
+    ray: str | None = None,
+    report: Report = lambda text, standing: None,
+) -> Finish:
+    """Run what is missing of a study.
+
+    Args:
+        plan: What is asked for.
+        store: The file; the same plan on the same file resumes, also while another process works on it.
+        runner: Turns a spec into a result; a module-level function, because worker processes import it.
+        settings: How trials are run.
+        caps: Of the whole study, earlier runs of it in this store included; `seconds` counts from now.
+        jobs: Worker processes, default one per core; 1 works in this process.
+        at_once: Trials in flight per process.
+        calls_at_once: Most model calls in flight over all workers; None for each trial's own limit.
+        retry_errors: Run trials again that ended as errors.
+        ray: Address of a Ray cluster ("local" starts one here): its workers run the trials instead.
+        report: Told how it goes.
+
+    Raises:
+        ConfigError: Wrong use, or workers that cannot start.
+        KeyboardInterrupt: Passed on after the trials in flight ended, or were given back.
+    """
+    jobs = jobs or os.cpu_count() or 1
+    if jobs < 1 or at_once < 1:
+        raise ConfigError(f"jobs and trials at once must be at least 1, got {jobs} and {at_once}")
+    settings, caps = settings or RunSettings(), caps or SpendingCaps()
+    deadline_s = None if caps.seconds is None else time.time() + caps.seconds
+    with Store(store) as opened:
+        for warning in opened.warnings:
+            report(f"warning: {warning}", None)
+        opened.want(plan.name, plan.trials(), plan.request())
+        if retry_errors and (again := opened.retry_errors(plan.name)):
+            report(f"{again} trials that ended as errors are tried again", None)
+        watch = Watch(opened, plan.name, report)
+        work = Work(opened.path, plan.name, runner, settings, caps, deadline_s, at_once)
+        report("", watch.standing())
+        if not watch.missing:
+            pass
+        elif ray is not None:
+            from wonderful_team.evals.on_ray import run_on_ray
+
+            run_on_ray(work, opened, watch, ray, jobs, calls_at_once)
+        elif jobs == 1 and calls_at_once is None:
+            work_until_done(work, lambda: watch.look() and False)
+        else:
+            _run_processes(work, watch, min(jobs, watch.missing), calls_at_once)
+        report("", watch.standing())
+        if caps.usd is not None and (unpriced := watch.standing().spent.unpriced):
+            report(f"warning: {unpriced} trials have no known price: the cap of {caps.usd:g} USD does not see them", None)
+        return Finish(watch.standing(), watch.why(caps, deadline_s))
+
+
+class Watch:
+    """Looks at a store and tells how far a study is."""
+
+    def __init__(self, store: Store, study: str, report: Report) -> None:
+        self.store, self.study, self.report = store, study, report
+        self._began = time.monotonic()
+        self._total = store.count_all(study)
+        self._before = store.count(study, "done")
+        self._told = self._began
+
+    def standing(self) -> Standing:
+        done = self.store.count(self.study, "done")
+        return Standing(
+            self._total,
+            done,
+            done - self._before,
+            self.store.outcomes(self.study),
+            self.store.spending(self.study),
+            time.monotonic() - self._began,
+        )
+
+    def look(self) -> bool:
+        """Report at most once a second."""
+        if time.monotonic() - self._told >= 1.0:
+            self._told = time.monotonic()
+            self.report("", self.standing())
+        return True
+
+    @property
+    def missing(self) -> int:
+        """Trials that have not ended."""
+        return self._total - self.store.count(self.study, "done")
+
+    def why(self, caps: SpendingCaps, deadline_s: float | None) -> str:
+        """Why trials are missing; "" when none is."""
+        if not self.missing:
+            return ""
+        try:
+            remaining(caps, self.store.spending(self.study))
+        except CapReached as error:
+            return str(error)
+        except WaitForCost:
+            pass
+        if deadline_s is not None and time.time() >= deadline_s:
+            return f"the study's cap of {caps.seconds:g} seconds is reached"
+        return f"{self.missing} trials have not ended; the same command goes on with them"
+
+
+def _run_processes(work: Work, watch: Watch, jobs: int, calls_at_once: int | None) -> None:
+    """Spawn workers, replace those that die, and end them when told to."""
+    context = multiprocessing.get_context("spawn")
+    stopping = context.Event()
+    if calls_at_once is not None:
+        limiter = ProcessLimiter(context.BoundedSemaphore(calls_at_once))
+        work = replace(work, settings=replace(work.settings, limiter=limiter))
+    work = replace(work, parent=os.getpid())
+    failing = 0
+
+    def start() -> Any:
+        process = context.Process(target=worker_main, args=(work, stopping), daemon=False)
+        process.start()
+        return process
+
+    with _one_thread_each():
+        processes = [start() for _ in range(jobs)]
+        try:
+            while any(process.exitcode != 0 for process in processes):
+                for place, process in enumerate(processes):
+                    if process.exitcode in (None, 0):
+                        continue
+                    lost = watch.store.crashed(process.pid or 0, socket.gethostname())
+                    failing = 0 if lost else failing + 1
+                    watch.report(
+                        f"warning: a worker died (exit code {process.exitcode}) at {', '.join(lost) or 'its start'}",
+                        None,
+                    )
+                    if failing >= STARTS_THAT_FAIL and not watch.standing().here:
+                        raise ConfigError(
+                            f"workers die before they take a trial (exit code {process.exitcode}); see above"
+                        )
+                    processes[place] = start()
+                watch.look()
+                multiprocessing.connection.wait([one.sentinel for one in processes if one.is_alive()], POLL_S)
+        except BaseException as error:
+            stopping.set()
+            _end(processes, watch, patient=isinstance(error, KeyboardInterrupt))
+            raise
+
+
+def _end(processes: list[Any], watch: Watch, *, patient: bool) -> None:
+    """Let trials in flight end; a second interrupt ends them at once, and their claims are given back."""
+    try:
+        if patient:
+            watch.report("interrupted: waiting for the trials in flight; press again to drop them", None)
+            for process in processes:
+                process.join()
+    finally:
+        for process in processes:
+            if process.is_alive():
+                process.kill()
+                process.join()
+                watch.store.crashed(process.pid or 0, socket.gethostname())
+
+
+@contextmanager
+def _one_thread_each() -> Iterator[None]:
+    """Processes share the cores: numeric libraries of a worker must not each take all of them."""
+    before = {name: os.environ.get(name) for name in _THREADS}
+    os.environ.update(dict.fromkeys(_THREADS, "1"))
+    try:
+        yield
+    finally:
+        for name, value in before.items():
+            if value is None:
+                os.environ.pop(name, None)
+            else:
+                os.environ[name] = value
+
+
+def _duration(seconds: float) -> str:
+    if seconds < 90:
+        return f"{seconds:.0f} s"
+    return f"{seconds / 60:.0f} min" if seconds < 5400 else f"{seconds / 3600:.1f} h"

@@ -1,0 +1,131 @@
+"""Suites by name: which tasks, how many seeds, and how often a method may plan again (the paper's protocols)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from wonderful_team.errors import ConfigError, UnknownNameError
+from wonderful_team.evals.trials import DEVELOPMENT_BELOW
+
+VIMA_TASKS = (
+    *("visual_manipulation", "scene_understanding", "rotate", "rearrange", "rearrange_then_restore", "novel_adj"),
+    *("novel_noun", "novel_adj_and_noun", "twist", "follow_motion", "follow_order", "sweep_without_exceeding"),
+    *("sweep_without_touching", "same_texture", "same_shape", "manipulate_old_neighbor", "pick_in_order_then_restore"),
+)
+"""The 17 tasks of VIMA-Bench in its own order (Jiang et al. 2023, arXiv:2210.03094)."""
+PARTITIONS = ("L1", "L2", "L3", "L4")
+FRUIT_FOLDER = "fruit_placement/"
+
+
+@dataclass(frozen=True)
+class Protocol:
+    """How trials are run (Wang, Shen & Stadie 2024, arXiv:2407.19094, appendix D.1).
+
+    Attributes:
+        runs: Seeds per task, from 1000 on, unless others are asked for.
+        replans: Plans after the first.
+    """
+
+    name: str
+    runs: int
+    replans: int
+
+
+OPEN_LOOP = Protocol("multimodal reasoning: 10 runs a task, single attempt, open loop", 10, 0)
+IMPLICIT_GOAL = Protocol("implicit goals: 2 runs for each of 4 variations, single attempt, open loop", 2, 0)
+SPATIAL = Protocol("spatial planning: 5 runs a task, closed loop, up to 3 replans", 5, 3)
+PROTOCOLS = {"open_loop": OPEN_LOOP, "implicit_goal": IMPLICIT_GOAL, "spatial": SPATIAL}
+
+
+@dataclass(frozen=True)
+class Suite:
+    """Tasks with the protocol they are run by; `note` says what is missing of a suite that is not whole."""
+
+    name: str
+    tasks: tuple[str, ...]
+    protocol: Protocol
+    help: str = ""
+    note: str = ""
+
+
+def all_suites(known_tasks: Sequence[str], partitions: Mapping[str, Sequence[str]] | None = None) -> dict[str, Suite]:
+    """Every suite that the registered tasks make up; it grows as tasks are registered.
+
+    Args:
+        known_tasks: Names as WORLD/TASK.
+        partitions: Tasks of each generalisation level, as WORLD/TASK@LEVEL, where a world has them.
+    """
+    suites: dict[str, Suite] = {}
+    vima = [f"tabletop/{name}" for name in VIMA_TASKS if f"tabletop/{name}" in known_tasks]
+    if vima:
+        missing = [name for name in VIMA_TASKS if f"tabletop/{name}" not in known_tasks]
+        note = f"{len(missing)} of its 17 tasks do not exist yet: {', '.join(missing)}" if missing else ""
+        words = "the tasks of VIMA-Bench on our own tabletop, not in the VIMA-Bench simulator"
+        suites["vima17"] = Suite("vima17", tuple(vima), OPEN_LOOP, words, note)
+        first = tuple(task for task in vima if task.rpartition("/")[2] in VIMA_TASKS[:3])
+        suites["vima3"] = Suite("vima3", first, OPEN_LOOP, "its three tasks of simple object manipulation")
+        for level in PARTITIONS:
+            tasks = tuple((partitions or {}).get(level, ()))
+            if tasks:
+                suites[f"vima17/{level}"] = Suite(f"vima17/{level}", tasks, OPEN_LOOP, f"generalisation level {level}")
+    fruit = tuple(name for name in known_tasks if name.startswith(f"tabletop/{FRUIT_FOLDER}"))
+    if fruit:
+        suites["fruit"] = Suite(
+            "fruit", fruit, IMPLICIT_GOAL, "sort fruits by colour: the paper's implicit goal, 4 variations"
+        )
+    return suites
+
+
+def resolve(
+    names: Sequence[str], known_tasks: Sequence[str], suites: Mapping[str, Suite], is_own: Callable[[str], bool]
+) -> tuple[Suite, ...]:
+    """The suites that words of a command line mean: a suite, a task (with or without its world), FILE.py:TASK, PHOTOS.json.
+
+    Raises:
+        UnknownNameError: Neither a suite nor a task; lists the suites and the nearest task.
+        ConfigError: Nothing is named, or a file is missing.
+    """
+    if not names:
+        raise ConfigError(f"name a suite or a task: {', '.join([*suites, *known_tasks])}, FILE.py:TASK or PHOTOS.json")
+    return tuple(_one(name, known_tasks, suites, is_own) for name in names)
+
+
+def _one(name: str, known: Sequence[str], suites: Mapping[str, Suite], is_own: Callable[[str], bool]) -> Suite:
+    if name in suites:
+        return suites[name]
+    if name.endswith(".json"):
+        if not Path(name).is_file():
+            raise ConfigError(f"photos {name!r}: there is no such file; valid: a COCO file with boxes and instructions")
+        return Suite(name, (name,), Protocol("photos: each once", 1, 0), "grounding on photos, no simulator")
+    if is_own(name):
+        return Suite(name, (name,), OPEN_LOOP, "own task")
+    for task in (name, f"tabletop/{name}"):
+        if task.partition("@")[0] in known:
+            protocol = IMPLICIT_GOAL if FRUIT_FOLDER in task else OPEN_LOOP
+            return Suite(task, (task,), protocol)
+    raise UnknownNameError("suite or task", name, [*suites, *known])
+
+
+def read_seeds(words: str) -> tuple[int, ...]:
+    """Seeds from "1000:1020" (the end is left out), "1003", or several with commas.
+
+    Raises:
+        ConfigError: Another form, an empty range, or a seed twice.
+    """
+    seeds: list[int] = []
+    for word in words.split(","):
+        first, colon, end = word.strip().partition(":")
+        try:
+            seeds += range(int(first), int(end)) if colon else [int(first)]
+        except ValueError:
+            raise ConfigError(f"seeds {words!r}: valid is FIRST:END, one number, or several with commas") from None
+    if not seeds or min(seeds) < 0 or len(set(seeds)) < len(seeds):
+        raise ConfigError(f"seeds {words!r}: name at least one, none below 0 and none twice; as in 1000:1020")
+    return tuple(seeds)
+
+
+def default_seeds(protocol: Protocol) -> tuple[int, ...]:
+    """The seeds of a protocol."""
+    return tuple(range(DEVELOPMENT_BELOW, DEVELOPMENT_BELOW + protocol.runs))

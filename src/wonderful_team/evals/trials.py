@@ -1,0 +1,174 @@
+"""What is run and what came of it: one trial as asked for, its result, and the condition it belongs to."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Mapping
+from dataclasses import asdict, dataclass, field, fields
+from pathlib import Path
+from typing import Any, Literal, Protocol, TypeAlias
+
+from wonderful_team.errors import ConfigError
+
+OUTCOMES = ("success", "failure", "error", "unscored")
+Outcome: TypeAlias = Literal["success", "failure", "error", "unscored"]
+DEVELOPMENT_BELOW = 1000
+"""Seeds below this one are for development and docs; suites start here (INTERFACE)."""
+
+
+@dataclass(frozen=True, order=True)
+class Condition:
+    """What is compared: everything of a trial but its scene.
+
+    Attributes:
+        method, model: Names; the model of a control that asks none is "-".
+        isolate: "" | planning (grounding from truth) | grounding (plan from the oracle).
+        perturb: "" or KIND=LEVEL: a harder tier, scored separately.
+        replans: How often it may plan again after its first attempt.
+    """
+
+    method: str
+    model: str
+    isolate: str = ""
+    perturb: str = ""
+    replans: int = 0
+
+    @property
+    def label(self) -> str:
+        """For tables: method · model, and what is special about it."""
+        words = [self.method] + ([self.model] if self.model != "-" else [])
+        words += [f"{self.isolate} alone"] if self.isolate else []
+        words += [self.perturb] if self.perturb else []
+        words += [f"{self.replans} replans"] if self.replans else []
+        return " · ".join(words)
+
+
+@dataclass(frozen=True)
+class TrialSpec:
+    """One trial to run. Two specs with the same fields are the same trial and run once."""
+
+    task: str
+    seed: int
+    condition: Condition
+    repeat: int = 0
+
+    @property
+    def key(self) -> str:
+        """Identity in the store."""
+        return json.dumps([self.task, self.seed, self.repeat, *asdict(self.condition).values()])
+
+    @property
+    def scene(self) -> str:
+        """How records name the scene."""
+        return f"{self.task}#{self.seed}"
+
+
+@dataclass(frozen=True)
+class TrialResult:
+    """What came of one trial.
+
+    Attributes:
+        outcome: success | failure | error (ours or the provider's) | unscored.
+        stage: Where it failed; None on success.
+        usd: Money; None where any price is unknown.
+        seconds: Wall clock of the whole trial [s].
+        rounds: Waiting rounds: longest chain of requests that were sent one after another's answer.
+        page: Path of the trial's page, or "".
+        versions: Package, commit and hashes of own files: what produced it.
+        facts: Figures of the trial beyond its outcome, such as the overlap of boxes with photos.
+    """
+
+    outcome: Outcome
+    stage: str | None = None
+    reason: str = ""
+    calls: int = 0
+    tokens: int = 0
+    pictures: int = 0
+    usd: float | None = 0.0
+    seconds: float = 0.0
+    rounds: int = 0
+    provenance: tuple[str, ...] = ()
+    by_role: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
+    page: str = ""
+    instruction: str = ""
+    versions: Mapping[str, str] = field(default_factory=dict)
+    facts: Mapping[str, float] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        if self.outcome not in OUTCOMES:
+            raise ValueError(f"outcome {self.outcome!r}: valid are {', '.join(OUTCOMES)}")
+
+
+@dataclass(frozen=True)
+class Row:
+    """A trial of a store: what was asked for and, once it ended, what came of it."""
+
+    spec: TrialSpec
+    result: TrialResult | None
+    discarded: int = 0
+
+
+@dataclass(frozen=True)
+class SpendingCaps:
+    """Upper limits; None for none. Of a whole study: it stops cleanly. Of one trial: the method fails at stage budget.
+
+    Raises:
+        ConfigError: A cap is not positive.
+    """
+
+    calls: int | None = None
+    tokens: int | None = None
+    seconds: float | None = None
+    usd: float | None = None
+
+    def __post_init__(self) -> None:
+        for item in fields(self):
+            value = getattr(self, item.name)
+            if value is not None and value <= 0:
+                raise ConfigError(f"cap on {item.name} must be positive, got {value}")
+
+    @property
+    def given(self) -> dict[str, float]:
+        """The caps that are set, by name."""
+        return {item.name: value for item in fields(self) if (value := getattr(self, item.name)) is not None}
+
+
+class Limiter(Protocol):
+    """Bounds how many model calls are in flight over all workers of a study."""
+
+    async def acquire(self) -> None: ...
+
+    async def release(self) -> None: ...
+
+
+@dataclass(frozen=True)
+class RunSettings:
+    """How trials are run; nothing here decides which trial it is.
+
+    Attributes:
+        caps: Of one trial.
+        concurrency: Most model calls at once within one trial.
+        pages: Which trials get a run folder with a page: all | failures | none.
+        out: Where run folders go.
+        prompts: Folder with own words for the team's roles.
+        limiter: Shared by all workers.
+        extra: Settings of the top that evals passes through unread.
+    """
+
+    caps: SpendingCaps = SpendingCaps()
+    concurrency: int = 8
+    pages: Literal["all", "failures", "none"] = "none"
+    out: Path | None = None
+    prompts: Path | None = None
+    limiter: Limiter | None = None
+    extra: Mapping[str, Any] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        if self.pages not in ("all", "failures", "none"):
+            raise ConfigError(f"pages {self.pages!r}: valid are all, failures, none")
+
+
+TrialRunner: TypeAlias = Callable[[TrialSpec, RunSettings], TrialResult]
+"""Handed in by the top of the house: turns names into methods, models and worlds, and runs one trial.
+
+It must be importable by name (a module-level function), because worker processes import it."""

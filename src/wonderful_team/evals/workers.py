@@ -1,0 +1,172 @@
+"""Workers: processes that take trials from a store, run them and write what came of them, until nothing is left."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import os
+import signal
+import time
+import traceback
+from collections.abc import AsyncIterator, Callable
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+from wonderful_team.evals.claims import LEASE_S, Owner
+from wonderful_team.evals.spending import CapReached
+from wonderful_team.evals.store import Claim, Store
+from wonderful_team.evals.trials import RunSettings, SpendingCaps, TrialResult, TrialRunner, TrialSpec
+
+POLL_S = 0.2
+"""How long a worker waits before it looks again for a trial that another process holds [s]."""
+
+
+@dataclass(frozen=True)
+class Work:
+    """What a worker is told.
+
+    Attributes:
+        store: Path of the store's file.
+        study: Name of the study in the store.
+        caps: Of the whole study.
+        deadline_s: Unix time after which no trial is begun; None for none.
+        at_once: Trials in flight in one process: more than one helps only where models are waited for.
+        parent: Process that started the worker; when it is gone the worker ends after its trial.
+    """
+
+    store: Path
+    study: str
+    runner: TrialRunner
+    settings: RunSettings
+    caps: SpendingCaps = SpendingCaps()
+    deadline_s: float | None = None
+    at_once: int = 1
+    parent: int | None = None
+
+
+def worker_main(work: Work, stopping: Any) -> None:
+    """Entry of a worker process; an interrupt from the keyboard is the parent's to answer."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    work_until_done(work, stopping.is_set)
+
+
+def work_until_done(work: Work, stopping: Callable[[], bool]) -> None:
+    """Take trials and run them until none is left, a cap is reached, or one is told to stop."""
+    with Store(work.store) as store:
+        asyncio.run(_work(work, store, stopping))
+
+
+async def _work(work: Work, store: Store, stopping: Callable[[], bool]) -> None:
+    owner = Owner.this_process(work.parent)
+    slots = [asyncio.create_task(_slot(work, store, owner, stopping)) for _ in range(work.at_once)]
+    try:
+        await asyncio.gather(*slots)
+    finally:
+        for slot in slots:
+            slot.cancel()
+
+
+async def _slot(work: Work, store: Store, owner: Owner, stopping: Callable[[], bool]) -> None:
+    while not (stopping() or _orphaned(work) or _late(work)):
+        try:
+            claim = store.claim(work.study, owner, work.caps)
+        except CapReached:
+            return
+        if claim is None:
+            if store.count(work.study, "done") == store.count_all(work.study):
+                return
+            await asyncio.sleep(POLL_S)
+            continue
+        await _run(work, store, owner, claim)
+
+
+async def _run(work: Work, store: Store, owner: Owner, claim: Claim) -> None:
+    settings = replace(work.settings, caps=tighter(work.settings.caps, claim.left))
+    try:
+        async with _kept(store, claim, owner):
+            result = await asyncio.to_thread(run_safely, work.runner, claim.spec, settings)
+    except BaseException:
+        # Interrupted: nothing of it counts, and somebody else may take it at once.
+        store.give_back(claim.trial, owner)
+        raise
+    settle(store, owner, claim, work.settings.caps, result)
+
+
+def settle(store: Store, owner: Owner, claim: Claim, own: SpendingCaps, result: TrialResult) -> bool:
+    """Write a result, unless the study's cap, and not one of its own, cut it short: then it did not happen.
+
+    Returns:
+        Whether it was written.
+    """
+    if result.stage == "budget" and result.outcome != "success" and cut_by_study(own, claim.left, result):
+        store.give_back(claim.trial, owner, "cut by the study's cap", result)
+        return False
+    return store.finish(claim.trial, owner, result)
+
+
+def cut_by_study(own: SpendingCaps, left: SpendingCaps, result: TrialResult) -> bool:
+    """Whether the cap that a trial met was what the study had left, and not its own."""
+    for name in ("calls", "tokens", "usd"):
+        study, trial = getattr(left, name), getattr(own, name)
+        if (
+            study is not None
+            and (trial is None or study < trial)
+            and f" {name.replace('usd', 'USD')} " in result.reason
+        ):
+            return True
+    return False
+
+
+def tighter(one: SpendingCaps, other: SpendingCaps) -> SpendingCaps:
+    """The smaller of each cap."""
+
+    def least(name: str) -> Any:
+        given = [value for caps in (one, other) if (value := getattr(caps, name)) is not None]
+        return min(given) if given else None
+
+    # What is left may be less than one call or token: the trial then starts with one and is cut at once.
+    calls, tokens = least("calls"), least("tokens")
+    return SpendingCaps(
+        None if calls is None else max(1, calls),
+        None if tokens is None else max(1, tokens),
+        least("seconds"),
+        least("usd"),
+    )
+
+
+def run_safely(runner: TrialRunner, spec: TrialSpec, settings: RunSettings) -> TrialResult:
+    """Run a trial; whatever escapes it is an error of ours, never the method's failure."""
+    started = time.monotonic()
+    try:
+        return runner(spec, settings)
+    except Exception as error:  # noqa: BLE001  a sweep goes on; the trial says what happened and where
+        where = traceback.extract_tb(error.__traceback__)[-1]
+        reason = f"{type(error).__name__}: {error} ({Path(where.filename).name}:{where.lineno})"
+        return TrialResult("error", "crash", reason, usd=None, seconds=time.monotonic() - started)
+
+
+@contextlib.asynccontextmanager
+async def _kept(store: Store, claim: Claim, owner: Owner) -> AsyncIterator[None]:
+    """Renew a claim's lease while its trial runs."""
+
+    async def renew() -> None:
+        while True:
+            await asyncio.sleep(LEASE_S / 4)
+            store.renew(claim.trial, owner)
+
+    renewing = asyncio.create_task(renew())
+    try:
+        yield
+    finally:
+        renewing.cancel()
+        with contextlib.suppress(asyncio.CancelledError):
+            await renewing
+
+
+def _orphaned(work: Work) -> bool:
+    return work.parent is not None and os.getppid() != work.parent
+
+
+def _late(work: Work) -> bool:
+    return work.deadline_s is not None and time.time() >= work.deadline_s

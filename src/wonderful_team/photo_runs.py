@@ -1,0 +1,84 @@
+"""One photo of a study: a method says where things are, and its boxes are compared with the true ones."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
+
+from wonderful_team.api import Method, team_config
+from wonderful_team.errors import ConfigError
+from wonderful_team.evals.photos import Located, read_photos, score_photo
+from wonderful_team.evals.trials import RunSettings, TrialResult, TrialSpec
+from wonderful_team.finding import find
+from wonderful_team.geometry import Box
+from wonderful_team.observe import Observation
+from wonderful_team.runtime.loop import Caller
+from wonderful_team.trial_runs import Counting, fingerprint, prepared
+from wonderful_team.types import GroundedTarget, Instruction, Target, Usage
+
+
+def run_photo(spec: TrialSpec, settings: RunSettings) -> TrialResult:
+    """Ask a method where everything in one photo is.
+
+    Raises:
+        ConfigError: An own method without `locate(observation, words)`.
+    """
+    started = time.monotonic()
+    scene = read_photos(spec.task)[spec.seed]
+    words = [asked.words for asked in scene.asked]
+    seen, count = Observation.from_files(scene.picture), Counting()
+    method = prepared(spec, settings, spec.condition.model)
+    config = team_config(spec.condition.method, settings.prompts)
+    with Caller() as caller:
+        if config is None:
+            found = _by_own(caller, method, count, seen, words)
+        else:
+            targets = [Target(f"T{number}", "object", text) for number, text in enumerate(words, start=1)]
+            asked = Instruction("Find: " + "; ".join(words))
+            plan = caller.wait_for(find(method.door(count), config, seen, asked, targets))
+            found = [_of_team(plan.grounded.get(target.id)) for target in targets]
+    usage = sum(count.by_role.values(), Usage())
+    return replace(
+        score_photo(scene, found),
+        calls=usage.calls,
+        tokens=usage.tokens,
+        pictures=usage.pictures,
+        usd=usage.usd,
+        seconds=time.monotonic() - started,
+        rounds=count.rounds,
+        provenance=tuple(sorted(count.provenance)),
+        instruction="; ".join(words),
+        versions=fingerprint(spec),
+    )
+
+
+def _of_team(item: GroundedTarget | None) -> Located:
+    if item is None or item.status != "found":
+        return Located()
+    return Located(item.box, next(iter(item.points.values()), None))
+
+
+def _by_own(caller: Caller, method: Method, count: Counting, seen: Observation, words: Sequence[str]) -> list[Located]:
+    policy: Any = method.policy(count)
+    if not callable(getattr(policy, "locate", None)):
+        raise ConfigError(
+            f"method {method.name!r} needs locate(observation, words): for each a box (x0, y0, x1, y1), a point (x, y) "
+            "in pixels of the photo, or None"
+        )
+    answers = list(caller.wait_for(policy.locate(seen, list(words))))
+    if len(answers) != len(words):
+        raise ConfigError(f"method {method.name!r}: locate gave {len(answers)} answers to {len(words)} descriptions")
+    return [_located(answer, method.name) for answer in answers]
+
+
+def _located(answer: Any, name: str) -> Located:
+    if answer is None:
+        return Located()
+    numbers = tuple(float(value) for value in (answer.as_tuple if isinstance(answer, Box) else answer))
+    if len(numbers) == 4:
+        return Located(Box(*numbers))
+    if len(numbers) == 2:
+        return Located(None, (numbers[0], numbers[1]))
+    raise ConfigError(f"method {name!r}: locate gave {numbers}; valid are 4 numbers (a box), 2 (a point) or None")

@@ -1,0 +1,259 @@
+"""`wt.Study`: any methods x any models x suites x seeds in one store, with a report. The command `bench` is made of it."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Literal
+
+from wonderful_team import registry
+from wonderful_team.errors import ConfigError, UnknownNameError
+from wonderful_team.evals.controls import CONTROLS
+from wonderful_team.evals.estimate import Estimate, estimate
+from wonderful_team.evals.perturb import check_perturbation
+from wonderful_team.evals.photos import count_photos
+from wonderful_team.evals.plan import OFFLINE, StudyPlan, read_shard, split_names
+from wonderful_team.evals.store import Store
+from wonderful_team.evals.study import Finish, Report, run_study
+from wonderful_team.evals.suites import PARTITIONS, Suite, all_suites, read_seeds, resolve
+from wonderful_team.evals.summary import Summary, summarise
+from wonderful_team.evals.trials import Condition, RunSettings, SpendingCaps, TrialResult, TrialSpec
+from wonderful_team.evals.workers import run_safely
+from wonderful_team.loading import is_file_name
+from wonderful_team.runs import runs_folder
+from wonderful_team.trial_runs import check_isolation, check_names, run_trial
+
+ALL_CONTROLS = (*CONTROLS, OFFLINE)
+FREE = ("-", OFFLINE)
+"""Models whose pilot trials cost no money."""
+
+
+@dataclass
+class Study:
+    """A comparison.
+
+    Args:
+        suite: A suite, a task, FILE.py:TASK, PHOTOS.json, or several.
+        methods, models: Names; objects cannot be sent to worker processes.
+        seeds: For every task; None for the suite's own, from 1000 on.
+        store: File that keeps what ended; the same study on the same file resumes.
+        repeats, replans, isolate, perturb, shard: As `bench` has them.
+        controls: Those that run beside the methods; () refuses them all.
+        caps: Of the whole study. trial_caps: of each trial.
+        pages: Which trials get a page of their own.
+
+    Raises:
+        ConfigError: A name or a value that is not valid; before anything runs.
+    """
+
+    suite: str | Sequence[str]
+    methods: Sequence[str] = ("team",)
+    models: Sequence[str] = (OFFLINE,)
+    seeds: Iterable[int] | None = None
+    store: str | Path = "study.db"
+    repeats: int = 1
+    replans: int | None = None
+    isolate: str = ""
+    perturb: str = ""
+    shard: tuple[int, int] = (1, 1)
+    controls: Sequence[str] = ALL_CONTROLS
+    caps: SpendingCaps = SpendingCaps()
+    trial_caps: SpendingCaps = SpendingCaps()
+    concurrency: int | None = None
+    pages: Literal["all", "failures", "none"] = "failures"
+    out: str | Path | None = None
+    prompts: str | Path | None = None
+    jobs: int | None = None
+    at_once: int = 1
+    ray: str | None = None
+    retry_errors: bool = False
+    command: str = ""
+
+    def __post_init__(self) -> None:
+        for name in (*self.methods, *self.models):
+            if not isinstance(name, str):
+                raise ConfigError(f"a study takes names, as in FILE.py:NAME; got a {type(name).__name__}")
+        unknown = [name for name in self.controls if name not in ALL_CONTROLS]
+        if unknown:
+            raise ConfigError(f"control {unknown[0]!r}: valid are {', '.join(ALL_CONTROLS)}")
+        check_perturbation(self.perturb)
+        words = [self.suite] if isinstance(self.suite, str) else list(self.suite)
+        suites = resolve(words, list(registry.task_names()), known_suites(), is_file_name)
+        _check_levels(suites)
+        for task in (task for suite in suites for task in suite.tasks if is_file_name(task)):
+            registry.make_world(task).close()
+        check_names(self.methods, self.models)
+        if self.isolate:
+            check_isolation(self.isolate)
+        self.plan = StudyPlan(
+            suites,
+            tuple(self.methods),
+            tuple(self.models),
+            None if self.seeds is None else tuple(self.seeds),
+            self.repeats,
+            tuple(self.controls),
+            self.isolate,
+            self.perturb,
+            self.replans,
+            self.shard,
+            {"command": self.command, **_photo_counts(suites)},
+        )
+        self.store = sharded(Path(self.store), self.shard)
+
+    @classmethod
+    def from_options(cls, **options: Any) -> Study:
+        """A study from the options of `bench`."""
+        refused = split_names(options["refused"])
+        wrong = [name for name in refused if name not in (*ALL_CONTROLS, "all")]
+        if wrong:
+            raise ConfigError(f"--no-control {wrong[0]}: valid are {', '.join(ALL_CONTROLS)}, all")
+        return cls(
+            options["suites"],
+            split_names(options["methods"]) or ("team",),
+            split_names(options["models"]) or (OFFLINE,),
+            None if options["seeds"] is None else read_seeds(options["seeds"]),
+            options["store"],
+            repeats=options["repeats"],
+            replans=options["replans"],
+            isolate=options["isolate"] or "",
+            perturb=options["perturb"] or "",
+            shard=(1, 1) if options["shard"] is None else read_shard(options["shard"]),
+            controls=() if "all" in refused else tuple(name for name in ALL_CONTROLS if name not in refused),
+            caps=SpendingCaps(options["max_calls"], options["max_tokens"], options["max_seconds"], options["max_usd"]),
+            trial_caps=SpendingCaps(options["trial_max_calls"], None, None, options["trial_max_usd"]),
+            concurrency=options["concurrency"],
+            pages=options["pages"],
+            out=options["out"],
+            prompts=options["prompts"],
+            jobs=options["jobs"],
+            at_once=options["at_once"],
+            ray=options["ray"],
+            retry_errors=options["retry_errors"],
+            command=options.get("command", ""),
+        )
+
+    @property
+    def notes(self) -> list[str]:
+        """What is not whole of the suites."""
+        return [f"{suite.name}: {suite.note}" for suite in self.plan.suites if suite.note]
+
+    def _settings(self) -> RunSettings:
+        prompts = None if self.prompts is None else Path(self.prompts)
+        out = runs_folder(self.out).absolute()
+        return RunSettings(self.trial_caps, self.concurrency or 8, self.pages, out, prompts)
+
+    def run(self, report: Report = lambda text, standing: None) -> Finish:
+        """Run what is missing; `report` is told how it goes.
+
+        Raises:
+            KeyboardInterrupt: After the trials in flight; the same study goes on where it stopped.
+        """
+        return run_study(
+            self.plan,
+            self.store,
+            run_trial,
+            settings=self._settings(),
+            caps=self.caps,
+            jobs=self.jobs,
+            at_once=self.at_once,
+            calls_at_once=self.concurrency,
+            retry_errors=self.retry_errors,
+            ray=self.ray,
+            report=report,
+        )
+
+    def estimate(self, pilot: int = 2, paid_pilot: bool = False) -> Estimate:
+        """What it would take, from what the store holds and a few pilot trials on development seeds.
+
+        Args:
+            pilot: Pilot trials for each condition of which nothing is recorded.
+            paid_pilot: Run them also for models that may cost money.
+        """
+        path = Path(self.store)
+        rows = []
+        if path.is_file():
+            with Store(path) as store:
+                rows = store.rows()
+        known = {row.spec.condition for row in rows if row.result is not None}
+        pilots: dict[Condition, list[TrialResult]] = {}
+        settings = RunSettings(self.trial_caps, pages="none")
+        for suite in self.plan.suites:
+            for condition in self.plan.conditions(suite):
+                if condition in known or condition in pilots or (condition.model not in FREE and not paid_pilot):
+                    continue
+                # Photos have numbers instead of seeds: there is no development set of them.
+                last = len(self.plan.seeds_of(suite)) if suite.name.endswith(".json") else pilot
+                specs = [TrialSpec(suite.tasks[k % len(suite.tasks)], k % last, condition) for k in range(pilot)]
+                pilots[condition] = [run_safely(run_trial, spec, settings) for spec in specs]
+        return estimate(self.plan, rows, pilots, (self.jobs or os.cpu_count() or 1) * self.at_once)
+
+    def summary(self) -> Summary:
+        """The figures so far, of this study's trials alone."""
+        with Store(self.store, must_exist=True) as store:
+            return summarise(store.rows(self.plan.name), [self.plan.request()])
+
+    def lines(self) -> list[str]:
+        """The figures so far as text: one line per condition, then the answer."""
+        summary = self.summary()
+        conditions = (*summary.compared, *summary.bounds)
+        width = max((len(one.label) for one in conditions), default=0)
+        found = []
+        for one in conditions:
+            cell = summary.cell(one)
+            rest = "".join(f"  {cell.count(name)} {name}" for name in ("error", "unscored") if cell.count(name))
+            badges = f"  [{', '.join(cell.badges)}]" if cell.badges else ""
+            found.append(f"{one.label:<{width}}  {cell.rate}{rest}{badges}")
+        return [*found, *summary.headline(), *(f"warning: {text}" for text in summary.warnings())]
+
+    def report(self, path: str | Path, baseline: str | None = None) -> Path:
+        """Write the page; its CSV and LaTeX tables lie beside it."""
+        from wonderful_team.evals.report import write_report
+
+        return write_report([self.store], path, baseline=baseline)
+
+    def to_pandas(self) -> Any:
+        """One line per trial of the store, as a pandas frame."""
+        from wonderful_team.evals.report.tables import to_frame
+
+        with Store(self.store, must_exist=True) as store:
+            return to_frame(store.rows())
+
+    def to_json(self, ended: Finish) -> dict[str, Any]:
+        """For machines: the figures per condition."""
+        from wonderful_team.evals.report.tables import condition_json
+
+        summary = self.summary()
+        return {
+            "store": str(self.store),
+            "total": ended.standing.total,
+            "done": ended.standing.done,
+            "stopped": ended.why,
+            "conditions": [condition_json(summary.cell(one)) for one in (*summary.compared, *summary.bounds)],
+            "answer": summary.headline(),
+            "warnings": summary.warnings(),
+        }
+
+
+def _check_levels(suites: Sequence[Suite]) -> None:
+    known = registry.task_partitions()
+    for task, at, level in (name.partition("@") for suite in suites for name in suite.tasks):
+        if at and task in known and level not in known[task]:
+            raise UnknownNameError(f"level of {task}", level, known[task])
+
+
+def _photo_counts(suites: Sequence[Suite]) -> dict[str, int]:
+    return {f"photos:{one.name}": count_photos(one.name) for one in suites if one.name.endswith(".json")}
+
+
+def known_suites() -> dict[str, Suite]:
+    """Every suite by name, made of the registered tasks."""
+    levels = registry.task_partitions()
+    found = {level: [f"{task}@{level}" for task, has in levels.items() if level in has] for level in PARTITIONS}
+    return all_suites(list(registry.task_names()), found)
+
+
+def sharded(store: Path, shard: tuple[int, int]) -> Path:
+    """The store file of a shard: `study.db` becomes `study.1-of-4.db`."""
+    return store if shard[1] == 1 else store.with_name(f"{store.stem}.{shard[0]}-of-{shard[1]}{store.suffix}")

@@ -1,0 +1,271 @@
+"""One trial of a study: names become a method, a model and a world; it is run, scored and counted.
+
+`wonderful_team.evals` knows protocols only; it is handed `run_trial`.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import hashlib
+import inspect
+import shutil
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from wonderful_team import registry
+from wonderful_team.actions import Action
+from wonderful_team.api import Method, rollout
+from wonderful_team.errors import ConfigError
+from wonderful_team.evals.controls import CONTROLS, make_control
+from wonderful_team.evals.trials import Limiter, RunSettings, TrialResult, TrialSpec
+from wonderful_team.interfaces import Event, Model, Policy, World
+from wonderful_team.jsonable import to_jsonable
+from wonderful_team.loading import is_file_name
+from wonderful_team.runtime import rollout as roll_out
+from wonderful_team.runtime.versions import versions
+from wonderful_team.types import Instruction, Observation, Request, StepReport, Trial, Usage, View
+
+BESIDE = frozenset({"memory"})
+"""Roles whose requests run beside the main line and make no waiting round."""
+
+
+@dataclass
+class Counting:
+    """Counts what a trial asks: calls, pictures, cost by role, and waiting rounds."""
+
+    rounds: int = 0
+    by_role: dict[str, Usage] = field(default_factory=dict)
+    provenance: set[str] = field(default_factory=set)
+    _round_of: dict[str, int] = field(default_factory=dict)
+
+    def on_event(self, event: Event) -> None:
+        """Keep what is counted; a request sent after an answer of round n belongs to round n + 1."""
+        if event.kind == "request" and event.content.role not in BESIDE:
+            self._round_of[event.content.id] = self.rounds + 1
+        elif event.kind == "answer":
+            request, answer = event.content
+            self.rounds = max(self.rounds, self._round_of.get(request.id, 0))
+            self.by_role[request.role] = self.by_role.get(request.role, Usage()) + answer.usage
+            self.provenance.add(answer.provenance)
+
+
+class Limited:
+    """A model whose calls wait for a place among those of all workers."""
+
+    def __init__(self, model: Model, limiter: Limiter) -> None:
+        self.model, self.limiter = model, limiter
+        self.name = registry.model_label(model)
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self.model, name)
+
+    async def answer(self, request: Request) -> Any:
+        """The model's answer."""
+        await self.limiter.acquire()
+        try:
+            if inspect.iscoroutinefunction(self.model.answer):
+                return await self.model.answer(request)
+            result = await asyncio.to_thread(self.model.answer, request)
+            return await result if inspect.isawaitable(result) else result
+        finally:
+            await self.limiter.release()
+
+
+def run_trial(spec: TrialSpec, settings: RunSettings) -> TrialResult:
+    """Run one trial of a study in this process; a `TrialRunner`."""
+    if spec.task.endswith(".json"):
+        from wonderful_team.photo_runs import run_photo
+
+        return run_photo(spec, settings)
+    started = time.monotonic()
+    world = make_scene(spec)
+    try:
+        count = Counting()
+        trial, page = _run(spec, settings, world, count)
+        usage = trial.usage if trial.usage_by_role else sum(count.by_role.values(), Usage())
+        by_role = trial.usage_by_role or count.by_role
+        return TrialResult(
+            outcome=trial.outcome,
+            stage=trial.stage,
+            reason=trial.reason,
+            calls=usage.calls,
+            tokens=usage.tokens,
+            pictures=usage.pictures,
+            usd=usage.usd,
+            seconds=time.monotonic() - started,
+            rounds=count.rounds,
+            provenance=tuple(sorted({*count.provenance, *trial.provenance})),
+            by_role={role: to_jsonable(one) for role, one in by_role.items()},
+            page=page,
+            instruction="" if spec.condition.method in CONTROLS else world.instruction.text,
+            versions=fingerprint(spec),
+        )
+    finally:
+        with contextlib.suppress(Exception):
+            world.close()
+
+
+class Unseen:
+    """A world for policies that never look: the same blank picture at every look, and no drawing."""
+
+    def __init__(self, world: World) -> None:
+        self._world = world
+        self.vocabulary, self.limits = world.vocabulary, world.limits
+        self.instruction = Instruction("(not looked at)")
+        self.horizon: int | None = getattr(world, "horizon", None)
+        self._blank = Observation({"top": View("blank", "blank", 0.0, np.zeros((8, 8, 3), np.uint8))})
+
+    def observe(self) -> Observation:
+        return self._blank
+
+    def execute(self, action: Action) -> StepReport:
+        return self._world.execute(action)
+
+    def stop(self) -> None:
+        self._world.stop()
+
+    def close(self) -> None:
+        self._world.close()
+
+
+def make_scene(spec: TrialSpec) -> World:
+    """The world of a trial, perturbed where the condition says so."""
+    world = registry.make_world(spec.task, spec.seed)
+    if spec.condition.perturb:
+        from wonderful_team.evals.perturb import perturbed
+
+        return perturbed(world, spec.condition.perturb, spec.seed)
+    return world
+
+
+def _run(spec: TrialSpec, settings: RunSettings, world: World, count: Counting) -> tuple[Trial, str]:
+    truth = registry.privileged(world)
+    condition = spec.condition
+    if condition.method in CONTROLS:
+        control = make_control(condition.method, spec.seed, truth)
+        # Controls do not look: nothing is drawn for them.
+        blind = Unseen(world)
+        trial = roll_out(control, blind, scorer=truth, seed=spec.seed, scene=spec.scene, max_age_s=None)
+        return trial, ""
+    method = prepared(spec, settings, model_of(condition.model, condition.isolate, world))
+    if settings.pages == "none":
+        policy: Policy = method.policy(count)
+        trial = roll_out(
+            policy, world, scorer=truth, seed=spec.seed, scene=spec.scene, replans=condition.replans, max_age_s=None
+        )
+        return trial, ""
+    # A folder of its own: trials that run at the same time must not share the pointer to the newest run.
+    out = (settings.out or Path("runs")) / "trials" / hashlib.sha256(spec.key.encode()).hexdigest()[:12]
+    recorded = rollout(
+        method, world, replans=condition.replans, seed=spec.seed, scene=spec.scene, out=out, subscribers=(count,)
+    )
+    if settings.pages == "failures" and recorded.outcome == "success":
+        shutil.rmtree(out, ignore_errors=True)
+        return recorded, ""
+    return recorded, str(recorded.page)
+
+
+def prepared(spec: TrialSpec, settings: RunSettings, model: Any) -> Method:
+    """The method of a trial with its model, capped, and limited together with all other workers."""
+    caps = settings.caps
+    if settings.limiter is not None:
+        parts = model if isinstance(model, dict) else {"*": model}
+        model = {role: Limited(registry.make_model(one), settings.limiter) for role, one in parts.items()}
+    return Method(
+        model=model,
+        method=spec.condition.method,
+        max_calls=caps.calls,
+        max_tokens=caps.tokens,
+        max_seconds=caps.seconds,
+        max_usd=caps.usd,
+        concurrency=settings.concurrency,
+        repeat=spec.repeat,
+        prompts=settings.prompts,
+        out=settings.out,
+        command=reproduce(spec),
+    )
+
+
+GROUNDING_ROLES = ("manager", "checker", "mover")
+TRUTH_MODEL = "simulated:perfect"
+
+
+def model_of(model: str, isolate: str, world: World) -> Any:
+    """The model of a condition; `isolate` lets truth answer for the roles that are not looked at.
+
+    Raises:
+        ConfigError: Truth cannot answer in this version or for this world.
+    """
+    if not isolate:
+        return model
+    truth = registry.make_model(TRUTH_MODEL)
+    if isolate == "planning":
+        return {**dict.fromkeys(GROUNDING_ROLES, truth), "*": model}
+    return {**dict.fromkeys(GROUNDING_ROLES, model), "*": truth}
+
+
+def check_isolation(isolate: str) -> None:
+    """Whether truth can answer in this version.
+
+    Raises:
+        ConfigError: No model answers from truth.
+    """
+    try:
+        registry.make_model(TRUTH_MODEL)
+    except ConfigError as error:
+        raise ConfigError(
+            f"--isolate {isolate} lets truth answer for the other part: it needs the model {TRUTH_MODEL}, "
+            "which this version does not have"
+        ) from error
+
+
+def reproduce(spec: TrialSpec) -> str:
+    """The command that runs this trial again by itself."""
+    condition = spec.condition
+    words = ["wonderful-team run", spec.task, f"--seed {spec.seed}", f"--replans {condition.replans}"]
+    if condition.method in CONTROLS:
+        return f"wonderful-team bench {spec.task} --method {condition.method} --seeds {spec.seed}"
+    return " ".join([*words, f"--method {condition.method}", f"--model {condition.model}"])
+
+
+def fingerprint(spec: TrialSpec) -> dict[str, str]:
+    """What produced a result: package, commit, and hashes of the user's own files."""
+    own = [name for name in (spec.task, spec.condition.method, spec.condition.model) if is_file_name(name)]
+    return {**_versions(), **{name: _file_hash(name) for name in own}}
+
+
+@lru_cache
+def _versions() -> dict[str, str]:
+    from wonderful_team import __version__
+
+    found = {name: str(value) for name, value in versions().items() if value is not None}
+    return {"wonderful-team": __version__, **{k: v for k, v in found.items() if "commit" in k}}
+
+
+@lru_cache
+def _file_hash(name: str) -> str:
+    path = Path(name.rpartition(":")[0] or name).expanduser()
+    return hashlib.sha256(path.read_bytes()).hexdigest()[:12] if path.is_file() else "missing"
+
+
+def check_names(methods: Sequence[str], models: Sequence[str]) -> None:
+    """Every name means something, before anything is run.
+
+    Raises:
+        ConfigError: A name that does not.
+    """
+    for method in methods:
+        if method in CONTROLS:
+            continue
+        for model in models:
+            if "=" in model.partition(":")[0]:
+                raise ConfigError(f"model {model!r}: a study compares one model for all roles at a time")
+            made: Callable[[], Policy] = Method(model=model, method=method).policy
+            made()

@@ -1,0 +1,54 @@
+"""The values that flow through the system: frozen, checked once when built, arrays read-only."""
+
+from wonderful_team.types.asked import Answer, Note, Part, Request, Usage, Words
+from wonderful_team.types.happened import GateCheck, GateReport, StepReport, SubgoalRun, Trial, Verdict
+from wonderful_team.types.planned import (
+    NO_WORKSPACE,
+    Doubt,
+    GroundedTarget,
+    GroundingEvent,
+    KeepOut,
+    Limits,
+    NumberSource,
+    Plan,
+    PlannedAction,
+    PointRole,
+    Provenance,
+    Subgoal,
+    Target,
+)
+from wonderful_team.types.seen import Instruction, Observation, RobotState, Slot, SlotKind, View
+
+__all__ = [
+    "Answer",
+    "Doubt",
+    "GateCheck",
+    "GateReport",
+    "GroundedTarget",
+    "GroundingEvent",
+    "Instruction",
+    "KeepOut",
+    "Limits",
+    "NO_WORKSPACE",
+    "Note",
+    "NumberSource",
+    "Observation",
+    "Part",
+    "Plan",
+    "PlannedAction",
+    "PointRole",
+    "Provenance",
+    "Request",
+    "RobotState",
+    "Slot",
+    "SlotKind",
+    "StepReport",
+    "Subgoal",
+    "SubgoalRun",
+    "Target",
+    "Trial",
+    "Usage",
+    "Verdict",
+    "View",
+    "Words",
+]

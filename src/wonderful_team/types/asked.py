@@ -1,0 +1,123 @@
+"""What is asked of a model, what comes back, and what it costs."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Literal, TypeAlias
+
+from wonderful_team.pictures import Picture
+from wonderful_team.types.planned import Provenance
+
+
+@dataclass(frozen=True)
+class Usage:
+    """What calls cost. `usd` is None when any price is unknown."""
+
+    calls: int = 0
+    tokens_in: int = 0
+    tokens_cached: int = 0
+    tokens_thinking: int = 0
+    tokens_out: int = 0
+    pictures: int = 0
+    seconds: float = 0.0
+    usd: float | None = 0.0
+
+    def __add__(self, other: Usage) -> Usage:
+        return Usage(
+            self.calls + other.calls,
+            self.tokens_in + other.tokens_in,
+            self.tokens_cached + other.tokens_cached,
+            self.tokens_thinking + other.tokens_thinking,
+            self.tokens_out + other.tokens_out,
+            self.pictures + other.pictures,
+            self.seconds + other.seconds,
+            None if self.usd is None or other.usd is None else self.usd + other.usd,
+        )
+
+    @property
+    def tokens(self) -> int:
+        return self.tokens_in + self.tokens_thinking + self.tokens_out
+
+
+@dataclass(frozen=True)
+class Note:
+    """One entry of a role's notebook or of the system memory."""
+
+    key: str
+    text: str
+    source: str = ""
+
+
+@dataclass(frozen=True, eq=False)
+class Words:
+    """A part of a request: text.
+
+    Attributes:
+        says: caption (it announces `picture`, its size and its tick labels) or positions (it says how to give positions
+            in `picture`): a provider may write these in its model's own unit. "" for all other text.
+    """
+
+    text: str
+    says: Literal["", "caption", "positions"] = ""
+    picture: Picture | None = None
+
+
+Part: TypeAlias = Words | Picture
+
+
+@dataclass(frozen=True, eq=False)
+class Request:
+    """One question on its way to a model.
+
+    Attributes:
+        id: Deterministic: stage, target and count, never a clock or a race.
+        stage: plan | ground | act | memory | replan | other.
+        role: Which agent asks.
+        question: The contract's input; holds nothing that the parts do not show.
+        parts: Words and pictures in the order they are shown.
+        system: The role's standing words (the same prefix for every request of the role).
+        output: Type of a right answer (a pydantic model).
+        sample: Number of this independent sample, from 0.
+        attempt: Number of the try after an invalid answer, from 0.
+        feedback: The validation text that the last attempt earned.
+    """
+
+    id: str
+    stage: str
+    role: str
+    question: Any
+    parts: tuple[Part, ...]
+    output: type[Any]
+    system: str = ""
+    notes: tuple[Note, ...] = ()
+    sample: int = 0
+    attempt: int = 0
+    feedback: str = ""
+    previous: Any = None
+
+    @property
+    def contract(self) -> str:
+        """Name of the kind of question."""
+        return type(self.question).__name__
+
+    @property
+    def pictures(self) -> tuple[Picture, ...]:
+        return tuple(part for part in self.parts if isinstance(part, Picture))
+
+
+@dataclass(frozen=True, eq=False)
+class Answer:
+    """What came back: the validated value and what it cost.
+
+    Attributes:
+        value: An instance of the request's output type.
+        repairs: What was clamped or mended, in words.
+    """
+
+    value: Any
+    usage: Usage = Usage()
+    model_id: str = ""
+    raw: str = ""
+    tries: int = 1
+    provenance: Provenance = "model"
+    repairs: tuple[str, ...] = ()

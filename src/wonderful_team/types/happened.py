@@ -1,0 +1,110 @@
+"""What happened: reports of the robot, checks of the gate, verdicts, and the whole trial."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any, Literal
+
+from wonderful_team.actions import Action
+from wonderful_team.types.asked import Usage
+from wonderful_team.types.planned import Plan, Provenance
+from wonderful_team.types.seen import Observation
+
+
+@dataclass(frozen=True, eq=False)
+class StepReport:
+    """What a robot knows of one executed action: what it measured and any fault; never the score."""
+
+    action: Action
+    executed: bool
+    measured: Mapping[str, Any] = field(default_factory=dict)
+    fault: str | None = None
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """The Replanner's word on one subgoal after execution."""
+
+    subgoal: str
+    status: Literal["done", "not_done", "undone", "unclear"]
+    cause: str | None = None
+    evidence: str = ""
+
+
+@dataclass(frozen=True, eq=False)
+class GateCheck:
+    """One check of the safety gate with its margin; `ok` False refuses the action."""
+
+    action: int | None
+    name: str
+    ok: bool
+    value: str
+    limit: str
+    margin: str = ""
+
+
+@dataclass(frozen=True, eq=False)
+class GateReport:
+    """All checks of one passage through the gate."""
+
+    checks: tuple[GateCheck, ...]
+
+    @property
+    def admitted(self) -> bool:
+        return all(check.ok for check in self.checks)
+
+    @property
+    def reasons(self) -> tuple[str, ...]:
+        """Every reason for a refusal, all at once, each once."""
+        failed = (check for check in self.checks if not check.ok)
+        return tuple(dict.fromkeys(_refusal(check) for check in failed))
+
+
+def _refusal(check: GateCheck) -> str:
+    where = f"action {check.action + 1}: " if check.action is not None else ""
+    return f"{where}{check.name}: {check.value} (limit {check.limit})"
+
+
+@dataclass(frozen=True, eq=False)
+class SubgoalRun:
+    """Execution of one subgoal: pictures before and after, what the robot reported."""
+
+    subgoal: str
+    before: Observation
+    after: Observation
+    reports: tuple[StepReport, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Trial:
+    """One attempt at one scene, whole.
+
+    Attributes:
+        outcome: success | failure | error | unscored.
+        stage: Where it failed: plan | grounding | wrong object | gate | execution | budget | … ; None on success.
+        seed: Of the scene; None for a photo or a real robot.
+    """
+
+    scene: str
+    seed: int | None
+    method: str
+    model: str
+    plans: tuple[Plan, ...]
+    gates: tuple[GateReport, ...]
+    runs: tuple[SubgoalRun, ...]
+    verdicts: tuple[Verdict, ...]
+    outcome: Literal["success", "failure", "error", "unscored"]
+    stage: str | None
+    reason: str
+    usage_by_role: Mapping[str, Usage] = field(default_factory=dict)
+    provenance: tuple[Provenance, ...] = ()
+    setting: Mapping[str, Any] = field(default_factory=dict)
+
+    @property
+    def usage(self) -> Usage:
+        return sum(self.usage_by_role.values(), Usage())
+
+    @property
+    def reports(self) -> tuple[StepReport, ...]:
+        return tuple(report for run in self.runs for report in run.reports)

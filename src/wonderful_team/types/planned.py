@@ -1,0 +1,225 @@
+"""A plan and its parts: subgoals, targets with their places, steps with their numbers, regions and limits."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from types import MappingProxyType
+from typing import Literal, TypeAlias
+
+from wonderful_team.actions import Action, Step
+from wonderful_team.geometry import Box
+from wonderful_team.jsonable import to_jsonable
+from wonderful_team.pictures import Point
+from wonderful_team.types.seen import Instruction
+
+Provenance: TypeAlias = Literal["model", "offline", "simulated", "scripted", "cached", "injected", "replayed", "user"]
+PointRole: TypeAlias = Literal["pick", "place", "push_start", "push_end", "grasp"]
+
+
+@dataclass(frozen=True)
+class Target:
+    """Something to be found in the picture.
+
+    Attributes:
+        id: Short and unique in a plan: T1, T2, …
+        kind: object (has an outline) or area (free space or a region, found by points).
+        words: What it is, in words.
+        part: Which part of it matters ("handle"), or None.
+        where: How it stands to other things ("left of the blue bowl"), or "".
+        source: scene, or slot when it is described by the instruction's pictures.
+        like: Names of the instruction's slots that show what it looks like.
+        use: What its points are for; an object is picked and an area placed on unless the plan says otherwise.
+    """
+
+    id: str
+    kind: Literal["object", "area"]
+    words: str
+    part: str | None = None
+    where: str = ""
+    source: Literal["scene", "slot"] = "scene"
+    like: tuple[str, ...] = ()
+    use: tuple[PointRole, ...] = ()
+
+    @property
+    def roles(self) -> tuple[PointRole, ...]:
+        """The points to be found, never empty."""
+        return self.use or (("pick",) if self.kind == "object" else ("place",))
+
+
+@dataclass(frozen=True)
+class GroundingEvent:
+    """One line of a target's grounding story: a candidate, a box, a verdict, a point.
+
+    Attributes:
+        what: centre | chosen | box | presence | verdict | move | point | absent | clamped.
+        text: What was said, in one line.
+        box, points: In pixels of the main view.
+    """
+
+    what: str
+    text: str
+    box: Box | None = None
+    points: tuple[Point, ...] = ()
+    provenance: Provenance = "model"
+
+
+@dataclass(frozen=True, eq=False)
+class GroundedTarget:
+    """A target with its place in the main view; coordinates are pixels of that view.
+
+    Attributes:
+        status: found | absent | gave_up (the bounds were reached; box holds the best so far, if any).
+        points: Action points by role.
+        history: How it came about, in order.
+    """
+
+    target: Target
+    status: Literal["found", "absent", "gave_up"]
+    view_id: str
+    box: Box | None = None
+    points: Mapping[str, Point] = field(default_factory=dict)
+    history: tuple[GroundingEvent, ...] = ()
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "points", MappingProxyType(dict(self.points)))
+
+
+@dataclass(frozen=True)
+class Subgoal:
+    """One qualitative goal of a plan; `after` names the subgoals that must come first."""
+
+    id: str
+    text: str
+    after: tuple[str, ...] = ()
+    targets: tuple[str, ...] = ()
+    function: str | None = None
+
+
+@dataclass(frozen=True)
+class Doubt:
+    """One question that Verification raised about one subgoal (or step), and what came of it."""
+
+    about: str
+    kind: str
+    question: str
+    answer: str = ""
+    changed: bool = False
+    provenance: Provenance = "model"
+
+
+@dataclass(frozen=True)
+class NumberSource:
+    """Where one point of an action came from: every number can be traced to a pixel and a rule.
+
+    Attributes:
+        role: pick | place | push_start | push_end | waypoint.
+        target: Target id.
+        point_px: Pixel of the main view.
+        position_m: What it became, base frame; None without a camera.
+        how: The rule, in words ("T1 point, depth 0.482 m"; "origin of T1").
+    """
+
+    role: str
+    target: str
+    point_px: Point
+    position_m: tuple[float, float, float] | None
+    how: str
+
+
+@dataclass(frozen=True, eq=False)
+class PlannedAction:
+    """A step with its action; `action` is None when no camera gives metres (a plan in pixels)."""
+
+    step: Step
+    action: Action | None
+    sources: tuple[NumberSource, ...] = ()
+
+
+@dataclass(frozen=True, eq=False)
+class Plan:
+    """What the team made: checked, grounded, written as actions.
+
+    Attributes:
+        id: Hash of what would run: steps, points and actions.
+        status: planned | draft | checked | grounded (stopped early on request) | not_found | not_understood |
+            needs_clarification | refused | budget | failed.
+        verified: Verification approved the plan and the steps.
+        scene_hash: Hash of the observation it was made from.
+        first_draft: Subgoals as first drafted, for the page's diff.
+        message, stage: Why it did not come to be planned, and where it failed; "" and None otherwise.
+        parent: Id of the plan it replaces after a replan.
+    """
+
+    instruction: Instruction
+    status: str
+    subgoals: tuple[Subgoal, ...] = ()
+    targets: tuple[Target, ...] = ()
+    mode: Literal["full", "one_step"] = "one_step"
+    verified: bool = False
+    steps: tuple[Step, ...] = ()
+    grounded: Mapping[str, GroundedTarget] = field(default_factory=dict)
+    actions: tuple[PlannedAction, ...] = ()
+    keep_out: tuple[KeepOut, ...] = ()
+    questions: tuple[Doubt, ...] = ()
+    first_draft: tuple[Subgoal, ...] = ()
+    scene_hash: str = ""
+    parent: str | None = None
+    message: str = ""
+    stage: str | None = None
+    choices: tuple[str, ...] = ()
+    warnings: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "grounded", MappingProxyType(dict(self.grounded)))
+
+    @cached_property
+    def id(self) -> str:
+        """Hash of everything that decides what runs: 12 hex digits."""
+        runs = {
+            "scene": self.scene_hash,
+            "steps": to_jsonable(self.steps),
+            "actions": to_jsonable(self.actions),
+            "points": {key: to_jsonable(dict(value.points)) for key, value in sorted(self.grounded.items())},
+            "keep_out": to_jsonable(self.keep_out),
+        }
+        return hashlib.sha256(json.dumps(runs, sort_keys=True).encode()).hexdigest()[:12]
+
+    def with_status(self, status: str, message: str = "") -> Plan:
+        return replace(self, status=status, message=message)
+
+
+@dataclass(frozen=True)
+class KeepOut:
+    """A region nothing may enter: a box in pixels of the main view, or in metres on the table (x0, y0, x1, y1)."""
+
+    name: str
+    box: Box
+    unit: Literal["px", "m"] = "px"
+
+
+@dataclass(frozen=True, eq=False)
+class Limits:
+    """What a world allows.
+
+    Attributes:
+        low_m, high_m: Corners of the workspace, shape (3,) [m], base frame.
+        keep_out: Regions nothing may enter.
+        clearance_m: Height at which things are carried over the table [m].
+    """
+
+    low_m: tuple[float, float, float]
+    high_m: tuple[float, float, float]
+    keep_out: tuple[KeepOut, ...] = ()
+    clearance_m: float = 0.2
+
+    def __post_init__(self) -> None:
+        if any(low >= high for low, high in zip(self.low_m, self.high_m, strict=True)):
+            raise ValueError(f"workspace: every low must be below its high, got {self.low_m} and {self.high_m} m")
+
+
+NO_WORKSPACE = Limits((-100.0, -100.0, -100.0), (100.0, 100.0, 100.0))
+"""Limits of a photo without a robot: nobody has said where the workspace ends."""

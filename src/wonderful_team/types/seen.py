@@ -1,0 +1,126 @@
+"""What is seen and what is wanted: views, observations, instructions."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from types import MappingProxyType
+from typing import Literal, TypeAlias
+
+from wonderful_team.errors import ConfigError
+from wonderful_team.geometry import Camera
+from wonderful_team.geometry.arrays import Array
+from wonderful_team.pictures import checked_depth, checked_rgb, picture_hash
+
+SlotKind: TypeAlias = Literal["object", "scene", "frame", "before", "after"]
+
+
+@dataclass(frozen=True, eq=False)
+class View:
+    """One camera's view at one instant.
+
+    Attributes:
+        id: Unique within an observation or an instruction, such as "top" or "slot:base_obj:top".
+        camera_name: Which camera took it.
+        time_s: When, in the world's own time [s].
+        rgb: Image, shape (H, W, 3), uint8, row 0 at the top.
+        depth_m: Distance along the optical axis [m], shape (H, W); NaN where unknown; None without depth.
+        camera: Model and pose of the camera in the robot base frame; None for a photo.
+    """
+
+    id: str
+    camera_name: str
+    time_s: float
+    rgb: Array
+    depth_m: Array | None = None
+    camera: Camera | None = None
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "rgb", checked_rgb(self.rgb))
+        object.__setattr__(self, "depth_m", checked_depth(self.depth_m, self.rgb.shape[:2]))
+
+    @property
+    def size_px(self) -> tuple[int, int]:
+        """Width, height."""
+        return self.rgb.shape[1], self.rgb.shape[0]
+
+    @cached_property
+    def hash(self) -> str:
+        return picture_hash(self.rgb)
+
+
+@dataclass(frozen=True, eq=False)
+class RobotState:
+    """What the robot says of itself: tool position (3,) [m], gripper opening 0..1 or None, holding something or not."""
+
+    tool_m: Array | None = None
+    gripper: float | None = None
+    holding: bool | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Observation:
+    """All views at one instant; the first is the one that targets are grounded in."""
+
+    views: Mapping[str, View]
+    robot: RobotState | None = None
+
+    def __post_init__(self) -> None:
+        if not self.views:
+            raise ConfigError("an observation needs at least one view")
+        object.__setattr__(self, "views", MappingProxyType(dict(self.views)))
+
+    @property
+    def main(self) -> View:
+        """The view that targets are grounded in."""
+        return next(iter(self.views.values()))
+
+    @cached_property
+    def hash(self) -> str:
+        """Hash over all views, in order."""
+        return hashlib.sha256("".join(view.hash for view in self.views.values()).encode()).hexdigest()[:16]
+
+
+@dataclass(frozen=True, eq=False)
+class Slot:
+    """A picture inside an instruction: `{name}` in the text stands for it.
+
+    Attributes:
+        kind: object (one thing alone), scene (a whole table), frame (of a sequence), before / after (of a pair).
+        index: Place in a sequence of frames or pairs; None otherwise.
+        views: By camera name, such as top and front.
+    """
+
+    name: str
+    kind: SlotKind
+    views: Mapping[str, View]
+    index: int | None = None
+
+    def __post_init__(self) -> None:
+        if not self.views:
+            raise ConfigError(f"instruction slot {self.name!r} holds no picture")
+        object.__setattr__(self, "views", MappingProxyType(dict(self.views)))
+
+
+@dataclass(frozen=True, eq=False)
+class Instruction:
+    """What the human wants: words with `{slot}` marks, and the pictures for them. A slot may occur twice.
+
+    Raises:
+        ConfigError: The text is empty, or a slot's picture is never mentioned.
+    """
+
+    text: str
+    slots: Mapping[str, Slot] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        if not self.text.strip():
+            raise ConfigError("the instruction is empty")
+        for name in self.slots:
+            if f"{{{name}}}" not in self.text:
+                raise ConfigError(
+                    f"the instruction has a picture {name!r} but its text never says {{{name}}}: {self.text!r}"
+                )
+        object.__setattr__(self, "slots", MappingProxyType(dict(self.slots)))

@@ -1,0 +1,250 @@
+"""`bench`, `report`, `new` and `check` as a person types them, on our own tabletop and on files of one's own."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import wonderful_team as wt
+from wonderful_team import registry
+from wonderful_team.cli.app import run
+from wonderful_team.errors import ConfigError
+from wonderful_team.evals.perturb import perturbed
+from wonderful_team.evals.store import Store
+from wonderful_team.images import to_png
+from wonderful_team.studies import known_suites
+from wonderful_team.trial_runs import model_of
+
+METHOD = """
+import wonderful_team as wt
+
+
+class Pusher:
+    name = "pusher"
+
+    def decide(self, situation: wt.Situation) -> wt.Act | wt.Done:
+        if situation.executed:
+            return wt.Done("moved once")
+        low, high = situation.limits.low_m, situation.limits.high_m
+        middle = [(a + b) / 2 for a, b in zip(low, high)]
+        step = wt.PickPlaceStep("G1", pick="middle", place=wt.At("corner"))
+        return wt.Act((wt.PlannedAction(step, wt.PickPlace([*middle[:2], 0.0], [low[0] + 0.05, low[1] + 0.05, 0.0])),))
+"""
+
+LENIENT = '''
+"""A desk whose scorer calls everything a success, and whose seeds are all the same."""
+
+import numpy as np
+
+import wonderful_team as wt
+
+
+class Truth:
+    def score(self):
+        return wt.Score(True, None, "looks fine")
+
+    def truth(self):
+        return {}
+
+    def oracle(self):
+        return (wt.PickPlace(np.array([0.2, 0.2, 0.0]), np.array([0.3, 0.3, 0.0])),)
+
+
+class Desk:
+    vocabulary = wt.PICK_PLACE
+    limits = wt.Limits((0.0, 0.0, -0.01), (0.5, 0.5, 0.4))
+    instruction = wt.Instruction("tidy the desk")
+    privileged = Truth()
+
+    def __init__(self, seed: int = 0) -> None:
+        self.camera = wt.AffineCamera(np.array([[0, 400.0, 0, 0], [400.0, 0, 0, 0], [0, 0, -1, 1.0]]))
+
+    def observe(self):
+        rgb, depth_m = np.full((200, 200, 3), 150, np.uint8), np.full((200, 200), 1000.0)
+        return wt.Observation({"top": wt.View("top", "top", 0.0, rgb, depth_m, self.camera)})
+
+    def execute(self, action):
+        return wt.StepReport(action, True)
+'''
+
+
+def _bench(*words: str, store: Path) -> int:
+    return run(["bench", *words, "--store", str(store), "--jobs", "1", "--json"])
+
+
+def test_a_method_of_fifteen_lines_against_the_controls(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "mine.py").write_text(METHOD, encoding="utf-8")
+    name = f"{tmp_path / 'mine.py'}:Pusher"
+    words = ("rotate", "--method", name, "--seeds", "1000:1002", "--no-control", "offline", "--pages", "all")
+    assert _bench(*words, store=tmp_path / "s.db") == 0
+    told = json.loads(capsys.readouterr().out)["result"]
+    rates = {one["method"]: (one["successes"], one["scored"]) for one in told["conditions"]}
+    assert rates == {name: (0, 2), "oracle": (2, 2), "no-op": (0, 2), "random": (0, 2)}
+    assert run(["report", str(tmp_path / "s.db"), "--json"]) == 0
+    told = json.loads(capsys.readouterr().out)["result"]
+    page = Path(told["page"])
+    html = page.read_text(encoding="utf-8")
+    links = [part.split('"')[0] for part in html.split('<a href="')[1:]]
+    pages = [page.parent / link for link in links if link.endswith("page.html")]
+    assert pages
+    assert all(path.is_file() for path in pages)
+    # Nothing is left to do the second time.
+    assert _bench(*words, store=tmp_path / "s.db") == 0
+    with Store(tmp_path / "s.db") as store:
+        assert len(store.rows()) == 8
+
+
+def test_offline_runs_through_the_study_like_any_model(tmp_path: Path) -> None:
+    study = wt.Study("rotate", seeds=[1000], store=tmp_path / "s.db", controls=("offline",), jobs=1, pages="none")
+    ended = study.run()
+    assert ended.standing.done == 1
+    summary = study.summary()
+    cell = summary.cell(summary.compared[0])
+    assert cell.badges == ("OFFLINE",)
+    assert cell.results[0].calls > 0
+    assert 0 < cell.results[0].rounds <= cell.results[0].calls
+    assert "offline" in cell.results[0].provenance
+    frame = study.to_pandas()
+    assert list(frame["outcome"]) == [cell.results[0].outcome]
+    assert "OFFLINE" in "\n".join(study.lines())
+
+
+def test_a_wrong_scorer_and_wrong_units_are_caught(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "desk.py").write_text(LENIENT, encoding="utf-8")
+    name = f"{tmp_path / 'desk.py'}:Desk"
+    assert run(["check", name, "--seeds", "4"]) == 1
+    said = capsys.readouterr().out
+    assert "doing nothing succeeds in 4 of 4" in said
+    assert "the median depth is 1e+03; in metres" in said
+    assert "the seed is not used" in said
+    assert (
+        _bench(name, "--seeds", "1000:1002", "--no-control", "offline", "--method", "no-op", store=tmp_path / "s.db")
+        == 0
+    )
+    assert any("doing nothing succeeds" in text for text in json.loads(capsys.readouterr().out)["result"]["warnings"])
+
+
+@pytest.mark.parametrize(
+    ("kind", "name", "seeds"),
+    [("task", "cups", "2"), ("world", "Desk", "4"), ("method", "Mine", "2"), ("model", "Mine", "1")],
+)
+def test_new_files_run_pass_their_check_and_their_own_test(
+    tmp_path: Path, kind: str, name: str, seeds: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert run(["new", kind, name, "--out", str(tmp_path)]) == 0
+    file = tmp_path / f"{name.lower()}.py"
+    assert run(["check", f"{file}:{name}", "--seeds", seeds]) == 0, capsys.readouterr().out
+    if kind in ("task", "world"):
+        sheet = tmp_path / f"{name.lower()}_{name}.png"
+        assert sheet.read_bytes().startswith(b"\x89PNG")
+        assert "the scorer tells the oracle from doing nothing" in capsys.readouterr().out
+        environment = {**os.environ, "PYTEST_ADDOPTS": ""}
+        tested = subprocess.run(
+            [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", f"test_{file.name}"],
+            cwd=tmp_path, env=environment, capture_output=True, text=True, check=False,
+        )  # fmt: skip
+        assert tested.returncode == 0, tested.stdout
+    assert run(["new", kind, name, "--out", str(tmp_path)]) == 2, "nothing is overwritten"
+    assert run(["new", kind, "no name", "--out", str(tmp_path)]) == 2
+
+
+def test_grounding_on_photos_needs_no_simulator(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    world = wt.make_world("tabletop/fruit_placement/all_match", seed=1000)
+    view = world.observe().main
+    mask = world.privileged.mask(next(iter(world.privileged.truth()["things"])))  # type: ignore[attr-defined]
+    thing = next(iter(world.privileged.truth()["things"]))  # type: ignore[attr-defined]
+    world.close()
+    rows, columns = mask.any(axis=1).nonzero()[0], mask.any(axis=0).nonzero()[0]
+    box = [int(columns[0]), int(rows[0]), int(columns[-1] - columns[0] + 1), int(rows[-1] - rows[0] + 1)]
+    (tmp_path / "a.png").write_bytes(to_png(view.rgb))
+    coco = {
+        "images": [{"id": 7, "file_name": "a.png"}],
+        "annotations": [{"image_id": 7, "bbox": box, "instruction": str(thing)}],
+    }
+    (tmp_path / "photos.json").write_text(json.dumps(coco), encoding="utf-8")
+    (tmp_path / "mine.py").write_text(
+        "class Corner:\n    name = 'corner'\n    def decide(self, situation): ...\n"
+        "    def locate(self, observation, words):\n        return [(0.0, 0.0, 5.0, 5.0) for _ in words]\n",
+        encoding="utf-8",
+    )
+    words = (str(tmp_path / "photos.json"), "--method", f"team,{tmp_path / 'mine.py'}:Corner")
+    assert _bench(*words, store=tmp_path / "s.db") == 0
+    told = json.loads(capsys.readouterr().out)["result"]
+    won = {one["method"].rpartition(":")[2]: one["successes"] for one in told["conditions"]}
+    assert won == {"team": 1, "Corner": 0}
+
+
+def test_an_estimate_runs_no_trial_of_the_study(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert _bench("rotate", "--estimate", "--model", "offline", "--no-control", "random", store=tmp_path / "s.db") == 0
+    told = json.loads(capsys.readouterr().out)["result"]
+    assert told["pairs"] == 10
+    assert told["total"]["calls"] > 0
+    assert not (tmp_path / "s.db").exists()
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ("rotate", "--isolate", "planning"),
+        ("rotate", "--perturb", "fog=1"),
+        ("rotate", "--method", "nobody"),
+        ("rotate", "--model", "nobody"),
+        ("rotate", "--seeds", "5:5"),
+        ("rotate", "--shard", "3/2"),
+        ("rotate@L9",),
+        ("nofile.py:cups",),
+        ("nothing",),
+        (),
+    ],
+)
+def test_wrong_use_is_told_before_anything_runs(tmp_path: Path, words: tuple[str, ...]) -> None:
+    assert _bench(*words, store=tmp_path / "s.db") == 2
+    assert not (tmp_path / "s.db").exists()
+
+
+def test_isolation_gives_the_other_roles_to_truth(monkeypatch: pytest.MonkeyPatch) -> None:
+    truth = object()
+    monkeypatch.setattr(registry, "make_model", lambda name: truth)
+    planning = model_of("mine", "planning", object())  # type: ignore[arg-type]
+    assert planning["*"] == "mine"
+    assert {role for role, model in planning.items() if model is truth} == {"manager", "checker", "mover"}
+    grounding = model_of("mine", "grounding", object())  # type: ignore[arg-type]
+    assert grounding["*"] is truth
+    assert {role for role, model in grounding.items() if model == "mine"} == {"manager", "checker", "mover"}
+    assert model_of("mine", "", object()) == "mine"  # type: ignore[arg-type]
+
+
+def test_generalisation_levels_are_suites(tmp_path: Path) -> None:
+    suites = known_suites()
+    assert "tabletop/rotate@L3" in suites["vima17/L3"].tasks
+    study = wt.Study("rotate@L2", seeds=[1000], store=tmp_path / "s.db", methods=["no-op"], controls=(), jobs=1)
+    assert study.run().standing.outcomes == {"failure": 1}
+
+
+def test_a_study_takes_names_only(tmp_path: Path) -> None:
+    with pytest.raises(ConfigError, match="a study takes names"):
+        wt.Study("rotate", models=[object()], store=tmp_path / "s.db")  # type: ignore[list-item]
+
+
+@pytest.mark.parametrize("words", ["lighting=2", "camera=3", "texture=2", "paraphrase=1"])
+def test_harder_tiers_change_what_is_seen_or_said_and_keep_the_truth(words: str) -> None:
+    plain = wt.make_world("tabletop/rotate", seed=1000)
+    harder = perturbed(plain, words, 1000)
+    try:
+        seen, before = harder.observe(), plain.observe()
+        if words.startswith("paraphrase"):
+            assert harder.instruction.text != plain.instruction.text
+            assert set(harder.instruction.slots) == set(plain.instruction.slots)
+        else:
+            assert seen.hash != before.hash
+            assert seen.hash == harder.observe().hash
+        for action in plain.privileged.oracle():  # type: ignore[attr-defined]
+            harder.execute(action)
+        assert harder.privileged.score().success is True  # type: ignore[attr-defined]
+    finally:
+        plain.close()

@@ -1,0 +1,165 @@
+"""The report says what the store holds, recomputed here by hand with SQL and arithmetic alone."""
+
+from __future__ import annotations
+
+import csv
+import re
+import sqlite3
+from math import comb
+from pathlib import Path
+
+import pytest
+
+from tests.evals import runners
+from tests.evals.runners import toy_plan
+from wonderful_team.errors import ConfigError
+from wonderful_team.evals.paper import paper_figure
+from wonderful_team.evals.report.page import read_stores, write_all
+from wonderful_team.evals.store import Store
+from wonderful_team.evals.study import run_study
+from wonderful_team.evals.summary import Cell, summarise
+from wonderful_team.evals.trials import Condition, Row, TrialResult, TrialSpec
+
+
+@pytest.fixture
+def store(tmp_path: Path) -> Path:
+    path = tmp_path / "study.db"
+    run_study(toy_plan(15), path, runners.quick, jobs=1)
+    return path
+
+
+def test_figures_recomputed_by_hand_from_the_store(store: Path) -> None:
+    base = sqlite3.connect(store)
+    won = dict(base.execute("SELECT method, SUM(outcome='success') FROM trials GROUP BY method"))
+    usd = dict(base.execute("SELECT method, SUM(usd) FROM trials GROUP BY method"))
+    both = (
+        "SELECT COUNT(*) FROM trials a JOIN trials b USING(task, seed, repeat) WHERE a.method='good' AND b.method='bad'"
+    )
+    only_good = base.execute(f"{both} AND a.outcome='success' AND b.outcome='failure'").fetchone()[0]
+    only_bad = base.execute(f"{both} AND a.outcome='failure' AND b.outcome='success'").fetchone()[0]
+    base.close()
+    made = write_all([store], store.with_name("page.html"))
+    good, bad = (made.summary.cell(one) for one in made.summary.compared)
+    assert (good.rate.successes, good.rate.n, bad.rate.successes, bad.rate.n) == (won["good"], 30, won["bad"], 30)
+    assert good.usd_per_trial == pytest.approx(usd["good"] / 30)
+    assert good.usd_per_success == pytest.approx(usd["good"] / won["good"])
+    (pair,) = made.summary.pairs()
+    assert (pair.only_first, pair.only_second) == (only_good, only_bad)
+    discordant, fewer = only_good + only_bad, min(only_good, only_bad)
+    by_hand = min(1.0, 2 * sum(comb(discordant, k) for k in range(fewer + 1)) / 2**discordant)
+    assert pair.p == pytest.approx(by_hand)
+    html = made.page.read_text(encoding="utf-8")
+    assert f"{100 * won['good'] / 30:.1f} %" in html
+    assert f"n = 30 pairs, exact p = {by_hand:.3g}" in html
+    with made.csv.open(encoding="utf-8") as file:
+        lines = list(csv.DictReader(file))
+    assert sum(line["method"] == "good" and line["outcome"] == "success" for line in lines) == won["good"]
+
+
+def test_the_page_has_its_parts_in_order_and_loads_nothing_from_elsewhere(store: Path) -> None:
+    html = write_all([store], store.with_name("page.html"), latex=store.with_name("tex")).page.read_text(
+        encoding="utf-8"
+    )
+    heads = (
+        "What was run",
+        "Methods and models",
+        "Success, and",
+        "Per task",
+        "All pairs",
+        "Where it fails",
+        "Planning alone",
+    )
+    places = [html.index(f"<h2>{head}") for head in (*heads, "Trials", "Reproduce")]
+    assert places == sorted(places)
+    assert not re.search(r"(src|href)=\"https?://", html)
+    assert "discordant trials" in html
+    assert (store.with_name("tex") / "conditions.tex").read_text(encoding="utf-8").count(r"\toprule") == 1
+
+
+def test_shards_merge_to_the_whole(store: Path, tmp_path: Path) -> None:
+    parts = []
+    for part in (1, 2, 3):
+        parts.append(tmp_path / f"part{part}.db")
+        run_study(toy_plan(15, shard=(part, 3)), parts[-1], runners.quick, jobs=1)
+    rows, requests, conflicts = read_stores(parts)
+    whole, asked, _ = read_stores([store])
+    assert conflicts == []
+    assert {row.spec.key: row.result for row in rows} == {row.spec.key: row.result for row in whole}
+    merged, single = summarise(rows, requests), summarise(whole, asked)
+    assert [merged.cell(one).rate for one in merged.compared] == [single.cell(one).rate for one in single.compared]
+
+
+def test_a_trial_that_ended_differently_in_two_stores_is_told(store: Path, tmp_path: Path) -> None:
+    other = tmp_path / "other.db"
+    run_study(toy_plan(15), other, runners.capped, jobs=1)
+    _, _, conflicts = read_stores([store, other])
+    assert conflicts
+    assert "the first is kept" in conflicts[0]
+
+
+def _row(method: str, seed: int, outcome: str, model: str = "m", task: str = "toy/a") -> Row:
+    return Row(TrialSpec(task, seed, Condition(method, model)), TrialResult(outcome, calls=1))  # type: ignore[arg-type]
+
+
+def test_errors_are_not_failures_and_more_than_two_percent_of_them_warn() -> None:
+    asked = [{"methods": ["a"], "models": ["m"]}]
+    rows = [_row("a", seed, "success") for seed in range(1000, 1050)]
+    quiet = summarise([*rows, _row("a", 1050, "error")], asked)
+    assert not any("errors" in text for text in quiet.warnings())  # 1 of 51 is 1.96 %
+    loud = summarise([*rows, _row("a", 1050, "error"), _row("a", 1051, "error")], asked)
+    assert any("2 of 52 trials are errors" in text for text in loud.warnings())
+    cell = loud.cell(Condition("a", "m"))
+    assert (cell.rate.successes, cell.rate.n) == (50, 50)
+
+
+def test_nothing_scored_is_no_data(tmp_path: Path) -> None:
+    cell = Cell(Condition("a", "m"), (TrialResult("error"), TrialResult("unscored")), (1000, 1001))
+    assert str(cell.rate) == "no data"
+    assert cell.usd_per_success is None
+    with Store(tmp_path / "s.db") as store:
+        plan = toy_plan(2)
+        store.want(plan.name, plan.trials(), plan.request())
+    made = write_all([tmp_path / "s.db"], tmp_path / "p.html")
+    assert "no data" in made.page.read_text(encoding="utf-8")
+    assert any("have not ended" in text for text in made.warnings)
+
+
+def test_controls_accuse_a_wrong_scorer() -> None:
+    asked = [{"methods": ["a"], "models": ["m"]}]
+    rows = [_row("oracle", seed, "success", "-") for seed in range(1000, 1010)]
+    right = summarise([*rows, *(_row("no-op", seed, "failure", "-") for seed in range(1000, 1010))], asked)
+    assert right.warnings() == []
+    wrong = summarise([*rows, *(_row("no-op", seed, "success", "-") for seed in range(1000, 1003))], asked)
+    assert any("doing nothing succeeds in 3 of 3" in text for text in wrong.warnings())
+    missed = summarise([*rows, _row("oracle", 1010, "failure", "-")], asked)
+    assert any("the oracle fails 1 of 11" in text for text in missed.warnings())
+
+
+def test_development_seeds_and_offline_rows_are_told() -> None:
+    found = summarise([_row("team", 3, "success", "offline")], [{"methods": ["team"], "models": ["offline"]}])
+    assert any("development seeds" in text for text in found.warnings())
+    assert any("OFFLINE" in text for text in found.warnings())
+
+
+def test_the_papers_figures_carry_n_and_source() -> None:
+    figure = paper_figure("tabletop/rotate", "team")
+    assert figure is not None
+    assert (figure.percent, figure.n) == (100.0, 10)
+    assert figure.interval is not None
+    assert figure.interval[0] == pytest.approx(0.7225, abs=1e-3)
+    ablated = paper_figure("tabletop/rotate", "team:s1")
+    assert ablated is not None
+    assert ablated.percent == 60.0
+    rival = paper_figure("tabletop/novel_adj", "nlap")
+    assert rival is not None
+    assert (rival.percent, rival.n) == (43.0, None)
+    assert paper_figure("tabletop/mine/cups", "team") is None
+
+
+def test_an_unknown_baseline_and_a_missing_store_are_told(store: Path) -> None:
+    with pytest.raises(ConfigError, match="the stores compare bad, good"):
+        write_all([store], store.with_name("p.html"), baseline="nobody")
+    with pytest.raises(ConfigError, match="no such file"):
+        write_all([store.with_name("none.db")], store.with_name("p.html"))
+    made = write_all([store], store.with_name("p.html"), baseline="good")
+    assert [one.first.method for one in made.summary.pairs("good")] == ["bad"]

@@ -1,0 +1,235 @@
+"""The store: nothing runs twice, nothing is lost, and numbers recomputed by hand from its rows are those it reports."""
+
+from __future__ import annotations
+
+import os
+import random
+import signal
+import sqlite3
+import subprocess
+import sys
+import time
+from collections import Counter
+from pathlib import Path
+
+import pytest
+
+from tests.evals import runners
+from tests.evals.runners import toy_plan
+from wonderful_team.errors import ConfigError
+from wonderful_team.evals.claims import Owner, is_free
+from wonderful_team.evals.places import network_file_system
+from wonderful_team.evals.store import Store
+from wonderful_team.evals.study import run_study
+from wonderful_team.evals.trials import SpendingCaps, TrialResult
+
+ROOT = Path(__file__).parents[2]
+
+
+def _wanted(store: Store, seeds: int = 2) -> str:
+    plan = toy_plan(seeds)
+    store.want(plan.name, plan.trials(), plan.request())
+    return plan.name
+
+
+def test_a_claim_goes_to_one_owner_and_is_written_once(tmp_path: Path) -> None:
+    with Store(tmp_path / "s.db") as store, Store(tmp_path / "s.db") as other:
+        study = _wanted(store)
+        one, two = Owner.this_process(), Owner.this_process()
+        first, second = store.claim(study, one), other.claim(study, two)
+        assert first is not None
+        assert second is not None
+        assert first.spec != second.spec
+        assert not store.finish(first.trial, two, TrialResult("success"))
+        assert store.finish(first.trial, one, TrialResult("failure", "plan", "why"))
+        assert not store.finish(first.trial, one, TrialResult("success"))
+        (ended,) = [row for row in store.rows() if row.result is not None]
+        assert (ended.result.outcome, ended.result.stage) == ("failure", "plan")  # type: ignore[union-attr]
+
+
+def test_a_claim_of_a_process_that_is_gone_is_free_and_of_a_living_one_is_not() -> None:
+    mine = Owner.this_process()
+    later = time.time() + 60
+    assert not is_free(str(mine), later)
+    assert is_free(str(mine), time.time() - 1)
+    gone = subprocess.Popen([sys.executable, "-c", ""])
+    gone.wait()
+    assert is_free(f"{mine.host}|{gone.pid}|0|0||x", later)
+    assert is_free(f"{mine.host}|{mine.pid}|1|0||x", later), "a later process took the number"
+    assert not is_free("elsewhere|1|0|0||x", later)
+    assert not is_free(f"{mine.host}|{gone.pid}|0|{mine.pid}|{mine.born}|x", later), (
+        "its parent lives and will see to it"
+    )
+
+
+def test_the_same_study_resumes_and_a_larger_one_runs_only_what_is_new(tmp_path: Path) -> None:
+    path = tmp_path / "s.db"
+    first = run_study(toy_plan(2), path, runners.quick, jobs=1)
+    assert (first.standing.here, first.why) == (8, "")
+    again = run_study(toy_plan(2), path, runners.quick, jobs=1)
+    assert (again.standing.here, again.standing.done) == (0, 8)
+    more = run_study(toy_plan(3), path, runners.quick, jobs=1)
+    assert (more.standing.here, more.standing.done) == (4, 12)
+
+
+def test_another_programs_database_is_left_alone(tmp_path: Path) -> None:
+    path = tmp_path / "other.db"
+    base = sqlite3.connect(path)
+    base.execute("CREATE TABLE things(x)")
+    base.commit()
+    base.close()
+    with pytest.raises(ConfigError, match="another program's database"):
+        Store(path)
+    (tmp_path / "text.db").write_text("not a database at all, just words\n" * 50, encoding="utf-8")
+    with pytest.raises(ConfigError, match="cannot be used"):
+        Store(tmp_path / "text.db")
+
+
+def test_a_network_file_system_is_told() -> None:
+    mounts = "/dev/sda1 / ext4 rw 0 0\nserver:/home /mnt/home nfs4 rw 0 0\n"
+    assert network_file_system(Path("/mnt/home/me/s.db"), mounts) == "nfs4"
+    assert network_file_system(Path("/tmp/s.db"), mounts) is None
+
+
+def test_errors_are_kept_apart_and_retried_on_request(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    broken = tmp_path / "broken"
+    broken.touch()
+    monkeypatch.setenv("TOY_BROKEN", str(broken))
+    path = tmp_path / "s.db"
+    first = run_study(toy_plan(10), path, runners.breaking, jobs=1)
+    assert first.standing.outcomes["error"] == 8  # seeds 1000 and 1005, two tasks, two methods
+    again = run_study(toy_plan(10), path, runners.breaking, jobs=1)
+    assert again.standing.here == 0
+    broken.unlink()
+    mended = run_study(toy_plan(10), path, runners.breaking, jobs=1, retry_errors=True)
+    assert "error" not in mended.standing.outcomes
+    with Store(path) as store:
+        assert sum(row.discarded for row in store.rows()) == 8
+        reasons = {row.result.reason for row in store.rows() if row.result is not None}
+    assert not any("hung up" in reason for reason in reasons)
+
+
+@pytest.mark.parametrize("cap", [35, 5])
+def test_a_cap_stops_a_study_cleanly_and_is_never_passed(tmp_path: Path, cap: int) -> None:
+    path = tmp_path / "s.db"
+    ended = run_study(toy_plan(5), path, runners.capped, jobs=1, caps=SpendingCaps(calls=cap))
+    assert "cap" in ended.why
+    assert ended.standing.spent.calls <= cap
+    with Store(path) as store:
+        results = [row.result for row in store.rows() if row.result is not None]
+    assert len(results) == cap // 10
+    assert all(result.outcome == "success" for result in results), "a trial cut by the study's cap is not a failure"
+    whole = run_study(toy_plan(5), path, runners.capped, jobs=1)
+    assert whole.standing.done == 20
+
+
+def test_a_trial_that_kills_its_worker_becomes_an_error_and_the_sweep_goes_on(tmp_path: Path) -> None:
+    said: list[str] = []
+    ended = run_study(toy_plan(3), tmp_path / "s.db", runners.dying, jobs=2, report=lambda text, _: said.append(text))
+    assert ended.standing.done == ended.standing.total == 12
+    assert ended.standing.outcomes["error"] == 1
+    assert any("a worker died (exit code 7)" in text for text in said)
+
+
+@pytest.mark.parametrize("places", [1, 3])
+def test_one_limit_holds_for_the_model_calls_of_all_processes(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, places: int
+) -> None:
+    log = tmp_path / "log"
+    monkeypatch.setenv("TOY_LOG", str(log))
+    run_study(toy_plan(3), tmp_path / "s.db", runners.limited, jobs=2, at_once=3, calls_at_once=places)
+    calls = [tuple(map(float, line.split())) for line in _lines(log)]
+    assert len(calls) == 12
+    most = max(sum(began <= moment < ended for began, ended in calls) for moment, _ in calls)
+    assert most == places
+
+
+def test_several_trials_wait_at_the_same_time_in_one_process(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    log = tmp_path / "log"
+    monkeypatch.setenv("TOY_LOG", str(log))
+    started = time.monotonic()
+    ended = run_study(toy_plan(10), tmp_path / "s.db", runners.slow, jobs=1, at_once=8)
+    assert ended.standing.done == 40
+    # One after another they sleep 0.8 s; the bound leaves room for a busy machine.
+    lines = _lines(log)
+    in_flight = most = 0
+    for line in lines:
+        in_flight += 1 if line.startswith("begin") else -1
+        most = max(most, in_flight)
+    assert most > 1, time.monotonic() - started
+
+
+SWEEP = """
+from pathlib import Path
+from tests.evals import runners
+from wonderful_team.evals.study import run_study
+if __name__ == "__main__":
+    run_study(runners.toy_plan(20), Path({store!r}), runners.slow, jobs=2)
+"""
+
+
+def _start(tmp_path: Path, log: Path) -> subprocess.Popen[bytes]:
+    script = tmp_path / "sweep.py"
+    script.write_text(SWEEP.format(store=str(tmp_path / "s.db")), encoding="utf-8")
+    environment = {**os.environ, "TOY_LOG": str(log), "PYTHONPATH": f"{ROOT}{os.pathsep}{ROOT / 'src'}"}
+    # A group of its own, so that parent and workers can be killed together, as a machine that loses power would.
+    return subprocess.Popen([sys.executable, str(script)], env=environment, start_new_session=True)
+
+
+def _lines(log: Path) -> list[str]:
+    return log.read_text(encoding="utf-8").splitlines() if log.exists() else []
+
+
+def test_kill_9_at_random_moments_loses_only_what_was_in_flight(tmp_path: Path) -> None:
+    """The whole group is killed several times in one sweep; then the counts."""
+    log, rng, kills = tmp_path / "log", random.Random(11), 0
+    for _ in range(12):
+        process = _start(tmp_path, log)
+        before = len(_lines(log))
+        while process.poll() is None and len(_lines(log)) < before + 4:
+            time.sleep(0.01)
+        time.sleep(rng.uniform(0, 0.25))
+        if process.poll() is not None:
+            break
+        os.killpg(process.pid, signal.SIGKILL)
+        process.wait()
+        kills += 1
+        if kills == 5:
+            break
+    assert kills >= 3, "the sweep was too short to be killed"
+    assert _start(tmp_path, log).wait(timeout=120) == 0
+    with Store(tmp_path / "s.db") as store:
+        rows = store.rows()
+    assert len(rows) == len({row.spec.key for row in rows}) == 80
+    assert all(row.result is not None for row in rows)
+    for row in rows:
+        assert (row.result.outcome == "success") == runners.wins(row.spec)  # type: ignore[union-attr]
+    began = Counter(line[6:] for line in _lines(log) if line.startswith("begin "))
+    # Two workers: at most two trials were in flight at each kill, and only those ran again.
+    assert set(began) == {row.spec.key for row in rows}
+    assert sum(began.values()) - 80 <= 2 * kills
+
+
+def test_an_interrupt_lets_trials_in_flight_end_and_leaves_nothing_claimed(tmp_path: Path) -> None:
+    log = tmp_path / "log"
+    process = _start(tmp_path, log)
+    while len(_lines(log)) < 6 and process.poll() is None:
+        time.sleep(0.01)
+    os.killpg(process.pid, signal.SIGINT)
+    assert process.wait(timeout=60) != 0
+    with Store(tmp_path / "s.db") as store:
+        (study,) = [toy_plan(20).name]
+        assert store.count(study, "claimed") == 0
+        assert 0 < store.count(study, "done") < 80
+        done = {row.spec.key for row in store.rows() if row.result is not None}
+    assert done == {line[4:] for line in _lines(log) if line.startswith("end ")}
+
+
+def test_two_processes_share_a_store_without_double_work(tmp_path: Path) -> None:
+    log = tmp_path / "log"
+    one, two = _start(tmp_path, log), _start(tmp_path, log)
+    assert one.wait(timeout=120) == 0
+    assert two.wait(timeout=120) == 0
+    ended = Counter(line for line in _lines(log) if line.startswith("end "))
+    assert len(ended) == 80
+    assert set(ended.values()) == {1}

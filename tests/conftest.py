@@ -39,6 +39,8 @@ def runs_folder(monkeypatch: pytest.MonkeyPatch, tmp_path_factory: pytest.TempPa
     """Where this test's run folders go."""
     folder = tmp_path_factory.mktemp("runs")
     monkeypatch.setenv(OUT_VARIABLE, str(folder))
+    # Neither a profile that the user saved nor one that another test saved may decide how this test asks.
+    monkeypatch.setenv("WONDERFUL_TEAM_CONFIG", str(folder.with_name(f"{folder.name}-config")))
     # Kept answers of one test must never answer for another.
     monkeypatch.setenv(FILE_VARIABLE, str(folder.with_name(f"{folder.name}-answers.sqlite")))
     return folder

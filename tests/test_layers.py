@@ -17,6 +17,7 @@ TOP = {
     "finding",
     "loading",
     "made",
+    "methods",
     "observe",
     "photos",
     "probing",

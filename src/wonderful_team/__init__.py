@@ -12,11 +12,12 @@ __version__ = "0.1.0"
 
 if TYPE_CHECKING:
     from wonderful_team.actions import ARM, PICK_PLACE, At, Beside, PickPlace, PickPlaceStep, Vocabulary
-    from wonderful_team.api import Method, Team, make_world, rollout, task
+    from wonderful_team.api import Team, make_world, rollout, task
     from wonderful_team.errors import WonderfulTeamError
     from wonderful_team.geometry import AffineCamera, Box, PinholeCamera, PlanarCamera
     from wonderful_team.interfaces import Act, Done, GaveUp, Model, Policy, Score, Situation, World
     from wonderful_team.made import FoundTarget, MadePlan, RecordedTrial
+    from wonderful_team.methods import Method
     from wonderful_team.observe import Observation
     from wonderful_team.photos import instruction_with_pictures
     from wonderful_team.probing import probe_model
@@ -53,7 +54,7 @@ _HOMES: dict[str, str] = {
     "KeepOut": "types",
     "Limits": "types",
     "MadePlan": "made",
-    "Method": "api",
+    "Method": "methods",
     "Model": "interfaces",
     "Observation": "observe",
     "PICK_PLACE": "actions",
@@ -130,6 +131,7 @@ __all__ = [
     "instruction_with_pictures",
     "make_model",
     "make_world",
+    "probe_model",
     "rollout",
     "task",
 ]

@@ -6,7 +6,7 @@ import inspect
 import time
 import warnings
 from collections.abc import Callable, Coroutine, Mapping, Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any
 
@@ -14,15 +14,11 @@ from wonderful_team import registry, types
 from wonderful_team.actions import PICK_PLACE, VOCABULARIES, Vocabulary
 from wonderful_team.errors import ConfigError, UnknownNameError
 from wonderful_team.finding import find
-from wonderful_team.interfaces import Decision, Event, Model, Policy, Privileged, Situation, Subscriber, World
+from wonderful_team.interfaces import Decision, Event, Policy, Privileged, Situation, Subscriber, World
 from wonderful_team.made import MadePlan, RecordedTrial
-from wonderful_team.models.budget import Budget, Caps
-from wonderful_team.models.cache import CacheMode, cached_models
-from wonderful_team.models.cache_key import model_identity
-from wonderful_team.models.door import Door
-from wonderful_team.models.providers import check_prices, model_options
+from wonderful_team.methods import Method
 from wonderful_team.planning import Team as Planner
-from wonderful_team.planning import TeamConfig, Until
+from wonderful_team.planning import Until
 from wonderful_team.runs import new_run_folder
 from wonderful_team.runtime import Approval, Approver, check_gate
 from wonderful_team.runtime import rollout as roll_out
@@ -32,10 +28,6 @@ from wonderful_team.runtime.recorder import Recorder
 from wonderful_team.runtime.setup import setup_entry
 from wonderful_team.types import NO_WORKSPACE, GateReport, Instruction, KeepOut, Limits, Plan, Target, Usage
 
-ModelChoice = str | Model | Mapping[str, str | Model]
-POINTING_ROLES = ("manager", "supervisor")
-"""Who gives points and boxes on whole views."""
-
 
 @dataclass(frozen=True, eq=False)
 class _Work:
@@ -43,126 +35,6 @@ class _Work:
 
     plan: Coroutine[Any, Any, Plan]
     usage_by_role: Callable[[], Mapping[str, Usage]]
-
-
-@dataclass
-class Method:
-    """A method by name, with its model and its caps, not yet at work.
-
-    Args:
-        model: A name (`offline`, FILE.py:NAME), an object with `answer(request)`, or a mapping from role to either;
-            "*" is for the roles not named.
-        method: team, team:paper, team:s1 to team:s8, or FILE.py:NAME.
-        thinking: off, low, medium or high, for all roles or by role; None leaves each model's own default.
-        price: "IN,OUT" in USD per million tokens, for all roles or by role, where no price is known.
-        allow_unpriced: Accept models of unknown price without a cap on tokens.
-        local_only: Refuse models outside this machine and private networks.
-        max_calls, max_tokens, max_seconds, max_usd: Caps of one plan or trial; None for no cap.
-        concurrency: Most calls in flight at once.
-        cache: on, off or only (never call a model); None: on for vendors and servers, off for `offline` and own models.
-        cache_file: Where answers are kept; default $WONDERFUL_TEAM_CACHE, else the user's cache folder.
-        repeat: Number of this repetition: repetitions do not share kept answers.
-        prompts: A folder with your own words for the team's roles.
-        strict: Refuse a plan that Verification did not approve.
-        out: Where run folders go; default $WONDERFUL_TEAM_RUNS or `runs`.
-        subscribers: Told of every event as it happens.
-        command: The command line that reproduces the run, for the page.
-        parent: Which run this one branches off, and at which stage.
-
-    Raises:
-        ConfigError: An unknown name or a value out of range; before anything is sent.
-    """
-
-    model: ModelChoice = "offline"
-    method: str = "team"
-    max_calls: int | None = None
-    max_tokens: int | None = None
-    max_seconds: float | None = None
-    max_usd: float | None = None
-    concurrency: int = 8
-    cache: CacheMode | None = None
-    cache_file: str | Path | None = None
-    repeat: int = 0
-    prompts: str | Path | None = None
-    strict: bool = False
-    out: str | Path | None = None
-    subscribers: Sequence[Subscriber] = ()
-    command: str | None = None
-    parent: Mapping[str, str] | None = None
-    thinking: str | Mapping[str, str] | None = None
-    price: str | Mapping[str, str] | None = None
-    allow_unpriced: bool = False
-    local_only: bool = False
-
-    def __post_init__(self) -> None:
-        self._config = team_config(self.method, self.prompts, self.strict)
-        options = model_options(self.thinking, self.price, self.local_only, role_names())
-        made = registry.make_models(self.model, role_names(), options)
-        if self._config is not None and any(getattr(made[role], "weak_pointing", False) for role in POINTING_ROLES):
-            self._config = replace(self._config, axes=True)
-        self._models, self._store = cached_models(made, self.cache, self.cache_file, repeat=self.repeat)
-        self._caps = Caps(self.max_calls, self.max_tokens, self.max_seconds, self.max_usd)
-        if self.cache != "only":
-            check_prices(made.values(), self._caps, self.allow_unpriced)
-        self._label = registry.model_label(_known_names(self.model, made))
-
-    @property
-    def name(self) -> str:
-        """What records call the method."""
-        return self.method
-
-    @property
-    def warnings(self) -> tuple[str, ...]:
-        """What the user should know of the set-up, in words."""
-        notes = dict.fromkeys(str(getattr(model, "note", "")) for model in self._models.values())
-        return (*(note for note in notes if note), *(() if self._store is None else self._store.warnings))
-
-    @property
-    def model_name(self) -> str:
-        """What records call the model."""
-        return self._label
-
-    def door(self, *subscribers: Subscriber) -> Door:
-        """A door to the model for one run: capped, and told to subscribers."""
-        everyone = (*subscribers, *self.subscribers)
-        return Door(self._models, budget=Budget(self._caps), subscribers=everyone, concurrency=self.concurrency)
-
-    def policy(self, *subscribers: Subscriber) -> Policy:
-        """The method at work in one trial."""
-        if self._config is None:
-            return registry.load_method(self.method, self.door(*subscribers))
-        return Planner(
-            self._models,
-            self._config,
-            caps=self._caps,
-            subscribers=(*subscribers, *self.subscribers),
-            concurrency=self.concurrency,
-        )
-
-    def words(self) -> Mapping[str, str]:
-        """The words of the roles, by file name; none for a method of one's own."""
-        return {} if self._config is None else self._config.prompts.files()
-
-    def configuration(self) -> dict[str, Any]:
-        """What the record says of how a run was set up."""
-        caps = {"calls": self.max_calls, "tokens": self.max_tokens, "seconds": self.max_seconds, "usd": self.max_usd}
-        return {
-            "method": self.method,
-            "model": self.model_name,
-            "caps": caps,
-            "concurrency": self.concurrency,
-            "thinking": dict(self.thinking) if isinstance(self.thinking, Mapping) else self.thinking,
-            "local_only": self.local_only,
-            "axes": self._config is not None and self._config.axes,
-            "models": {
-                role: model_identity(model) for role, model in self._models.items() if hasattr(model, "identity")
-            },
-            "cache": "off" if self._store is None else (self.cache or "on"),
-            "repeat": self.repeat,
-            "strict": self.strict,
-            "prompts": None if self._config is None else self._config.prompts.hash,
-            **({} if self.parent is None else {"parent": dict(self.parent)}),
-        }
 
 
 @dataclass
@@ -389,41 +261,6 @@ def task(name: str, *, instruction: str, horizon: int = 1, **more: Any) -> Calla
     from wonderful_team.sims.tabletop import task as tabletop_task
 
     return tabletop_task(name, instruction=instruction, horizon=horizon, **more)
-
-
-def team_config(method: str, prompts: str | Path | None = None, strict: bool = False) -> TeamConfig | None:
-    """The configuration that a `team…` name means; None for a method of one's own.
-
-    Raises:
-        UnknownNameError: Not a name of the team.
-    """
-    from wonderful_team.agents import Prompts
-
-    way = registry.team_way(method)
-    if way is None:
-        return None
-    words = Prompts.default() if prompts is None else Prompts.load(Path(prompts))
-    return TeamConfig(way=way.way, setting=way.setting, strict=strict, prompts=words)
-
-
-def _known_names(model: ModelChoice, made: Mapping[str, Model]) -> ModelChoice:
-    """The choice with the names that servers gave for addresses without #NAME."""
-    if isinstance(model, Mapping):
-        rest = next((role for role in made if role not in model), None)
-        by_role = {role: made[rest] if role == "*" and rest else made.get(role) for role in model}
-        return {role: _known_name(named, by_role[role]) for role, named in model.items()}
-    return _known_name(model, next(iter(made.values())))
-
-
-def _known_name(named: str | Model, made: Model | None) -> str | Model:
-    return named if made is None or not isinstance(named, str) else str(getattr(made, "name", named))
-
-
-def role_names() -> tuple[str, ...]:
-    """All roles of the team."""
-    from wonderful_team.agents import ROLES
-
-    return tuple(ROLES)
 
 
 def vocabulary_named(vocabulary: str | Vocabulary) -> Vocabulary:

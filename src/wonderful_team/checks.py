@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import Any
 
 from wonderful_team import registry
-from wonderful_team.api import Method
 from wonderful_team.errors import ConfigError
 from wonderful_team.evals.checking import SEEDS, Findings, check_controls, check_looks, contact_sheet
 from wonderful_team.evals.controls import CONTROLS, NO_MODEL
@@ -16,6 +15,7 @@ from wonderful_team.evals.statistics import Rate
 from wonderful_team.evals.trials import Condition, RunSettings, TrialResult, TrialSpec
 from wonderful_team.evals.workers import run_safely
 from wonderful_team.loading import load_from_file
+from wonderful_team.methods import Method
 from wonderful_team.trial_runs import run_trial
 
 TRIED_IN = "tabletop/rotate"

@@ -7,12 +7,12 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
-from wonderful_team.api import Method, team_config
 from wonderful_team.errors import ConfigError
 from wonderful_team.evals.photos import Located, read_photos, score_photo
 from wonderful_team.evals.trials import RunSettings, TrialResult, TrialSpec
 from wonderful_team.finding import find
 from wonderful_team.geometry import Box
+from wonderful_team.methods import Method, team_config
 from wonderful_team.observe import Observation
 from wonderful_team.runtime.loop import Caller
 from wonderful_team.trial_runs import Counting, fingerprint, prepared

@@ -21,13 +21,14 @@ import numpy as np
 
 from wonderful_team import registry
 from wonderful_team.actions import Action
-from wonderful_team.api import Method, rollout
+from wonderful_team.api import rollout
 from wonderful_team.errors import ConfigError
 from wonderful_team.evals.controls import CONTROLS, make_control
 from wonderful_team.evals.trials import Limiter, RunSettings, TrialResult, TrialSpec
 from wonderful_team.interfaces import Event, Model, Policy, World
 from wonderful_team.jsonable import to_jsonable
 from wonderful_team.loading import is_file_name
+from wonderful_team.methods import Method
 from wonderful_team.runtime import rollout as roll_out
 from wonderful_team.runtime.versions import versions
 from wonderful_team.types import Instruction, Observation, Request, StepReport, Trial, Usage, View

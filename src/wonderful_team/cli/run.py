@@ -48,10 +48,11 @@ def command(
 
     An INSTRUCTION takes the place of the task's own; the task's scorer is then left out.
     """
-    from wonderful_team.api import Method, Team, make_world, rollout
+    from wonderful_team.api import Team, make_world, rollout
     from wonderful_team.cli.progress import Progress
     from wonderful_team.cli.report import report_trial
     from wonderful_team.cli.video import Film, check_video_name
+    from wonderful_team.methods import Method
     from wonderful_team.photos import read_keep_out
     from wonderful_team.registry import scene_name, team_way
     from wonderful_team.runtime import read_plan

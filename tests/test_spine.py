@@ -64,7 +64,9 @@ def test_a_thing_that_is_nudged_between_plan_and_motion_stops_the_run():
     assert trial.stage == "gate"
     assert "unchanged" in trial.reason
     assert not trial.runs or not trial.runs[0].reports
-    assert after == pytest.approx((before[0] + 0.012, before[1] + 0.012, before[2]), abs=3e-3), "only the nudge moved it"
+    assert after == pytest.approx((before[0] + 0.012, before[1] + 0.012, before[2]), abs=3e-3), (
+        "only the nudge moved it"
+    )
 
 
 def test_replanning_carries_on_after_a_nudge():

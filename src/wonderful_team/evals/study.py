@@ -127,7 +127,9 @@ def run_study(
             _run_processes(work, watch, min(jobs, watch.missing), calls_at_once)
         report("", watch.standing())
         if caps.usd is not None and (unpriced := watch.standing().spent.unpriced):
-            report(f"warning: {unpriced} trials have no known price: the cap of {caps.usd:g} USD does not see them", None)
+            report(
+                f"warning: {unpriced} trials have no known price: the cap of {caps.usd:g} USD does not see them", None
+            )
         return Finish(watch.standing(), watch.why(caps, deadline_s))
 
 

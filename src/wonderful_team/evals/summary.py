@@ -162,7 +162,9 @@ class Summary:
             return [one.sentence() for one in pairs[:3]]
         if self.compared:
             return [f"{one.label}: {self.cell(one).rate}." for one in self.compared[:3]]
-        return ["Only controls were run: no method is compared." if self.bounds else "No data: the store holds no trial."]
+        return [
+            "Only controls were run: no method is compared." if self.bounds else "No data: the store holds no trial."
+        ]
 
     def warnings(self) -> list[str]:
         """What a reader must know before any figure."""

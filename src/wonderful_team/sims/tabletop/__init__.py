@@ -1,12 +1,12 @@
 """Our own tabletop: a MuJoCo table with procedural things, two cameras, a suction cup and tasks that follow from a seed."""
 
 from wonderful_team.sims.tabletop import tasks as _tasks
-from wonderful_team.sims.tabletop.registering import task, task_names
+from wonderful_team.sims.tabletop.registering import partitions, task, task_names
 from wonderful_team.sims.tabletop.scene import Scene
 from wonderful_team.sims.tabletop.world import TabletopWorld
 
 make_world = TabletopWorld
-"""make_world("visual_manipulation", seed=3, size_px=(640, 320), recolour=None, renderer=None)"""
+"""make_world("visual_manipulation", seed=3, size_px=(640, 320), recolour=None, renderer=None, partition=None)"""
 
-__all__ = ["Scene", "TabletopWorld", "make_world", "task", "task_names"]
+__all__ = ["Scene", "TabletopWorld", "make_world", "partitions", "task", "task_names"]
 del _tasks

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
-from shapely import Point
+from shapely import Point, Polygon
 from shapely.affinity import rotate, translate
 from shapely.geometry.base import BaseGeometry
 
@@ -87,39 +87,85 @@ class Verdict:
 
 
 @dataclass(frozen=True)
-class Rules:
-    """Goals of a task and what ends it.
+class Zone:
+    """A region of the table that belongs to a thing and moves with it.
 
     Attributes:
-        distractors: Things that must stay away from every target, and targets from them.
-        ends_when_reached: True: reaching all goals once is enough. False: the state at the end counts.
+        of: Name of the thing.
+        corners_ab: Outline coordinates (a right, b up) [m], a simple polygon.
     """
 
-    goals: tuple[Goal, ...]
-    distractors: tuple[str, ...]
-    horizon: int
-    ends_when_reached: bool = True
+    of: str
+    corners_ab: tuple[tuple[float, float], ...]
 
-    def judge(self, poses: Poses, things: Mapping[str, Thing]) -> Verdict:
-        """Apply the rules to the true poses."""
-        for goal in self.goals:
-            met = goal.met(poses, things)
-            x, y = (float(v) for v in poses[goal.thing].position_m[:2])
-            if not met and not (TABLE_LOW_M[0] <= x <= TABLE_HIGH_M[0] and TABLE_LOW_M[1] <= y <= TABLE_HIGH_M[1]):
-                return Verdict("failure", f"{goal.thing} left the table at ({x:.3f}, {y:.3f}) m")
-            disturbed = self._disturbed(goal, (x, y), poses)
-            if disturbed:
-                return Verdict("failure", disturbed)
-        if all(goal.met(poses, things) for goal in self.goals):
-            return Verdict("success")
-        return Verdict("open")
+    def region(self, poses: Poses) -> BaseGeometry:
+        """Where it lies now, base frame x and y [m]."""
+        pose = poses[self.of]
+        turned = rotate(Polygon(self.corners_ab), 90 + math.degrees(pose.yaw_rad), origin=(0, 0))
+        return translate(turned, float(pose.position_m[0]), float(pose.position_m[1]))
 
-    def _disturbed(self, goal: Goal, at: tuple[float, float], poses: Poses) -> str:
-        for name in self.distractors:
-            other = (float(poses[name].position_m[0]), float(poses[name].position_m[1]))
-            if math.dist(at, other) < goal.within_m:
-                return f"{goal.thing} lies {math.dist(at, other):.3f} m from the distractor {name} (limit {goal.within_m} m)"
-            for target in goal.target_points(poses):
-                if math.dist(target, other) < goal.within_m:
-                    return f"the distractor {name} lies {math.dist(target, other):.3f} m from a target of {goal.thing}"
-        return ""
+
+@dataclass(frozen=True)
+class Count:
+    """Exactly so many of some things have to come to lie in a zone; a thing that was once inside stays counted.
+
+    Attributes:
+        things: Names of those that count.
+        exactly: How many; more of them is a failure.
+        strangers: Names of those of which no point may enter the zone.
+    """
+
+    things: tuple[str, ...]
+    zone: Zone
+    exactly: int
+    strangers: tuple[str, ...] = ()
+
+    def inside(self, poses: Poses, things: Mapping[str, Thing]) -> frozenset[str]:
+        """Which of the things lie in the zone with their eight sample points: corners and middles of the sides."""
+        region = self.zone.region(poses)
+        return frozenset(
+            n for n in self.things if all(region.covers(Point(p)) for p in sample_points(things[n], poses[n]))
+        )
+
+    def intruder(self, poses: Poses, things: Mapping[str, Thing]) -> str | None:
+        """A stranger with a sample point in the zone."""
+        region = self.zone.region(poses)
+        for name in self.strangers:
+            if any(region.covers(Point(p)) for p in sample_points(things[name], poses[name])):
+                return name
+        return None
+
+
+@dataclass(frozen=True)
+class Never:
+    """Things that may at no time, not even on the way, overlap another thing seen from above."""
+
+    things: tuple[str, ...]
+    over: str
+
+    def broken(self, poses: Poses, things: Mapping[str, Thing]) -> str | None:
+        """One that overlaps now."""
+        line = footprint_of(things[self.over], poses[self.over])
+        for name in self.things:
+            if footprint_of(things[name], poses[name]).intersects(line):
+                return name
+        return None
+
+
+def sample_points(thing: Thing, pose: Pose) -> list[tuple[float, float]]:
+    """Corners of a thing's outline box and the middles of its sides, base frame x and y [m]."""
+    a0, b0, a1, b1 = thing.body.footprint.bounds
+    a, b = (a0 + a1) / 2, (b0 + b1) / 2
+    around = [(a0, b0), (a, b0), (a1, b0), (a1, b), (a1, b1), (a, b1), (a0, b1), (a0, b)]
+    return [(float(p[0]), float(p[1])) for p in pose.apply([(-v, u, 0.0) for u, v in around])]
+
+
+def centre_of(pose: Pose) -> tuple[float, float]:
+    """Where a thing's centre stands, seen from above [m]."""
+    return float(pose.position_m[0]), float(pose.position_m[1])
+
+
+def off_table(pose: Pose) -> bool:
+    """Whether a thing's centre is beyond the table's edge."""
+    x, y = centre_of(pose)
+    return not (TABLE_LOW_M[0] <= x <= TABLE_HIGH_M[0] and TABLE_LOW_M[1] <= y <= TABLE_HIGH_M[1])

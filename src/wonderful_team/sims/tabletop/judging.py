@@ -6,11 +6,15 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from wonderful_team.actions import PickPlace
+from wonderful_team.actions import PickPlace, Push
 from wonderful_team.interfaces import Score
-from wonderful_team.sims.tabletop.goals import Goal, Poses, Rules, Verdict
+from wonderful_team.sims.tabletop.goals import Goal, Poses, Verdict
 from wonderful_team.sims.tabletop.model import Thing
+from wonderful_team.sims.tabletop.rules import Progress, Rules
 from wonderful_team.sims.tabletop.suction import Picked
+
+MOVED_M = 0.004
+"""How far a thing must have moved to count as pushed [m]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -18,9 +22,13 @@ class Happened:
     """One action and the truth after it; the first entry of a history has no action."""
 
     poses: Poses
-    verdict: Verdict
-    action: PickPlace | None = None
+    progress: Progress
+    action: PickPlace | Push | None = None
     picked: Picked | None = None
+
+    @property
+    def verdict(self) -> Verdict:
+        return self.progress.verdict
 
 
 def score_of(rules: Rules, history: Sequence[Happened], things: Mapping[str, Thing]) -> Score:
@@ -33,48 +41,57 @@ def score_of(rules: Rules, history: Sequence[Happened], things: Mapping[str, Thi
         failed = [entry for entry in judged if entry.verdict.state == "failure"]
         end = failed[0] if failed else judged[-1]
     if end.verdict.state == "success":
-        return Score(True, None, f"all {len(rules.goals)} goals are met")
+        return Score(True, None, f"all {len(rules.goals) + len(rules.counts)} goals are met")
     upto = judged[: list(judged).index(end) + 1]
-    reason = end.verdict.reason or _unmet(rules, end.poses, things)
+    reason = end.verdict.reason or rules.unmet(end.progress, end.poses, things)
     if len(history) - 1 > rules.horizon and end.verdict.state == "open":
         reason += f"; the horizon of {rules.horizon} actions was reached"
     return Score(False, _stage(rules, upto, things), reason)
 
 
-def _unmet(rules: Rules, poses: Poses, things: Mapping[str, Thing]) -> str:
-    missing = [goal.thing for goal in rules.goals if not goal.met(poses, things)]
-    return f"goals not met: {', '.join(missing)}" if missing else "nothing was done"
-
-
 def _stage(rules: Rules, history: Sequence[Happened], things: Mapping[str, Thing]) -> str | None:
     """A point on no object: grounding; on a wrong one: wrong object; right ones but wrongly used: plan; else execution."""
-    done = [(before, after) for before, after in zip(history, history[1:], strict=False) if after.picked is not None]
+    pairs = list(zip(history, history[1:], strict=False))
+    if any(isinstance(after.action, Push) for _, after in pairs):
+        return _stage_of_pushes(rules, pairs)
+    done = [(before, after, after.picked) for before, after in pairs if after.picked is not None]
     if not done:
         return None
-    wanted = {goal.thing for goal in rules.goals}
-    for _, after in done:
-        if after.picked is not None and after.picked.under_pick is None:
-            return "grounding"
-        if after.picked is not None and after.picked.under_pick not in wanted:
-            return "wrong object"
-    final = history[-1].poses
-    for goal in rules.goals:
-        if goal.met(final, things):
+    if any(picked.under_pick is None for _, _, picked in done):
+        return "grounding"
+    if any(picked.under_pick not in rules.wanted for _, _, picked in done):
+        return "wrong object"
+    last = history[-1]
+    if last.verdict.state == "failure" and rules.order != "free" and "later goal" in last.verdict.reason:
+        return "plan"
+    for goal in rules.phases[last.progress.phase]:
+        if goal.met(last.poses, things):
             continue
-        last = [(b, a) for b, a in done if a.picked is not None and a.picked.under_pick == goal.thing]
-        if not last:
+        moves = [(b, a) for b, a, picked in done if picked.under_pick == goal.thing]
+        if not moves:
             return "plan"
-        before, after = last[-1]
-        stage = _stage_of_move(goal, before, after, things)
+        stage = _stage_of_move(goal, *moves[-1], things)
         if stage is not None:
             return stage
-    return "execution"
+    return "plan" if last.progress.phase < len(rules.phases) - 1 else "execution"
+
+
+def _stage_of_pushes(rules: Rules, pairs: Sequence[tuple[Happened, Happened]]) -> str:
+    """Nothing was moved: grounding; only what does not count: wrong object; a rule was broken: plan; else execution."""
+    moved = set()
+    for before, after in pairs:
+        moved |= {n for n, p in after.poses.items() if math.dist(p.position_m, before.poses[n].position_m) > MOVED_M}
+    if not moved:
+        return "grounding"
+    if not moved & rules.wanted:
+        return "wrong object"
+    return "plan" if pairs[-1][1].verdict.state == "failure" else "execution"
 
 
 def _stage_of_move(goal: Goal, before: Happened, after: Happened, things: Mapping[str, Thing]) -> str | None:
     """Why one thing is not where it should be, from where it was told to go; None if it was told right."""
     action, picked = after.action, after.picked
-    if action is None or picked is None:
+    if not isinstance(action, PickPlace) or picked is None:
         return None
     place = (float(action.place_m[0]), float(action.place_m[1]))
     targets = goal.target_points(before.poses)

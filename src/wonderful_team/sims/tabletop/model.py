@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Literal, TypeAlias
 
 import numpy as np
 
@@ -26,6 +26,11 @@ TABLE_RGB = (224, 219, 208)
 FLOOR_RGB = (148, 152, 158)
 DENSITY = 350.0
 """Of every thing [kg/m^3]: like light wood."""
+ToolName: TypeAlias = Literal["suction", "spatula"]
+BLADE_HALF_M = (0.002, 0.02, 0.014)
+"""Half the thickness, width and height of the spatula's blade [m]; it pushes along its own x axis."""
+BLADE_BIT = 2
+"""Collision bit of the blade: it touches what can be moved, and nothing else."""
 
 
 @dataclass(frozen=True)
@@ -35,6 +40,8 @@ class Thing:
     Attributes:
         name: Unique in the scene; never shown to a planner.
         x_m, y_m, yaw_rad: Where its centre stands and how it is turned.
+        z_m: Height of its bottom [m].
+        stretch: How many times as high as usual it is.
     """
 
     name: str
@@ -44,10 +51,11 @@ class Thing:
     y_m: float
     yaw_rad: float
     z_m: float = 0.0
+    stretch: float = 1.0
 
     @property
     def body(self) -> Shape:
-        return shape(self.shape)
+        return shape(self.shape, self.stretch)
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,28 +64,35 @@ class BuiltModel:
 
     Attributes:
         covers: Texture of each geom that is seen and how bright it is, by geom id.
+        tool: What the robot holds: a suction cup, which needs no body of its own, or a spatula.
     """
 
     model: Any
     things: tuple[Thing, ...]
     covers: dict[int, tuple[str, float]]
     lenses: dict[str, Lens]
+    tool: ToolName = "suction"
 
     def body_id(self, name: str) -> int:
         return int(mj.mj_name2id(self.model, mj.mjtObj.mjOBJ_BODY, name))
 
 
-def build(things: Sequence[Thing], size_px: tuple[int, int]) -> BuiltModel:
-    """Compile a model with these things."""
+def build(things: Sequence[Thing], size_px: tuple[int, int], tool: ToolName = "suction") -> BuiltModel:
+    """Compile a model with these things and a tool."""
     spec = mj.MjSpec()
     lenses = {name: lens(name, size_px) for name in CAMERA_NAMES}
     _set_options(spec, size_px)
     _add_surroundings(spec, lenses)
-    spec.worldbody.add_body(name="tool", mocap=True, pos=(0.5, 0.0, 0.3))
+    held = spec.worldbody.add_body(name="tool", mocap=True, pos=(0.5, 0.0, 0.3))
+    if tool == "spatula":
+        held.add_geom(
+            name="blade", type=mj.mjtGeom.mjGEOM_BOX, size=BLADE_HALF_M, group=COLLISION_GROUP, condim=4,
+            friction=(0.3, 0.005, 0.002), contype=BLADE_BIT, conaffinity=0, solref=(0.004, 1.0), priority=1, rgba=(0.5, 0.5, 0.5, 0.0),
+        )  # fmt: skip
     for name in sorted({thing.texture for thing in things}):
         _add_texture(spec, name)
-    for name in sorted({thing.shape for thing in things}):
-        _add_meshes(spec, shape(name))
+    for body in {thing.body.key: thing.body for thing in sorted(things, key=lambda t: t.body.key)}.values():
+        _add_meshes(spec, body)
     for thing in things:
         _add_thing(spec, thing)
     model = spec.compile()
@@ -87,7 +102,7 @@ def build(things: Sequence[Thing], size_px: tuple[int, int]) -> BuiltModel:
             geom = int(mj.mj_name2id(model, mj.mjtObj.mjOBJ_GEOM, name))
             if geom >= 0:
                 covers[geom] = (thing.texture, brightness)
-    return BuiltModel(model, tuple(things), covers, lenses)
+    return BuiltModel(model, tuple(things), covers, lenses, tool)
 
 
 def _set_options(spec: Any, size_px: tuple[int, int]) -> None:
@@ -170,7 +185,7 @@ def _add_texture(spec: Any, name: str) -> None:
 
 
 def _add_meshes(spec: Any, body: Shape) -> None:
-    for name, mesh in ((f"see {body.name}", body.mesh), (f"floor of {body.name}", body.inside)):
+    for name, mesh in ((f"see {body.key}", body.mesh), (f"floor of {body.key}", body.inside)):
         if mesh is None:
             continue
         faces = np.arange(len(mesh.points_m), dtype=np.int32)
@@ -179,7 +194,7 @@ def _add_meshes(spec: Any, body: Shape) -> None:
         seen.usertexcoord = (mesh.texture_m / textures.TILE_M + 0.5).ravel()
         seen.userface = seen.userfacenormal = seen.userfacetexcoord = faces
     for k, piece in enumerate(body.pieces):
-        spec.add_mesh(name=f"touch {body.name} {k}", uservert=piece.ravel())
+        spec.add_mesh(name=f"touch {body.key} {k}", uservert=piece.ravel())
 
 
 def _add_thing(spec: Any, thing: Thing) -> None:
@@ -191,16 +206,17 @@ def _add_thing(spec: Any, thing: Thing) -> None:
         made.add_freejoint(name=f"free {thing.name}")
     mesh = mj.mjtGeom.mjGEOM_MESH
     seen = {"type": mesh, "group": THING_GROUP, "contype": 0, "conaffinity": 0, "mass": 0}
-    made.add_geom(name=f"see {thing.name}", meshname=f"see {body.name}", material=f"cover {thing.texture}", **seen)
+    made.add_geom(name=f"see {thing.name}", meshname=f"see {body.key}", material=f"cover {thing.texture}", **seen)
     if body.inside is not None:
-        floor = f"floor of {body.name}"
+        floor = f"floor of {body.key}"
         made.add_geom(name=f"floor of {thing.name}", meshname=floor, material=f"shaded {thing.texture}", **seen)
     if body.kind == "area":
         return
     for k in range(len(body.pieces)):
         made.add_geom(
-            name=f"touch {thing.name} {k}", type=mesh, meshname=f"touch {body.name} {k}", group=COLLISION_GROUP,
+            name=f"touch {thing.name} {k}", type=mesh, meshname=f"touch {body.key} {k}", group=COLLISION_GROUP,
             density=DENSITY, condim=6, friction=(0.9, 0.005, 0.002), rgba=(0.5, 0.5, 0.5, 0.0),
+            conaffinity=1 | BLADE_BIT if body.movable else 1,
         )  # fmt: skip
     if body.movable:
         hold = spec.add_equality(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from shapely import Point, box
@@ -13,12 +13,15 @@ from shapely.geometry.base import BaseGeometry
 from wonderful_team.actions import PickPlace
 from wonderful_team.geometry import Pose, wrap_angle
 from wonderful_team.sims.tabletop.cameras import TABLE_HIGH_M, TABLE_LOW_M
-from wonderful_team.sims.tabletop.goals import Goal, Poses, Rules, footprint_of
+from wonderful_team.sims.tabletop.goals import Goal, Poses, footprint_of
 from wonderful_team.sims.tabletop.model import Thing
+from wonderful_team.sims.tabletop.rules import Progress, Rules
 
 SPACE_M = 0.006
 """Free space that is kept between things that are put on one area [m]."""
 STEP_M = 0.01
+AWAY_M = 0.14
+"""How far from every target a thing goes that is only put aside [m]."""
 
 
 def grasp_point(thing: Thing, pose: Pose) -> tuple[float, float, float]:
@@ -28,21 +31,53 @@ def grasp_point(thing: Thing, pose: Pose) -> tuple[float, float, float]:
     return float(x), float(y), float(z)
 
 
-def solve(rules: Rules, poses: Poses, things: Mapping[str, Thing]) -> list[PickPlace]:
-    """One action per goal that is not met; a thing whose place is taken by another waits or steps aside."""
+def solve(rules: Rules, progress: Progress, poses: Poses, things: Mapping[str, Thing]) -> list[PickPlace]:
+    """One action per goal that is not met, phase after phase; a thing whose place is taken waits or steps aside."""
     believed = dict(poses)
     actions: list[PickPlace] = []
-    waiting = [goal for goal in rules.goals if not goal.met(believed, things)]
-    while waiting and len(actions) < 2 * len(rules.goals):
-        moves = [(goal, _destination(goal, believed, things)) for goal in waiting]
-        moves.append((waiting[0], _free_table(things[waiting[0].thing], believed, things)))
-        goal, end = next(((goal, end) for goal, end in moves if end is not None), (waiting[0], None))
-        if end is None:
-            break
-        actions.append(_move(things[goal.thing], believed[goal.thing], end))
-        believed[goal.thing] = end
-        waiting = [g for g in rules.goals if not g.met(believed, things)]
+    if progress.verdict.state != "open" and rules.ends_when_reached:
+        return actions
+    for phase in rules.phases[progress.phase :]:
+        limit = len(actions) + 2 * len(phase) + len(rules.distractors)
+        while len(actions) < limit and (move := _next_move(rules, phase, believed, things)) is not None:
+            name, end = move
+            actions.append(_move(things[name], believed[name], end))
+            believed[name] = end
     return actions
+
+
+def _next_move(
+    rules: Rules, phase: Sequence[Goal], poses: Poses, things: Mapping[str, Thing]
+) -> tuple[str, Pose] | None:
+    """A thing that can go where it belongs; else one that is in the way goes aside."""
+    waiting = [goal for goal in phase if not goal.met(poses, things)]
+    # What is at its own place already stays there, even where things come to lie close to each other.
+    settled = {goal.thing for goal in phase} - {goal.thing for goal in waiting}
+    taken: list[str] = []
+    for goal in waiting:
+        end = _destination(goal, poses, things)
+        if end is None:
+            continue
+        blockers = _in_the_way(goal, end, poses, things) if goal.at_m is not None else []
+        blockers = [name for name in blockers if name not in settled]
+        if not blockers:
+            return goal.thing, end
+        taken.extend(blockers)
+    for name in (*taken, *(goal.thing for goal in waiting)):
+        if things[name].body.movable:
+            away = [target for goal in rules.goals for target in goal.target_points(poses)]
+            # Where nothing is free away from every target, any free place will do for the time being.
+            aside = _free_table(things[name], poses, things, away) or _free_table(things[name], poses, things)
+            if aside is not None:
+                return name, aside
+    return None
+
+
+def _in_the_way(goal: Goal, end: Pose, poses: Poses, things: Mapping[str, Thing]) -> list[str]:
+    """What stands where a thing is to go on the table; the thing it stands on in a stack is not in its way."""
+    placed = footprint_of(things[goal.thing], end).convex_hull
+    names = [n for n, t in things.items() if n != goal.thing and t.body.movable]
+    return [n for n in names if footprint_of(things[n], poses[n]).convex_hull.intersects(placed)]
 
 
 def _move(thing: Thing, pose: Pose, end: Pose) -> PickPlace:
@@ -64,13 +99,20 @@ def _destination(goal: Goal, poses: Poses, things: Mapping[str, Thing]) -> Pose 
     return _free_table(things[goal.thing], poses, things)
 
 
-def _free_table(thing: Thing, poses: Poses, things: Mapping[str, Thing]) -> Pose | None:
+def _free_table(
+    thing: Thing, poses: Poses, things: Mapping[str, Thing], away: Sequence[tuple[float, float]] = ()
+) -> Pose | None:
     table = box(TABLE_LOW_M[0], TABLE_LOW_M[1], TABLE_HIGH_M[0], TABLE_HIGH_M[1])
-    return _free_spot(thing, table, (), poses, things)
+    return _free_spot(thing, table, (), poses, things, away)
 
 
 def _free_spot(
-    thing: Thing, room: BaseGeometry, ignore: tuple[str, ...], poses: Poses, things: Mapping[str, Thing]
+    thing: Thing,
+    room: BaseGeometry,
+    ignore: tuple[str, ...],
+    poses: Poses,
+    things: Mapping[str, Thing],
+    away: Sequence[tuple[float, float]] = (),
 ) -> Pose | None:
     """The free place nearest to the middle of a region, the thing turned as it is."""
     pose = poses[thing.name]
@@ -85,6 +127,8 @@ def _free_spot(
     ]
     for _, x, y in sorted([(0.0, middle.x, middle.y), *spots]):
         placed = translate(own, x, y)
+        if any(math.dist((x, y), point) < AWAY_M for point in away):
+            continue
         if (
             room.covers(Point(x, y))
             and room.buffer(0.012).covers(placed)

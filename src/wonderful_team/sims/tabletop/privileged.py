@@ -14,6 +14,7 @@ from wonderful_team.geometry.arrays import Array
 from wonderful_team.interfaces import Score
 from wonderful_team.jsonable import to_jsonable
 from wonderful_team.sims.tabletop import oracle as _oracle
+from wonderful_team.sims.tabletop import oracle_push
 from wonderful_team.sims.tabletop.judging import score_of
 from wonderful_team.sims.tabletop.table import Table
 
@@ -28,14 +29,24 @@ class TabletopTruth:
         """Success, or failure with its stage, judged from the true poses after every action."""
         return score_of(self._table.rules, self._table.history, self._table.things)
 
+    @property
+    def failed(self) -> bool:
+        """Whether nothing that happens from here on can make it a success."""
+        table = self._table
+        return table.history[-1].verdict.state == "failure" or len(table.history) > table.rules.horizon
+
     def truth(self) -> Mapping[str, Any]:
-        """Things with true poses, what each picture slot shows, and the goals, as plain values."""
+        """Things with true poses, what each picture slot shows, and the goals, as plain values.
+
+        `slots` names the thing that a picture shows alone (None: a picture of the table); `pictures` says everything.
+        """
         poses = self._table.poses()
         things = {
             name: {
                 "shape": thing.shape,
                 "kind": thing.body.kind,
                 "texture": thing.texture,
+                "stretch": thing.stretch,
                 "position_m": tuple(float(v) for v in poses[name].position_m),
                 "yaw_rad": poses[name].yaw_rad,
                 "height_m": thing.body.height_m,
@@ -44,14 +55,24 @@ class TabletopTruth:
             }
             for name, thing in self._table.things.items()
         }
-        rules = self._table.rules
+        rules, progress = self._table.rules, self._table.history[-1].progress
+        pictures = self._table.scene.pictures
         return {
             "task": self._table.task.name,
             "seed": self._table.seed,
             "things": things,
-            "slots": dict(self._table.scene.pictures),
+            "slots": {slot: shown.thing for slot, shown in pictures.items()},
+            "pictures": {slot: to_jsonable(shown) for slot, shown in pictures.items()},
+            "props": {
+                p.name: {"shape": p.shape, "texture": p.texture, "stretch": p.stretch} for p in self._table.scene.props
+            },
             "words": dict(self._table.scene.words),
             "goals": [to_jsonable(goal) for goal in rules.goals],
+            "phases": [[to_jsonable(goal) for goal in phase] for phase in rules.phases],
+            "phase": progress.phase,
+            "counts": [to_jsonable(count) for count in rules.counts],
+            "counted": [sorted(inside) for inside in progress.counted],
+            "never": [to_jsonable(never) for never in rules.nevers],
             "distractors": list(rules.distractors),
             "horizon": rules.horizon,
         }
@@ -72,8 +93,15 @@ class TabletopTruth:
         return self.masks(camera)[name]
 
     def oracle(self) -> Sequence[Action]:
-        """Actions that solve the scene from here."""
-        return _oracle.solve(self._table.rules, self._table.poses(), self._table.things)
+        """Actions that solve the scene from here; [] when it is solved, lost, or no way is known.
+
+        Pushes do not end exactly where they should: for these ask again after every action.
+        """
+        table = self._table
+        progress, poses = table.history[-1].progress, table.poses()
+        if table.built.tool == "spatula":
+            return oracle_push.solve(table.rules, progress, poses, table.things)
+        return _oracle.solve(table.rules, progress, poses, table.things)
 
     def nudge(self, name: str, dx_m: float = 0.0, dy_m: float = 0.0, yaw_rad: float = 0.0) -> None:
         """Push a thing aside, as a person at the table might; things are at rest again afterwards.

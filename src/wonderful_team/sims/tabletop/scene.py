@@ -4,28 +4,21 @@ from __future__ import annotations
 
 import math
 import zlib
-from collections.abc import Sequence
-from dataclasses import dataclass, field
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 
 import numpy as np
-from shapely import box
-from shapely.geometry.base import BaseGeometry
 
 from wonderful_team.errors import ConfigError
 from wonderful_team.sims.tabletop import textures
-from wonderful_team.sims.tabletop.cameras import TABLE_HIGH_M, TABLE_LOW_M
-from wonderful_team.sims.tabletop.goals import NEAR_M, Goal, footprint_at
+from wonderful_team.sims.tabletop.goals import NEAR_M, Count, Goal, Never, Zone, footprint_at
 from wonderful_team.sims.tabletop.model import Thing
-from wonderful_team.sims.tabletop.shapes import shape
+from wonderful_team.sims.tabletop.placing import CrowdedError, Floor, Room, Spot
+from wonderful_team.sims.tabletop.rules import Distractors, Order
+from wonderful_team.sims.tabletop.showing import Shown, Stand
+from wonderful_team.types import SlotKind
 
-GAP_M = 0.012
-"""Free table between two things that are placed at random [m]."""
-TRIES = 200
-EDGE_M = 0.008
-
-
-class CrowdedError(Exception):
-    """No free place was found; the scene is started afresh."""
+__all__ = ["CrowdedError", "Scene", "Spot", "generator"]
 
 
 def generator(seed: int, purpose: str, attempt: int) -> np.random.Generator:
@@ -34,24 +27,26 @@ def generator(seed: int, purpose: str, attempt: int) -> np.random.Generator:
 
 
 @dataclass
-class Scene:
+class Scene(Floor):
     """A table being set.
 
     Attributes:
-        colours: Generator for colours and textures alone; `recolour` changes its seed and nothing else.
-        words: Text slots of the instruction.
-        pictures: Picture slots: name of the thing shown alone, or None for the whole table.
+        partition: Generalisation level that was asked for (L1 to L4), or None; see `tasks/choices.py`.
+        words: Text slots of the instruction; a word may hold picture slots of its own.
+        pictures: Picture slots.
+        ends_when_reached, order, distractors_matter: See `rules.Rules`.
     """
 
-    layout: np.random.Generator
-    colours: np.random.Generator
-    things: list[Thing] = field(default_factory=list)
-    goals: list[Goal] = field(default_factory=list)
+    partition: str | None = None
+    phases: list[list[Goal]] = field(default_factory=lambda: [[]])
+    counts: list[Count] = field(default_factory=list)
+    nevers: list[Never] = field(default_factory=list)
     distractors: list[str] = field(default_factory=list)
     words: dict[str, str] = field(default_factory=dict)
-    pictures: dict[str, str | None] = field(default_factory=dict)
+    pictures: dict[str, Shown] = field(default_factory=dict)
     ends_when_reached: bool = True
-    _covered: list[BaseGeometry] = field(default_factory=list)
+    order: Order = "free"
+    distractors_matter: Distractors = "always"
 
     def add(
         self,
@@ -60,9 +55,12 @@ class Scene:
         *,
         at: tuple[float, float] | None = None,
         on: Thing | None = None,
+        within: Room | None = None,
         yaw_rad: float | None = None,
         name: str | None = None,
         distractor: bool = False,
+        stretch: float = 1.0,
+        lifted_m: float | None = None,
     ) -> Thing:
         """Put a thing on the table.
 
@@ -71,29 +69,39 @@ class Scene:
             texture: One of `textures.texture_names(dark=True)`.
             at: Where its centre goes, (x, y) [m]; None for a free place.
             on: A flat area to stand on, at a free place on it.
+            within: A part of the table to stand on (low x, low y, high x, high y) [m].
             yaw_rad: How it is turned, counter-clockwise; None for any way.
             name: Unique name; made from shape and texture if not given.
             distractor: Whether it must be kept away from the targets.
+            stretch: How many times as high as usual it is.
+            lifted_m: How high its bottom is at first, when it is put into or onto something with `at` [m].
 
         Raises:
             UnknownNameError: No such shape or texture.
             ConfigError: The name is taken.
         """
-        body = shape(shape_name)
-        textures.texture(texture)
-        name = name or self._free_name(f"{texture} {shape_name}")
-        if any(thing.name == name for thing in self.things):
-            raise ConfigError(f"two things are called {name!r}; names in a scene must differ")
         yaw = float(self.layout.uniform(-math.pi, math.pi)) if yaw_rad is None else yaw_rad
-        lifted = 0.001 if on is not None else 0.0
-        draft = Thing(name, body.name, texture, 0.0, 0.0, yaw, lifted)
-        x, y = at if at is not None else self._free_place(draft, on)
-        thing = Thing(name, body.name, texture, float(x), float(y), yaw, lifted)
+        lifted = (0.001 if on is not None else 0.0) if lifted_m is None else lifted_m
+        draft = self.made(shape_name, texture, name, yaw, lifted, stretch)
+        name = draft.name
+        x, y = at if at is not None else self.free_place(draft, on=on, within=within)
+        thing = replace(draft, x_m=float(x), y_m=float(y))
         self.things.append(thing)
-        self._covered.append(footprint_at(thing, thing.x_m, thing.y_m, yaw).convex_hull)
+        self.covered.append(footprint_at(thing, thing.x_m, thing.y_m, yaw).convex_hull)
         if distractor:
             self.distractors.append(name)
         return thing
+
+    def prop(self, shape_name: str, texture: str, *, stretch: float = 1.0, name: str | None = None) -> Thing:
+        """A thing that is only seen in pictures of the instruction, never on the table.
+
+        Raises:
+            UnknownNameError: No such shape or texture.
+            ConfigError: The name is taken.
+        """
+        made = self.made(shape_name, texture, name and f"{name} (picture)", 0.0, 0.0, stretch)
+        self.props.append(made)
+        return made
 
     def goal(
         self,
@@ -108,7 +116,44 @@ class Scene:
     ) -> None:
         """Say where a thing has to end; several goals must all be met. `turned_rad` counts from its pose now."""
         yaw = None if turned_rad is None else thing.yaw_rad + turned_rad
-        self.goals.append(Goal(thing.name, _names(near), at, _names(inside), _names(off), within_m, yaw))
+        self.phases[-1].append(Goal(thing.name, _names(near), at, _names(inside), _names(off), within_m, yaw))
+
+    def then(self) -> None:
+        """Goals from here on belong to a next phase: they count once all goals before are met together."""
+        if self.phases[-1]:
+            self.phases.append([])
+
+    def count(
+        self,
+        things: Sequence[Thing],
+        zone: tuple[Thing, Sequence[tuple[float, float]]],
+        *,
+        exactly: int,
+        none_of: Sequence[Thing] = (),
+    ) -> None:
+        """Say that exactly so many of these things have to come to lie in a zone, and none of some others.
+
+        Args:
+            things: Those that count.
+            zone: A thing and the corners (a right, b up) of a region that belongs to it [m].
+            exactly: How many.
+            none_of: Those of which no part may enter the zone.
+
+        Raises:
+            ConfigError: More are wanted than there are.
+        """
+        if not 1 <= exactly <= len(things):
+            raise ConfigError(f"count: exactly must be from 1 to {len(things)} (the things that count), got {exactly}")
+        self.counts.append(Count(_names(things), Zone(zone[0].name, tuple(zone[1])), exactly, _names(none_of)))
+
+    def never(self, things: Sequence[Thing], *, over: Thing) -> None:
+        """Say what these things may not overlap, not even on the way."""
+        self.nevers.append(Never(_names(things), over.name))
+
+    @property
+    def goals(self) -> list[Goal]:
+        """The goals of all phases."""
+        return [goal for phase in self.phases for goal in phase]
 
     def say(self, **words: str) -> None:
         """Fill text slots of the instruction."""
@@ -116,45 +161,34 @@ class Scene:
 
     def show(self, **pictures: Thing) -> None:
         """Fill picture slots with one thing each, alone on white."""
-        self.pictures.update({slot: thing.name for slot, thing in pictures.items()})
+        self.pictures.update({slot: Shown("object", None, (Stand(thing.name),)) for slot, thing in pictures.items()})
 
-    def show_table(self, slot: str) -> None:
-        """Fill a picture slot with the whole table as it stands at the start."""
-        self.pictures[slot] = None
+    def show_table(
+        self,
+        slot: str,
+        *,
+        moved: Mapping[Thing, Stand] | None = None,
+        only: Sequence[Thing] | None = None,
+        kind: SlotKind = "scene",
+        index: int | None = None,
+    ) -> None:
+        """Fill a picture slot with the table as it stands at the start, or changed.
+
+        Args:
+            slot: Name of the slot.
+            moved: Where some things stand in the picture; others stand as they do at the start.
+            only: What is to be seen, where not everything on the table; may name props.
+            kind: scene, frame, before or after.
+            index: Place in a sequence of frames or pairs.
+        """
+        stands = {thing.name: stand for thing, stand in (moved or {}).items()}
+        seen = self.things if only is None else only
+        self.pictures[slot] = Shown(kind, index, tuple(stands.get(t.name, Stand(t.name)) for t in seen))
 
     def pick_textures(self, count: int, among: Sequence[str] | None = None) -> list[str]:
         """Different textures, drawn by the colour generator."""
         names = list(among if among is not None else textures.texture_names())
         return [names[int(k)] for k in self.colours.choice(len(names), size=count, replace=False)]
-
-    def _free_name(self, wanted: str) -> str:
-        taken = {thing.name for thing in self.things}
-        count = 1
-        while (name := wanted if count == 1 else f"{wanted} {count}") in taken:
-            count += 1
-        return name
-
-    def _free_place(self, draft: Thing, on: Thing | None) -> tuple[float, float]:
-        table = box(TABLE_LOW_M[0], TABLE_LOW_M[1], TABLE_HIGH_M[0], TABLE_HIGH_M[1]).buffer(
-            -EDGE_M, join_style="mitre"
-        )
-        room = footprint_at(on, on.x_m, on.y_m, on.yaw_rad) if on is not None else table
-        low_x, low_y, high_x, high_y = room.bounds
-        outline = footprint_at(draft, 0.0, 0.0, draft.yaw_rad).convex_hull
-        own = outline.bounds
-        others = [c for t, c in zip(self.things, self._covered, strict=True) if on is None or t.name != on.name]
-        centres = [(t.x_m, t.y_m) for t in self.things if on is None or t.name != on.name]
-        if own[2] - own[0] > high_x - low_x or own[3] - own[1] > high_y - low_y:
-            raise ConfigError(f"{draft.name!r} is too large for the place it should stand on")
-        for _ in range(TRIES):
-            x = float(self.layout.uniform(low_x - own[0], high_x - own[2]))
-            y = float(self.layout.uniform(low_y - own[1], high_y - own[3]))
-            if on is None and any(math.dist((x, y), c) < 1.2 * NEAR_M for c in centres):
-                continue
-            placed = footprint_at(draft, x, y, draft.yaw_rad).convex_hull
-            if room.covers(placed) and all(placed.distance(other) >= GAP_M for other in others):
-                return x, y
-        raise CrowdedError(f"no free place for {draft.name!r} among {len(self.things)} things")
 
 
 def _names(things: Thing | Sequence[Thing]) -> tuple[str, ...]:

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from typing import Literal, TypeAlias
 
+import numpy as np
 import shapely
 from shapely import LineString, Point, Polygon, box
 from shapely.geometry.base import BaseGeometry
@@ -41,7 +42,15 @@ KIT = (
     *("cross", "diamond", "triangle", "flower", "heart", "hexagon", "pentagon", "ring", "round", "star"),
 )
 BASES = ("pan", "bowl", "frame", "square", "container", "pallet")
-AREAS = ("paper",)
+AREAS = ("paper", "line")
+SMALL = {"shorter block": (BLOCK_M, 0.03), "small block": (0.03, 0.03)}
+"""Cuboids by name: side and height [m]."""
+THREE_SIDED = "three-sided rectangle"
+ROOM_M = (0.3, 0.172)
+"""Width and depth of the room inside the three-sided rectangle; it is open upwards in the drawing plane [m]."""
+WALL_M = 0.012
+LINE_M = (0.1875, 0.008)
+"""Length and width of the line [m]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,7 +63,8 @@ class Shape:
         inside: What is seen of its floor, in the shade of its walls; None without walls.
         pieces: Corners of convex pieces to collide with, shape (N, 3) each [m].
         grasp_ab: A point well inside the material, outline coordinates [m].
-        movable: Whether a robot can carry it.
+        movable: Whether a robot can carry or push it.
+        stretch: How many times as high as usual it is.
     """
 
     name: str
@@ -66,6 +76,12 @@ class Shape:
     pieces: tuple[Array, ...]
     grasp_ab: tuple[float, float]
     movable: bool
+    stretch: float = 1.0
+
+    @property
+    def key(self) -> str:
+        """A name that differs for each height of a shape."""
+        return self.name if self.stretch == 1.0 else f"{self.name} x {self.stretch:g}"
 
     @property
     def radius_m(self) -> float:
@@ -74,31 +90,52 @@ class Shape:
 
 
 def shape_names(kind: Kind | None = None) -> tuple[str, ...]:
-    """All names, or those of one kind."""
-    return (
-        {"kit": KIT, "base": BASES, "area": AREAS, "fruit": fruits.NAMES}[kind]
-        if kind
-        else KIT + BASES + AREAS + fruits.NAMES
-    )
+    """All names, or those of one kind that tasks may choose among."""
+    chosen = {"kit": KIT, "base": BASES, "area": AREAS, "fruit": fruits.NAMES}
+    return chosen[kind] if kind else (*KIT, *SMALL, *BASES, THREE_SIDED, *AREAS, *fruits.NAMES)
 
 
 @cache
-def shape(name: str) -> Shape:
-    """A shape by name; made once.
+def shape(name: str, stretch: float = 1.0) -> Shape:
+    """A shape by name; made once for each height.
 
     Raises:
         UnknownNameError: No such shape; lists the known ones.
     """
+    if stretch != 1.0:
+        return _stretched(shape(name), stretch)
     if name in KIT:
         return _kit(name)
+    if name in SMALL:
+        side, height = SMALL[name]
+        return _from_layers(name, "kit", [(outline("block", side), 0.0, height)], [], movable=True)
     if name in BASES:
         return _base(name)
+    if name == THREE_SIDED:
+        return _three_sided()
     if name in AREAS:
-        return _from_layers(name, "area", [(box(-0.085, -0.085, 0.085, 0.085), 0.0, PAPER_M)], [], movable=False)
+        across, along = (0.085, 0.085) if name == "paper" else (LINE_M[0] / 2, LINE_M[1] / 2)
+        return _from_layers(name, "area", [(box(-across, -along, across, along), 0.0, PAPER_M)], [], movable=False)
     if name in fruits.NAMES:
         made = fruits.fruit(name)
         return Shape(name, "fruit", made.footprint, made.height_m, made.mesh, None, made.pieces, made.grasp_ab, True)
     raise UnknownNameError("shape", name, shape_names())
+
+
+def _stretched(usual: Shape, stretch: float) -> Shape:
+    """The same shape, higher or lower; the texture on its walls keeps its size."""
+    up = np.array([1.0, 1.0, stretch])
+    mesh = replace(usual.mesh, points_m=usual.mesh.points_m * up)
+    inside = usual.inside and replace(usual.inside, points_m=usual.inside.points_m * up)
+    pieces = tuple(piece * up for piece in usual.pieces)
+    return replace(usual, height_m=usual.height_m * stretch, mesh=mesh, inside=inside, pieces=pieces, stretch=stretch)
+
+
+def _three_sided() -> Shape:
+    across, along = ROOM_M[0] / 2, ROOM_M[1] / 2
+    around = box(-across - WALL_M, -along - WALL_M, across + WALL_M, along)
+    wall = around.difference(box(-across, -along, across, along + WALL_M))
+    return _from_layers(THREE_SIDED, "base", [(wall, 0.0, 0.02)], [], movable=False)
 
 
 def _kit(name: str) -> Shape:

@@ -13,6 +13,7 @@ from wonderful_team.actions import PickPlace
 from wonderful_team.geometry.arrays import Array
 from wonderful_team.sims.tabletop.engine import mj
 from wonderful_team.sims.tabletop.model import TABLE_GROUP, THING_GROUP, TIMESTEP_S, BuiltModel
+from wonderful_team.sims.tabletop.moving import settle
 
 DOWN = np.array([0.0, 0.0, -1.0])
 HAIR_M = ((0.0, 0.0), (1.7e-4, 0.9e-4), (-1.3e-4, 1.1e-4))
@@ -25,8 +26,6 @@ LIFT_M = 0.16
 CARRY_SPEED_M_S = 1.0
 TURN_SPEED_RAD_S = 4.0
 LOWER_SPEED_M_S = 0.3
-SETTLED_M_S = 0.004
-SETTLE_LIMIT_S = 1.6
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,20 +71,10 @@ class Suction:
         self._lower(body, contact_z, action.yaw_rad)
         released_z = float(self.tool_m[2])
         self._release(body)
-        self.settle()
+        settle(self._built, self._state)
         self.holding = False
         self.tool_m = np.array([*place, HOME_M[2]])
         return Picked(self._names[body], under_pick, under_place, self._measured(True, contact_z, released_z, action))
-
-    def settle(self) -> None:
-        """Let physics run until everything rests, or the limit of simulated time is reached."""
-        quiet = 0
-        for _ in range(round(SETTLE_LIMIT_S / TIMESTEP_S)):
-            mj.mj_step(self._model, self._state)
-            quiet = quiet + 1 if np.abs(self._state.qvel).max(initial=0.0) < SETTLED_M_S else 0
-            if quiet >= 20:
-                break
-        mj.mj_forward(self._model, self._state)
 
     def _measured(self, held: bool, contact_z: float, released_z: float | None, action: PickPlace) -> dict[str, Any]:
         return {

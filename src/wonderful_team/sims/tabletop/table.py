@@ -5,26 +5,22 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-import numpy as np
-
-from wonderful_team.actions import PickPlace
+from wonderful_team.actions import PickPlace, Push
 from wonderful_team.errors import ConfigError
 from wonderful_team.geometry import Pose
 from wonderful_team.geometry.arrays import Array
-from wonderful_team.sims.tabletop.cameras import CAMERA_NAMES
 from wonderful_team.sims.tabletop.drawing import Drawn, Renderer, open_renderer
 from wonderful_team.sims.tabletop.engine import mj
-from wonderful_team.sims.tabletop.goals import Poses, Rules
+from wonderful_team.sims.tabletop.goals import Poses
 from wonderful_team.sims.tabletop.judging import Happened
 from wonderful_team.sims.tabletop.model import Thing, build
-from wonderful_team.sims.tabletop.registering import TabletopTask
+from wonderful_team.sims.tabletop.moving import put_body, settle
+from wonderful_team.sims.tabletop.registering import TabletopTask, filled
+from wonderful_team.sims.tabletop.rules import Rules
+from wonderful_team.sims.tabletop.showing import Studio
+from wonderful_team.sims.tabletop.spatula import Spatula
 from wonderful_team.sims.tabletop.suction import Picked, Suction
-from wonderful_team.types import Instruction, Slot, View
-
-ALONE_M = (0.5, 0.0, 0.0)
-"""Where a thing stands for a picture of it alone."""
-AWAY_M = 50.0
-"""Where the others are then [m]."""
+from wonderful_team.types import Instruction
 
 
 class Table:
@@ -36,27 +32,45 @@ class Table:
     """
 
     def __init__(
-        self, task: TabletopTask, seed: int, size_px: tuple[int, int], recolour: int | None, renderer: str | None
+        self,
+        task: TabletopTask,
+        seed: int,
+        size_px: tuple[int, int],
+        *,
+        recolour: int | None = None,
+        renderer: str | None = None,
+        partition: str | None = None,
     ) -> None:
         self.task, self.seed = task, seed
-        self.scene = task.scene(seed, recolour)
-        self.things: Mapping[str, Thing] = {thing.name: thing for thing in self.scene.things}
+        self.scene = scene = task.scene(seed, recolour, partition)
+        self.things: Mapping[str, Thing] = {thing.name: thing for thing in scene.things}
         self.rules = Rules(
-            tuple(self.scene.goals), tuple(self.scene.distractors), task.horizon, self.scene.ends_when_reached
+            tuple(tuple(phase) for phase in scene.phases if phase),
+            tuple(scene.distractors),
+            task.horizon,
+            scene.ends_when_reached,
+            tuple(scene.counts),
+            tuple(scene.nevers),
+            scene.order,
+            scene.distractors_matter,
         )
-        self.built = build(self.scene.things, size_px)
+        self.built = build(scene.things, size_px, "spatula" if "push" in task.vocabulary.kinds else "suction")
         self._state = mj.MjData(self.built.model)
         mj.mj_forward(self.built.model, self._state)
-        self.suction = Suction(self.built, self._state)
-        self.suction.settle()
+        self.tool: Suction | Spatula = (
+            Spatula(self.built, self._state, self.poses)
+            if self.built.tool == "spatula"
+            else Suction(self.built, self._state)
+        )
+        settle(self.built, self._state)
         self._state.time = 0.0
         self._start_qpos = self._state.qpos.copy()
-        self._wanted_renderer = renderer
+        self._size_px, self._wanted_renderer = size_px, renderer
         self._opened: Renderer | None = None
         self._notes: tuple[str, ...] = ()
         self.closed = False
         poses = self.poses()
-        self.history: list[Happened] = [Happened(poses, self.rules.judge(poses, self.things))]
+        self.history: list[Happened] = [Happened(poses, self.rules.start(poses, self.things))]
 
     @property
     def time_s(self) -> float:
@@ -77,18 +91,33 @@ class Table:
             found[name] = Pose(self._state.xpos[body].copy(), self._state.xquat[body].copy())
         return found
 
-    def run(self, action: PickPlace) -> Picked:
-        """Run one action under physics and judge what came of it."""
-        picked = self.suction.pick_place(action)
+    def run(self, action: PickPlace | Push) -> Mapping[str, Any]:
+        """Run one action under physics, judge what came of it, and tell what the robot measured.
+
+        Raises:
+            ConfigError: The tool cannot do this.
+        """
+        before = self.history[-1]
+        picked: Picked | None = None
+        during: tuple[Poses, ...] = ()
+        if isinstance(action, PickPlace) and isinstance(self.tool, Suction):
+            picked = self.tool.pick_place(action)
+            measured = picked.measured
+        elif isinstance(action, Push) and isinstance(self.tool, Spatula):
+            pushed = self.tool.push(action)
+            during, measured = pushed.during, pushed.measured
+        else:
+            raise ConfigError(f"the {self.built.tool} cannot run {action.kind}")
         poses = self.poses()
-        self.history.append(Happened(poses, self.rules.judge(poses, self.things), action, picked))
-        return picked
+        progress = self.rules.after(before.progress, during, poses, self.things)
+        self.history.append(Happened(poses, progress, action, picked))
+        return measured
 
     def put(self, name: str, position_m: Array, yaw_rad: float) -> None:
         """Set a thing down elsewhere, upright, and let everything come to rest."""
-        _place(self.built.model, self._state, self.built.body_id(name), Pose.at(position_m, yaw_rad))
+        put_body(self.built, self._state, name, Pose.at(position_m, yaw_rad))
         mj.mj_forward(self.built.model, self._state)
-        self.suction.settle()
+        settle(self.built, self._state)
 
     def renderer(self) -> Renderer:
         """What draws this table, opened when it is first needed."""
@@ -108,10 +137,9 @@ class Table:
 
     def instruction(self) -> Instruction:
         """Words with their slots filled, and a picture for every picture slot."""
-        text = self.task.instruction
-        for slot, word in self.scene.words.items():
-            text = text.replace(f"{{{slot}}}", word)
-        return Instruction(text, {slot: self._slot(slot, name) for slot, name in self.scene.pictures.items()})
+        studio = Studio(self.built, self._start_qpos, self.scene.props, self._size_px, self._wanted_renderer)
+        text = filled(self.task.instruction, self.scene.words)
+        return Instruction(text, studio.slots(self.scene.pictures, self.renderer()))
 
     def close(self) -> None:
         """Give the renderer back; safe to call twice."""
@@ -119,30 +147,3 @@ class Table:
         if self._opened is not None:
             self._opened.close()
             self._opened = None
-
-    def _slot(self, slot: str, name: str | None) -> Slot:
-        """Pictures of one thing alone, or of the whole table at the start."""
-        state = mj.MjData(self.built.model)
-        state.qpos[:] = self._start_qpos
-        if name is not None:
-            for k, other in enumerate(self.things):
-                away = Pose.at((AWAY_M, AWAY_M + k, 0.0))
-                _place(self.built.model, state, self.built.body_id(other), away if other != name else Pose.at(ALONE_M))
-        mj.mj_forward(self.built.model, state)
-        views = {}
-        for camera in CAMERA_NAMES:
-            drawn = self.renderer().draw(state, camera, alone=name is not None)
-            views[camera] = View(f"slot:{slot}:{camera}", camera, 0.0, drawn.rgb)
-        return Slot(slot, "scene" if name is None else "object", views)
-
-
-def _place(model: Any, state: Any, body: int, pose: Pose) -> None:
-    """Put a body somewhere in a state: a fixed one by its mocap slot, a free one by its joint, at rest."""
-    slot = int(model.body_mocapid[body])
-    if slot >= 0:
-        state.mocap_pos[slot], state.mocap_quat[slot] = pose.position_m, pose.quaternion_wxyz
-        return
-    joint = int(model.body_jntadr[body])
-    start, speed = int(model.jnt_qposadr[joint]), int(model.jnt_dofadr[joint])
-    state.qpos[start : start + 3], state.qpos[start + 3 : start + 7] = pose.position_m, pose.quaternion_wxyz
-    state.qvel[speed : speed + 6] = np.zeros(6)

@@ -34,6 +34,8 @@ SKINS: dict[str, Colour] = {
     "plum": (112, 50, 128),
     "blueberry": (52, 74, 150),
 }
+GREY = "grey"
+"""Of things in pictures that show a shape alone."""
 PAPER_SHADES = {
     "paper": ((235, 235, 235), 0.2),
     "pale paper": ((250, 250, 250), 0.4),
@@ -71,8 +73,9 @@ def _makers() -> dict[str, Callable[[], Array]]:
 
 
 def _special() -> dict[str, Callable[[], Array]]:
-    """Skins of fruits and colours of papers; not offered for other things."""
+    """Skins of fruits, colours of papers and the grey of examples; not offered for other things."""
     made: dict[str, Callable[[], Array]] = {f"{f} skin": partial(patterns.skin, f, rgb) for f, rgb in SKINS.items()}
+    made[GREY] = partial(patterns.plain, (150, 150, 150))
     for kind, (other, share) in PAPER_SHADES.items():
         made |= {f"{name} {kind}": partial(patterns.plain, mixed(rgb, other, share)) for name, rgb in PLAIN.items()}
     return made

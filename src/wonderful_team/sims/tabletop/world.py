@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import math
 from functools import cached_property
 
-from wonderful_team.actions import PICK_PLACE, Action, PickPlace, Vocabulary
+from wonderful_team.actions import Action, PickPlace, Push, Vocabulary
 from wonderful_team.errors import ConfigError
 from wonderful_team.sims.tabletop.cameras import CAMERA_NAMES, SIZE_PX, TABLE_HIGH_M, TABLE_LOW_M
 from wonderful_team.sims.tabletop.privileged import TabletopTruth
 from wonderful_team.sims.tabletop.registering import find_task
+from wonderful_team.sims.tabletop.spatula import SHORTEST_M
 from wonderful_team.sims.tabletop.table import Table
 from wonderful_team.types import Instruction, Limits, Observation, RobotState, StepReport, View
 
@@ -17,7 +19,7 @@ class TabletopWorld:
     """Implements the World protocol; time is simulated, and everything follows from the seed.
 
     Attributes:
-        task, seed: Which scene this is.
+        task, seed, partition: Which scene this is; a task's name may say its partition, as in "rotate@L3".
         horizon: How many actions are judged.
         privileged: The truth, for scorers and simulated models only.
     """
@@ -30,16 +32,20 @@ class TabletopWorld:
         size_px: tuple[int, int] = SIZE_PX,
         recolour: int | None = None,
         renderer: str | None = None,
+        partition: str | None = None,
     ) -> None:
+        task, _, level = task.partition("@")
+        partition = partition or level or None
         found = find_task(task)
         if seed < 0 or (recolour is not None and recolour < 0):
             raise ConfigError(f"seed and recolour must be 0 or more, got {seed} and {recolour}")
         if renderer not in (None, "rays"):
             raise ConfigError(f"renderer: expected None (the best that works here) or 'rays', got {renderer!r}")
         self.task, self.seed, self.horizon = found.name, seed, found.horizon
-        self.vocabulary: Vocabulary = PICK_PLACE
+        self.partition = partition
+        self.vocabulary: Vocabulary = found.vocabulary
         self.limits = Limits(TABLE_LOW_M, TABLE_HIGH_M)
-        self._table = Table(found, seed, size_px, recolour, renderer)
+        self._table = Table(found, seed, size_px, recolour=recolour, renderer=renderer, partition=partition)
         self._stopped = False
         self.privileged = TabletopTruth(self._table)
 
@@ -70,8 +76,8 @@ class TabletopWorld:
             drawn = self._table.draw(name)
             camera = self._table.built.lenses[name].camera
             views[name] = View(name, name, self.time_s, drawn.rgb, drawn.depth_m, camera)
-        cup = self._table.suction
-        return Observation(views, RobotState(cup.tool_m.copy(), None, cup.holding))
+        tool = self._table.tool
+        return Observation(views, RobotState(tool.tool_m.copy(), None, tool.holding))
 
     def execute(self, action: Action) -> StepReport:
         """Run one action.
@@ -81,12 +87,12 @@ class TabletopWorld:
         """
         if self._table.closed:
             raise ConfigError("this world is closed; make a new one")
-        if not isinstance(action, PickPlace):
+        if action.kind not in self.vocabulary.kinds or not isinstance(action, (PickPlace, Push)):
             raise ConfigError(f"this world runs {', '.join(self.vocabulary.kinds)}; got {action.kind}")
         fault = "the world was stopped" if self._stopped else _out_of_reach(action)
         if fault:
             return StepReport(action, False, {}, fault)
-        return StepReport(action, True, self._table.run(action).measured)
+        return StepReport(action, True, self._table.run(action))
 
     def stop(self) -> None:
         """Nothing moves any more until a new world is made."""
@@ -97,10 +103,18 @@ class TabletopWorld:
         self._table.close()
 
 
-def _out_of_reach(action: PickPlace) -> str:
-    for role, point in (("pick", action.pick_m), ("place", action.place_m)):
+def _out_of_reach(action: PickPlace | Push) -> str:
+    if isinstance(action, PickPlace):
+        points = (("pick", action.pick_m), ("place", action.place_m))
+    else:
+        points = (("start", action.start_m), ("end", action.end_m))
+    for role, point in points:
         for axis in (0, 1):
             low, high, value = TABLE_LOW_M[axis], TABLE_HIGH_M[axis], float(point[axis])
             if not low <= value <= high:
                 return f"{role} {'xy'[axis]} = {value:.3f} m is out of reach [{low}, {high}] m"
+    if isinstance(action, Push):
+        length = math.dist(action.start_m[:2], action.end_m[:2])
+        if length < SHORTEST_M:
+            return f"a push of {length:.4f} m has no direction; the shortest is {SHORTEST_M} m"
     return ""

@@ -15,7 +15,7 @@ from wonderful_team.types import Request, View
 
 COLOURS = {
     "red": (205, 40, 40), "green": (50, 160, 60), "blue": (45, 90, 200), "yellow": (235, 205, 50),
-    "purple": (140, 70, 170), "orange": (240, 140, 30),
+    "purple": (140, 70, 170), "orange": (240, 140, 30), "grey": (128, 128, 128),
 }  # fmt: skip
 SIZE = (640, 320)
 KINDS = PICK_PLACE.step_kinds

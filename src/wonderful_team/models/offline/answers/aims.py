@@ -129,7 +129,7 @@ def _numbers(description: Description, eyes: Eyes) -> list[int]:
 
 
 def _of_command(command: Command, eyes: Eyes, result: Aims, strict: bool) -> list[Aim]:
-    if command.kind in ("arrange", "follow", "restore"):
+    if command.kind == "arrange" or command.kind == "follow" or command.kind == "restore":  # noqa: PLR1714  narrows the type
         from wonderful_team.models.offline.answers.showing import shown_aims
 
         return shown_aims(command, eyes, result)
@@ -182,7 +182,7 @@ def _things(description: Description, eyes: Eyes, result: Aims, strict: bool, pl
         matches = [m for m in matches if m.thing is not None and _has_shape(m.thing, wanted.shape)] or matches
     matches.sort(key=lambda match: match.box.x0)
     if order is not None:
-        matches.sort(key=lambda match: superlative_key(match.thing, order))
+        matches.sort(key=lambda match: superlative_key(match.thing, order) if match.thing is not None else 0.0)
     if place is not None:
         # What goes into something is neither that thing itself nor larger than it.
         matches = [m for m in matches if m.thing is not None and m.thing.number != place.number] or matches
@@ -303,7 +303,7 @@ def _matching_aim(command: Command, goal: Destination, thing: Named, eyes: Eyes,
     if not result.literal and already(eyes, thing, to):
         result.notes.append(f"the {thing.words} is already in the {to.words}")
         return []
-    return [Aim(command.kind, thing, "in", to)]
+    return [Aim("push" if command.kind == "push" else "put", thing, "in", to)]
 
 
 def _sharing(kind: Description, aspect: str, thing: Thing) -> Description:

@@ -68,6 +68,7 @@ def _shown(text: str, slots: Mapping[str, ShownSlot]) -> tuple[Command, ...] | N
     names = [name for name in _SLOT.findall(body) if name in slots]
     frames = [name for name in names if slots[name].kind == "frame"]
     scenes = [name for name in names if slots[name].kind == "scene"]
+    commands: tuple[Command, ...] | None
     if len(frames) >= _FEWEST:
         commands = _following(body, frames, slots)
     elif scenes:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import replace
-from typing import Any, TypeAlias
+from typing import Any, Literal, TypeAlias
 
 from lark import Token, Tree
 
@@ -34,7 +34,7 @@ def thing_of(tree: Tree[Token]) -> Description:
 
 
 def _place_of(tree: Tree[Token]) -> Description:
-    """ "the place of the red star in {scene}": where that picture shows it."""
+    """The words "the place of the red star in {scene}": where that picture shows it."""
     thing = thing_of(next(trees(tree, "np")))
     like = next((str(value_of(tokens_in(slot)[-1])) for slot in trees(tree, "in_slot")), None)
     if like is None:
@@ -178,8 +178,7 @@ def _plain_post(tree: Tree[Token]) -> Change:
 
     def change(description: Description) -> Description:
         if "EXCEPT" in kinds:
-            spared = tuple(_of_kind(np, description) for np in trees(tree, "np"))
-            return replace(description, excluded=(*description.excluded, *spared))
+            return _except(tree, description)
         if "SAME" in kinds:
             aspect = str(value_of(next(token for token in tokens_in(tree) if token.type == "ASPECT")))
             reference = thing_of(next(trees(tree, "np")))
@@ -193,20 +192,29 @@ def _plain_post(tree: Tree[Token]) -> Change:
         if kinds[:1] == ["FROM"]:
             return replace(description, superlative=value_of(tree.children[-1]))
         for child in tree.children:
-            if isinstance(child, Tree) and child.data == "in_slot":
-                description = replace(description, like=value_of(tokens_in(child)[-1]))
-            elif isinstance(child, Tree):
-                description = CHANGES[str(child.data)](child)(description)
-            elif child.type == "ASPECT":
-                if "SLOT" in kinds:
-                    description = replace(description, like_only="shape" if value_of(child) == "shape" else "texture")
-            elif child.type == "SLOT":
-                description = replace(description, like=value_of(child))
-            else:
-                description = _adjective(description, child)
+            description = _post_part(child, kinds, description)
         return description
 
     return change
+
+
+def _post_part(child: Token | Tree[Token], kinds: list[str], description: Description) -> Description:
+    """What one part of a phrase after the noun adds."""
+    if isinstance(child, Tree):
+        if child.data == "in_slot":
+            return replace(description, like=value_of(tokens_in(child)[-1]))
+        return CHANGES[str(child.data)](child)(description)
+    if child.type == "ASPECT":
+        only: Literal["shape", "texture"] = "shape" if value_of(child) == "shape" else "texture"
+        return replace(description, like_only=only) if "SLOT" in kinds else description
+    if child.type == "SLOT":
+        return replace(description, like=value_of(child))
+    return _adjective(description, child)
+
+
+def _except(tree: Tree[Token], description: Description) -> Description:
+    spared = tuple(_of_kind(np, description) for np in trees(tree, "np"))
+    return replace(description, excluded=(*description.excluded, *spared))
 
 
 def _of_kind(tree: Tree[Token], whole: Description) -> Description:

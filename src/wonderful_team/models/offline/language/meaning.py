@@ -322,7 +322,7 @@ def two_of(named: Sequence[Description]) -> tuple[Description, Description]:
         return named[0], named[1]
     if len(named) == 1 and named[0].quantity != "one" and named[0].superlative is None:
         single = replace(named[0], quantity="one", number=1)
-        left, right = (replace(single, superlative=side) for side in ("leftmost", "rightmost"))  # type: ignore[arg-type]
+        left, right = (replace(single, superlative=side) for side in ("leftmost", "rightmost"))
         return replace(left, text=render(left)), replace(right, text=render(right))
     raise NotUnderstoodError("'between' needs two things; name both")
 

@@ -13,12 +13,13 @@ from wonderful_team.errors import NotUnderstoodError
 from wonderful_team.models.offline.description import Description
 from wonderful_team.models.offline.language.asides import set_aside, without_reasons
 from wonderful_team.models.offline.language.changes import related_of, thing_of
+from wonderful_team.models.offline.language.clause_parts import VERBS, Unclear
 from wonderful_team.models.offline.language.commands import Command, Understood
 from wonderful_team.models.offline.language.conditions import open_conditions
 from wonderful_team.models.offline.language.grammar import parse
 from wonderful_team.models.offline.language.meaning import Meaning
 from wonderful_team.models.offline.language.ordering import in_order
-from wonderful_team.models.offline.language.slots import BY_PARTS, VERBS, Unclear, gist_of_matching, read_clauses
+from wonderful_team.models.offline.language.slots import BY_PARTS, gist_of_matching, read_clauses
 from wonderful_team.models.offline.language.tokens import Token, refusal, tokenise
 from wonderful_team.models.offline.language.vocabulary import known_words
 
@@ -148,7 +149,7 @@ def _joined(tokens: list[Token]) -> list[Token]:
 
 
 def _without_and(tokens: list[Token]) -> list[Token]:
-    """ "all fruits but the lime": "but" leaves out; a stop after "build a tower" says nothing."""
+    """The words "all fruits but the lime": "but" leaves out; a stop after "build a tower" says nothing."""
     out: list[Token] = []
     for at, token in enumerate(tokens):
         if token.kind == "SEP" and out and out[-1].kind == "STACK":
@@ -171,7 +172,7 @@ def _no_sentence(text: str, tokens: list[Token], missing: str) -> str:
     if not tokens:
         return refusal(tokens, [text.strip()])
     return (
-        f"I used: {', '.join(token.text for token in tokens)}. I do not know what is meant by {text.strip()!r}: {missing}. "
+        f"I used: {', '.join(token.text for token in tokens)}. I do not know: what {text.strip()!r} asks for ({missing}). "
         "The words are known, but they do not make an instruction for me. I understand: put X into/onto/left of/beside Y, "
         "rotate X by N degrees, stack X on Y, push X to Y, swap X and Y, sort or put each X into the Y of the same colour. "
         f"I know: {known_words()}. For other wordings name a vision-language model: --model anthropic:..., or probe your "

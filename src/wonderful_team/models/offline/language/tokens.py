@@ -6,7 +6,8 @@ import re
 from dataclasses import dataclass
 
 from wonderful_team.errors import NotUnderstoodError
-from wonderful_team.models.offline.language.vocabulary import ARTICLES, FILLERS, NUMBERS, PHRASES, WORDS, known_words
+from wonderful_team.models.offline.language.phrases import PHRASES
+from wonderful_team.models.offline.language.vocabulary import ARTICLES, FILLERS, NUMBERS, WORDS, known_words
 
 _PIECE = re.compile(r"\{[^{}]+\}|beside_[a-z]+|\d+(?:\.\d+)?(?:nd|rd|th)?|°|[^\W\d_]+|[,;.:!?()]", re.UNICODE)
 _LONGEST = max(len(phrase) for phrase in PHRASES)
@@ -70,7 +71,7 @@ _BEFORE_HEAD = ("COLOUR", "ORANGE", "PATTERN", "MATERIAL", "LOOK", "SUPER", "SID
 
 
 def _with_heads(pieces: list[str]) -> list[str]:
-    """ "the red and the green block" names two things: each article gets the noun that they share."""
+    """The words "the red and the green block" names two things: each article gets the noun that they share."""
     out: list[str] = []
     for at, piece in enumerate(pieces):
         if piece in ("and", ",") and pieces[at + 1 : at + 2] == ["the"] and _is_open(out):

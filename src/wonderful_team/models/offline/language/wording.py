@@ -108,7 +108,7 @@ def _corner(description: Description) -> str:
 
 
 def split_colours(thing: Description) -> list[Description]:
-    """ "the red, green and blue blocks" are three kinds of thing, not one in three colours."""
+    """The words "the red, green and blue blocks" are three kinds of thing, not one in three colours."""
     if thing.quantity not in ("all", "each", "number") or len(thing.colours) <= 1 or thing.pattern or thing.material:
         return [thing]
     quantity = "one" if thing.quantity == "number" and thing.number == len(thing.colours) else thing.quantity

@@ -124,7 +124,9 @@ def alike(
         forms = [example.look.outline, *([example.open_outline] if example.open_outline is not None else [])]
         parts["outline"] = max(same_outline(form, thing.look.outline) for form in forms)
         ratio = thing.area_px / view_scale**2 / example.area_view_px
-        parts["size"] = float(np.clip(1.25 - 0.5 * abs(np.log(ratio)), 0.25, 1.0))
+        # Where looks do not count, size is all that tells like shapes apart.
+        full, fall = (1.05, 1.2) if only == "shape" else (1.25, 0.5)
+        parts["size"] = float(np.clip(full - fall * abs(np.log(ratio)), 0.25, 1.0))
     return parts
 
 

@@ -1,5 +1,31 @@
 """The tasks that come with the tabletop; importing this registers them."""
 
-from wonderful_team.sims.tabletop.tasks import fruit_placement, rotate, scene_understanding, visual_manipulation
+from wonderful_team.sims.tabletop.tasks import (
+    follow,
+    fruit_placement,
+    in_order,
+    neighbor,
+    novel,
+    rearrange,
+    rotate,
+    same,
+    scene_understanding,
+    sweep,
+    twist,
+    visual_manipulation,
+)
 
-__all__ = ["fruit_placement", "rotate", "scene_understanding", "visual_manipulation"]
+__all__ = [
+    "follow",
+    "fruit_placement",
+    "in_order",
+    "neighbor",
+    "novel",
+    "rearrange",
+    "rotate",
+    "same",
+    "scene_understanding",
+    "sweep",
+    "twist",
+    "visual_manipulation",
+]

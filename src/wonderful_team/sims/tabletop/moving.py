@@ -1,0 +1,38 @@
+"""Moving a MuJoCo state by hand: setting bodies down, letting everything come to rest."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from wonderful_team.geometry import Pose
+from wonderful_team.sims.tabletop.engine import mj
+from wonderful_team.sims.tabletop.model import TIMESTEP_S, BuiltModel
+
+SETTLED_M_S = 0.004
+SETTLE_LIMIT_S = 1.6
+
+
+def put_body(built: BuiltModel, state: Any, name: str, pose: Pose) -> None:
+    """Put a body somewhere: a fixed one by its mocap slot, a free one by its joint, at rest."""
+    model, body = built.model, built.body_id(name)
+    slot = int(model.body_mocapid[body])
+    if slot >= 0:
+        state.mocap_pos[slot], state.mocap_quat[slot] = pose.position_m, pose.quaternion_wxyz
+        return
+    joint = int(model.body_jntadr[body])
+    start, speed = int(model.jnt_qposadr[joint]), int(model.jnt_dofadr[joint])
+    state.qpos[start : start + 3], state.qpos[start + 3 : start + 7] = pose.position_m, pose.quaternion_wxyz
+    state.qvel[speed : speed + 6] = np.zeros(6)
+
+
+def settle(built: BuiltModel, state: Any) -> None:
+    """Let physics run until everything rests, or the limit of simulated time is reached."""
+    quiet = 0
+    for _ in range(round(SETTLE_LIMIT_S / TIMESTEP_S)):
+        mj.mj_step(built.model, state)
+        quiet = quiet + 1 if np.abs(state.qvel).max(initial=0.0) < SETTLED_M_S else 0
+        if quiet >= 20:
+            break
+    mj.mj_forward(built.model, state)

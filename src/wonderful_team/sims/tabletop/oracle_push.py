@@ -1,0 +1,191 @@
+"""Pushes that solve a table, from the truth: one thing after the other, each in straight pushes that touch nothing else."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+from shapely.geometry.base import BaseGeometry
+
+from wonderful_team.actions import Push
+from wonderful_team.geometry import Pose
+from wonderful_team.geometry.arrays import Array
+from wonderful_team.sims.tabletop.cameras import TABLE_HIGH_M, TABLE_LOW_M
+from wonderful_team.sims.tabletop.goals import Count, Poses, footprint_at, footprint_of
+from wonderful_team.sims.tabletop.model import BLADE_HALF_M, Thing
+from wonderful_team.sims.tabletop.rules import Progress, Rules
+
+BEHIND_M = 0.012
+"""How far behind a thing the blade comes down [m]."""
+MARGIN_M = 0.003
+DRIFT_M = 0.004
+"""How far a thing that is not square to the push may wander sideways while it turns against the blade [m]."""
+SQUARE_RAD = math.radians(10)
+GRID_M = 0.0305
+FROM_ZONE_M, INTO_ZONE_M = 0.04, 0.024
+"""How far outside a zone a thing rests on its way, and how far inside its centre ends [m]."""
+SHORTEST_M = 0.02
+EDGE_M = 0.03
+PUSH_COST_M = 1.0
+"""What one more push costs, as metres of way."""
+ENOUGH_M = 0.02
+OPEN_M = 0.12
+DEPTH_WORTH = 3.0
+"""What a metre farther from a line is worth, as metres of way."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Job:
+    """A thing to be pushed, what it must not meet, and where it may end.
+
+    Attributes:
+        corners: Of its outline, turned by 0, shape (N, 2) [m].
+        goals, stops: Points where it may end, and where it may rest on the way, shape (N, 2) [m].
+        worth: What each goal saves, shape (N,): far from a line is better, or the next thing finds no way in.
+    """
+
+    corners: Array
+    pose: Pose
+    obstacles: BaseGeometry
+    goals: Array
+    stops: Array
+    worth: Array
+
+
+def solve(rules: Rules, progress: Progress, poses: Poses, things: Mapping[str, Thing]) -> list[Push]:
+    """Pushes until every count is right, as far as straight pushes find a way.
+
+    Only the first is sure to do what is expected: friction decides where a thing ends.
+    """
+    if progress.verdict.state != "open" or not rules.counts:
+        return []
+    believed, pushes = dict(poses), list[Push]()
+    for count, inside in zip(rules.counts, progress.counted, strict=True):
+        done = set(inside)
+        while len(done) < count.exactly:
+            found = _best(rules, count, done, believed, things)
+            if found is None:
+                break
+            name, ways, moved = found
+            pushes.extend(ways)
+            believed[name] = moved
+            if name in count.things and count.zone.region(believed).covers(footprint_of(things[name], moved)):
+                done.add(name)
+            elif len(pushes) > rules.horizon:
+                break
+    return pushes
+
+
+def _best(
+    rules: Rules, count: Count, done: set[str], poses: Poses, things: Mapping[str, Thing]
+) -> tuple[str, list[Push], Pose] | None:
+    """The cheapest way to bring one more thing into the zone; else a way to clear one out of the way."""
+    for names, clearing in ((set(count.things) - done, False), (set(count.strangers) | set(count.things) - done, True)):
+        options = []
+        for name in sorted(names):
+            found = _ways(_job(rules, count, name, poses, things, clearing))
+            if found is not None:
+                cost, pushes, end = found
+                options.append((cost, name, pushes, end))
+        if options:
+            _, name, pushes, end = min(options, key=lambda option: option[:2])
+            return name, pushes, end
+    return None
+
+
+def _job(rules: Rules, count: Count, name: str, poses: Poses, things: Mapping[str, Thing], clearing: bool) -> _Job:
+    zone = count.zone.region(poses)
+    block = [footprint_of(t, poses[n]) for n, t in things.items() if n != name and t.body.kind != "area"]
+    block += [footprint_of(things[never.over], poses[never.over]) for never in rules.nevers if name in never.things]
+    if clearing:
+        block.append(zone)
+    grid = _grid(poses[count.zone.of], zone)
+    spots = shapely.points(grid)
+    stops = grid[shapely.distance(zone, spots) > FROM_ZONE_M]
+    goals = stops if clearing else grid[shapely.covers(zone.buffer(-INTO_ZONE_M), spots)]
+    corners = np.asarray(footprint_at(things[name], 0.0, 0.0, 0.0).convex_hull.exterior.coords)
+    spots = shapely.points(goals)
+    if clearing:
+        # Into the open, where the next look finds more ways.
+        worth = DEPTH_WORTH * np.minimum(shapely.distance(shapely.unary_union(block), spots), OPEN_M)
+    else:
+        lines = [footprint_of(things[never.over], poses[never.over]) for never in rules.nevers] or [zone.boundary]
+        worth = DEPTH_WORTH * shapely.distance(shapely.unary_union(lines), spots)
+    return _Job(corners, poses[name], shapely.unary_union(block), goals, stops, worth)
+
+
+def _grid(frame: Pose, zone: BaseGeometry) -> Array:
+    """Points over the table, square to the zone and symmetric to its middle line, shape (N, 2) [m]."""
+    turn = np.array([math.cos(frame.yaw_rad), math.sin(frame.yaw_rad)])
+    across = np.array([-turn[1], turn[0]])
+    i, j = np.meshgrid(np.arange(-8, 9), np.arange(-24, 25))
+    points = np.array([zone.centroid.x, zone.centroid.y]) + GRID_M * (
+        i.ravel()[:, None] * across + j.ravel()[:, None] * turn
+    )
+    low, high = np.array(TABLE_LOW_M[:2]) + EDGE_M, np.array(TABLE_HIGH_M[:2]) - EDGE_M
+    return np.asarray(points[((points > low) & (points < high)).all(axis=1)])
+
+
+def _ways(job: _Job) -> tuple[float, list[Push], Pose] | None:
+    """The cheapest one or two pushes that bring a thing to one of its goals."""
+    start, yaw = job.pose.position_m[:2], np.array([job.pose.yaw_rad])
+    direct = _costs(job, start[None], yaw, job.goals)[0] - job.worth
+    if np.isfinite(direct).any():
+        goal = job.goals[int(direct.argmin())]
+        return float(direct.min()), [_push(job, start, yaw[0], goal)], _ended(start, goal)
+    first = _costs(job, start[None], yaw, job.stops)[0]
+    stops = job.stops[np.isfinite(first)]
+    if not len(stops) or not len(job.goals):
+        return None
+    turned = np.arctan2(*(stops - start).T[::-1])
+    both = first[np.isfinite(first)][:, None] + _costs(job, stops, turned, job.goals) - job.worth
+    if not np.isfinite(both).any():
+        return None
+    k, m = np.unravel_index(int(both.argmin()), both.shape)
+    stop, goal = stops[k], job.goals[m]
+    pushes = [_push(job, start, yaw[0], stop), _push(job, stop, float(turned[k]), goal)]
+    return float(both[k, m]), pushes, _ended(stop, goal)
+
+
+def _costs(job: _Job, starts: Array, yaws: Array, ends: Array) -> Array:
+    """What straight pushes cost from each start to each end, shape (S, E); infinite where something is in the way."""
+    way = ends[None] - starts[:, None]
+    length = np.linalg.norm(way, axis=2)
+    way = way / np.maximum(length, 1e-9)[..., None]
+    across = np.stack([-way[..., 1], way[..., 0]], axis=-1)
+    along, wide = _reach(job, yaws, way), _reach(job, yaws, across)
+    off = np.arctan2(way[..., 1], way[..., 0]) - yaws[:, None]
+    off = np.abs((off + math.pi / 4) % (math.pi / 2) - math.pi / 4)
+    radius = float(np.linalg.norm(job.corners, axis=1).max()) + DRIFT_M
+    half = np.maximum(np.where(off < SQUARE_RAD, wide, radius), BLADE_HALF_M[1]) + MARGIN_M
+    back = starts[:, None] - (along + BEHIND_M)[..., None] * way
+    tip = ends[None] + job.corners[:, 0].max() * way
+    tail, side = back - 2 * BLADE_HALF_M[0] * way, half[..., None] * across
+    lanes = shapely.polygons(np.stack([tail - side, tail + side, tip + side, tip - side], axis=-2))
+    clear = shapely.distance(lanes, job.obstacles)
+    inside = ((back > TABLE_LOW_M[:2]) & (back < TABLE_HIGH_M[:2])).all(axis=2)
+    cost = PUSH_COST_M + length - 5 * np.minimum(clear, ENOUGH_M)
+    return np.where((clear > 0) & inside & (length > SHORTEST_M), cost, np.inf)
+
+
+def _reach(job: _Job, yaws: Array, way: Array) -> Array:
+    """How far a thing reaches from its centre along directions, shape (S, E) [m]."""
+    cos, sin = np.cos(yaws)[:, None], np.sin(yaws)[:, None]
+    turned = np.stack([cos * way[..., 0] + sin * way[..., 1], cos * way[..., 1] - sin * way[..., 0]], axis=-1)
+    return np.asarray((turned @ job.corners.T).max(axis=-1))
+
+
+def _push(job: _Job, start: Array, yaw: float, end: Array) -> Push:
+    way = (end - start) / np.linalg.norm(end - start)
+    back = start - (float(_reach(job, np.array([yaw]), way[None, None])[0, 0]) + BEHIND_M) * way
+    front = end - job.corners[:, 0].max() * way
+    return Push(np.append(back, 0.0), np.append(front, 0.0))
+
+
+def _ended(start: Array, end: Array) -> Pose:
+    """Where a thing stands after a push: at its end, square to it."""
+    way = end - start
+    return Pose.at((*end, 0.0), math.atan2(way[1], way[0]))

@@ -1,0 +1,104 @@
+"""Pictures of an instruction: what they show, and the drawing of them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from wonderful_team.geometry import Pose
+from wonderful_team.geometry.arrays import Array
+from wonderful_team.sims.tabletop.cameras import CAMERA_NAMES
+from wonderful_team.sims.tabletop.drawing import Renderer, open_renderer
+from wonderful_team.sims.tabletop.engine import mj
+from wonderful_team.sims.tabletop.model import BuiltModel, Thing, build
+from wonderful_team.sims.tabletop.moving import put_body
+from wonderful_team.types import Slot, SlotKind, View
+
+ALONE_M = (0.5, 0.0, 0.0)
+"""Where a thing stands for a picture of it alone."""
+AWAY_M = 50.0
+"""Where the others are then [m]."""
+
+
+@dataclass(frozen=True)
+class Stand:
+    """One thing in a picture, and where it stands there; without `at_m` as at the start, or in the middle when alone."""
+
+    thing: str
+    at_m: tuple[float, float] | None = None
+    yaw_rad: float = 0.0
+    z_m: float = 0.0
+
+
+@dataclass(frozen=True)
+class Shown:
+    """What a picture slot shows.
+
+    Attributes:
+        index: Place in a sequence of frames or pairs; None otherwise.
+        stands: The things to be seen; a picture of kind object shows one, on white.
+    """
+
+    kind: SlotKind
+    index: int | None
+    stands: tuple[Stand, ...]
+
+    @property
+    def thing(self) -> str | None:
+        """Name of the one thing that is shown alone, or None for a picture of the table."""
+        return self.stands[0].thing if self.kind == "object" else None
+
+
+class Studio:
+    """Draws the pictures of an instruction: the table's own things in its own model, with props in a larger one."""
+
+    def __init__(
+        self, built: BuiltModel, start_qpos: Array, props: Sequence[Thing], size_px: tuple[int, int], wanted: str | None
+    ) -> None:
+        self._table, self._props = built, tuple(props)
+        self._built = build((*built.things, *props), size_px, tool=built.tool) if props else built
+        self._state = mj.MjData(self._built.model)
+        self._start = _start_poses(built, start_qpos)
+        self._wanted = wanted
+
+    def slots(self, pictures: Mapping[str, Shown], table_renderer: Renderer) -> dict[str, Slot]:
+        """Every picture, from both cameras."""
+        renderer = open_renderer(self._built, self._wanted)[0] if self._props else table_renderer
+        try:
+            return {name: self._slot(name, shown, renderer) for name, shown in pictures.items()}
+        finally:
+            if self._props:
+                renderer.close()
+
+    def _slot(self, name: str, shown: Shown, renderer: Renderer) -> Slot:
+        stands = {stand.thing: stand for stand in shown.stands}
+        for k, thing in enumerate(self._built.things):
+            stand = stands.get(thing.name)
+            put_body(self._built, self._state, thing.name, self._pose(thing, stand, shown.kind == "object", k))
+        mj.mj_forward(self._built.model, self._state)
+        views = {}
+        for camera in CAMERA_NAMES:
+            drawn = renderer.draw(self._state, camera, alone=shown.kind == "object")
+            views[camera] = View(f"slot:{name}:{camera}", camera, 0.0, drawn.rgb)
+        return Slot(name, shown.kind, views, shown.index)
+
+    def _pose(self, thing: Thing, stand: Stand | None, alone: bool, number: int) -> Pose:
+        if stand is None:
+            return Pose.at((AWAY_M, AWAY_M + number, 0.0))
+        if alone:
+            return Pose.at(ALONE_M)
+        if stand.at_m is None:
+            return self._start[thing.name]
+        return Pose.at((*stand.at_m, stand.z_m), stand.yaw_rad)
+
+
+def _start_poses(built: BuiltModel, start_qpos: Array) -> dict[str, Pose]:
+    state: Any = mj.MjData(built.model)
+    state.qpos[:] = start_qpos
+    mj.mj_forward(built.model, state)
+    found = {}
+    for thing in built.things:
+        body = built.body_id(thing.name)
+        found[thing.name] = Pose(state.xpos[body].copy(), state.xquat[body].copy())
+    return found

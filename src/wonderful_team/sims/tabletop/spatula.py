@@ -1,0 +1,131 @@
+"""A spatula over the table: its blade pushes what can be moved along a straight line, under physics."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import shapely
+from shapely import Polygon
+from shapely.geometry.base import BaseGeometry
+
+from wonderful_team.actions import Push
+from wonderful_team.geometry import Pose
+from wonderful_team.geometry.arrays import Array
+from wonderful_team.sims.tabletop.engine import mj
+from wonderful_team.sims.tabletop.goals import Poses, footprint_of
+from wonderful_team.sims.tabletop.model import BLADE_HALF_M, TIMESTEP_S, BuiltModel, Thing
+from wonderful_team.sims.tabletop.moving import settle
+
+HOME_M = (0.5, 0.0, 0.3)
+OVER_TABLE_M = 0.001
+"""How far over the table the blade's lower edge moves [m]."""
+SPEED_M_S = 0.16
+BACK_OFF_M = 0.06
+"""How far behind its start the blade may come down where the start itself is taken [m]."""
+LOOK_M = 0.002
+SAMPLE_STEPS = 8
+RESISTANCE_M = 0.005
+"""How far the blade may dig into a thing before it counts as stuck [m]."""
+SHORTEST_M = 0.005
+
+
+@dataclass(frozen=True, eq=False)
+class Pushed:
+    """What happened; `during` is the truth on the way and is not told to the robot."""
+
+    during: tuple[Poses, ...]
+    measured: Mapping[str, Any]
+
+
+class Spatula:
+    """Moves a MuJoCo state through pushes: the front of the blade travels from the start to the end."""
+
+    holding = False
+
+    def __init__(self, built: BuiltModel, state: Any, poses: Callable[[], Poses]) -> None:
+        self._built, self._model, self._state, self._poses = built, built.model, state, poses
+        self._blade = int(mj.mj_name2id(built.model, mj.mjtObj.mjOBJ_GEOM, "blade"))
+        self.tool_m = np.array(HOME_M)
+
+    def push(self, action: Push) -> Pushed:
+        """Run one action to its end, things at rest again."""
+        start, end = action.start_m[:2].copy(), action.end_m[:2].copy()
+        way = (end - start) / np.linalg.norm(end - start)
+        landed = self._landing(start, way)
+        if landed is None:
+            return Pushed((), self._measured(None, None, action))
+        reach = self._free_way(landed, way, float((end - landed) @ way))
+        during, travelled = self._sweep(landed, way, reach)
+        self._place(np.array([*HOME_M]), 0.0)
+        settle(self._built, self._state)
+        return Pushed(tuple(during), self._measured(landed, landed + travelled * way, action))
+
+    def _landing(self, start: Array, way: Array) -> Array | None:
+        """Where the blade can come down: at the start, or a little behind it."""
+        things = self._things()
+        taken = shapely.unary_union([footprint_of(t, p) for t, p in things if t.body.kind != "area"])
+        for back in np.arange(0.0, BACK_OFF_M, LOOK_M):
+            at = start - back * way
+            if not blade_outline(at, way).intersects(taken):
+                return np.asarray(at)
+        return None
+
+    def _free_way(self, start: Array, way: Array, wanted: float) -> float:
+        """How far the blade can go before it meets something fixed [m]."""
+        walls: BaseGeometry = shapely.unary_union(
+            [footprint_of(t, p) for t, p in self._things() if not t.body.movable and t.body.kind != "area"]
+        )
+        for reach in np.arange(0.0, wanted, LOOK_M):
+            if blade_outline(start + reach * way, way).intersects(walls):
+                return float(max(0.0, reach - LOOK_M))
+        return wanted
+
+    def _sweep(self, start: Array, way: Array, reach: float) -> tuple[list[Poses], float]:
+        yaw = math.atan2(way[1], way[0])
+        height = BLADE_HALF_M[2] + OVER_TABLE_M
+        count = max(1, math.ceil(reach / SPEED_M_S / TIMESTEP_S))
+        during: list[Poses] = []
+        for k in range(count + 1):
+            travelled = reach * k / count
+            at = start + (travelled - BLADE_HALF_M[0]) * way
+            self._place(np.array([*at, height]), yaw)
+            mj.mj_step(self._model, self._state)
+            if k % SAMPLE_STEPS == 0:
+                during.append(self._poses())
+                if self._stuck():
+                    return during, travelled
+        return during, reach
+
+    def _stuck(self) -> bool:
+        contacts = (self._state.contact[k] for k in range(self._state.ncon))
+        return any(c.dist < -RESISTANCE_M for c in contacts if self._blade in (c.geom1, c.geom2))
+
+    def _place(self, position_m: Array, yaw_rad: float) -> None:
+        self.tool_m = position_m
+        slot = int(self._model.body_mocapid[self._built.body_id("tool")])
+        self._state.mocap_pos[slot] = position_m
+        self._state.mocap_quat[slot] = (math.cos(yaw_rad / 2), 0.0, 0.0, math.sin(yaw_rad / 2))
+
+    def _things(self) -> list[tuple[Thing, Pose]]:
+        poses = self._poses()
+        return [(thing, poses[thing.name]) for thing in self._built.things]
+
+    def _measured(self, start: Array | None, end: Array | None, action: Push) -> dict[str, Any]:
+        short = None if end is None else float(np.linalg.norm(action.end_m[:2] - end))
+        return {
+            "lowered": start is not None,
+            "start_m": None if start is None else tuple(round(float(v), 4) for v in start),
+            "end_m": None if end is None else tuple(round(float(v), 4) for v in end),
+            "short_of_end_m": None if short is None else round(short, 4),
+        }
+
+
+def blade_outline(front: Array, way: Array) -> Polygon:
+    """What the blade covers of the table when the middle of its front is at a point, moving along a unit vector."""
+    across = np.array([-way[1], way[0]]) * BLADE_HALF_M[1]
+    back = front - 2 * BLADE_HALF_M[0] * way
+    return Polygon([front + across, front - across, back - across, back + across])

@@ -27,7 +27,7 @@ demo: $(READY)
 	@$(VENV)/bin/wonderful-team demo
 
 test: $(READY)
-	$(PYTHON) -m pytest
+	$(PYTHON) -m pytest -n auto --dist worksteal
 
 lint: $(READY)
 	$(VENV)/bin/ruff check .

@@ -157,4 +157,4 @@ def test_pictures_of_the_instruction(photo: Path) -> None:
 def test_keep_out_regions() -> None:
     lamp, second = read_keep_out(["lamp=1,2,3,4", "0.1,0.2,0.3,0.4m"])
     assert (lamp.name, lamp.unit, lamp.box.as_tuple) == ("lamp", "px", (1, 2, 3, 4))
-    assert (second.name, second.unit) == ("keep-out 2", "m")
+    assert (second.name, second.unit) == ("region 2", "m")

@@ -16,6 +16,8 @@ _EDGE = 0.0025
 """A number so close to the edge (share of the side) counts as being there: 999 of 1000, the last pixel."""
 _ENDS = 2
 """So many equal numbers at an end of the range look like clamping."""
+_MOST_HELD = 0.4
+"""Largest share of all answers that may lie at one end of the range and still count as held back by it."""
 
 
 @dataclass(frozen=True)
@@ -74,8 +76,11 @@ def at_ends(said: Array, far: Array) -> Array:
     """
     high, low = said.max(), said.min()
     ends = np.zeros(len(said))
-    ends[np.abs(said - far) <= _EDGE * far] = 1.0
-    ends[np.abs(said) <= _EDGE * far] = -1.0
+    for edge, sign in ((far, 1.0), (np.zeros_like(far), -1.0)):
+        there = np.abs(said - edge) <= _EDGE * far
+        # When most answers crowd at one end, the unit is wrong, not the model held back.
+        if there.mean() <= _MOST_HELD:
+            ends[there] = sign
     for value, sign in ((high, 1.0), (low, -1.0)):
         same = np.isclose(said, value, rtol=0, atol=1e-6 * max(1.0, abs(high - low)))
         if _ENDS <= same.sum() < len(said):

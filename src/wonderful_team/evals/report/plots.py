@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import re
 import warnings
 from typing import Any
 
@@ -44,7 +45,7 @@ def cost_plot(summary: Summary) -> str:
         low, high = wilson_interval(cell.rate.successes, cell.rate.n)
         share = cell.rate.successes / cell.rate.n
         errors = [[100 * max(0.0, share - low)], [100 * max(0.0, high - share)]]
-        style = {"fmt": _MARKS[place % len(_MARKS)], "capsize": 4, "label": one.label, "alpha": 0.8}
+        style = {"fmt": _MARKS[place % len(_MARKS)], "capsize": 4, "label": _short(one.label), "alpha": 0.8}
         axes.errorbar(across or 0.0, 100 * share, yerr=errors, color=f"C{place % 10}", **style)
     axes.set_ylim(-5, 108)
     axes.margins(x=0.1)
@@ -56,7 +57,7 @@ def cost_plot(summary: Summary) -> str:
 
 def _named(one: Condition, summary: Summary) -> str:
     rate = summary.cell(one).rate
-    return f"{one.label} ({rate.successes}/{rate.n})"
+    return f"{_short(one.label)} ({rate.successes}/{rate.n})"
 
 
 def _colour(one: Condition, summary: Summary) -> str:
@@ -86,3 +87,8 @@ def _svg(figure: Any) -> str:
     figure.savefig(out, format="svg", metadata={"Date": None})
     text = out.getvalue()
     return text[text.index("<svg") :]
+
+
+def _short(label: str) -> str:
+    """A label without the folders of FILE.py:NAME: a long path would leave no room for the plot."""
+    return re.sub(r"[^\s·]*/", "", label)

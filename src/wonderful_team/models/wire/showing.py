@@ -87,9 +87,13 @@ def paste(pictures: Sequence[Picture], convention: Convention = PIXELS) -> tuple
     seen = convention.seen_size(size)
     zoom = (seen[0] / size[0], seen[1] / size[1])
     canvas = Canvas.over(np.full((seen[1], seen[0], 3), _SHEET_GREY, np.uint8))
+    corners = [(round(left * zoom[0]), round(top * zoom[1])) for left, top in places]
+    # Numbers first: where a sheet was shrunk they may reach into the picture above, which must stay whole.
+    for number, (x0, y0) in enumerate(corners, start=1):
+        high = canvas.plate_size(str(number), _NUMBER_PX)[1]
+        canvas.plate(str(number), x0, max(0, y0 - high - 1), font_px=_NUMBER_PX)
     shown = []
-    for number, (picture, (left, top)) in enumerate(zip(pictures, places, strict=True), start=1):
-        x0, y0 = round(left * zoom[0]), round(top * zoom[1])
+    for picture, (x0, y0) in zip(pictures, corners, strict=True):
         width, height = (max(1, round(side * z)) for side, z in zip(picture.size_px, zoom, strict=True))
         width, height = min(width, seen[0] - x0), min(height, seen[1] - y0)
         sent = scaled(picture, (width, height))
@@ -102,8 +106,6 @@ def paste(pictures: Sequence[Picture], convention: Convention = PIXELS) -> tuple
         sent = replace(sent, marks=tuple(Axes(whole) if isinstance(mark, Axes) else mark for mark in sent.marks))
         rgb = draw(sent, ticks_of(convention))
         canvas.rgb[y0 : y0 + height, x0 : x0 + width] = rgb
-        high = canvas.plate_size(str(number), _NUMBER_PX)[1]
-        canvas.plate(str(number), x0, max(0, y0 - high - 1), font_px=_NUMBER_PX)
         scale = (width / picture.size_px[0], height / picture.size_px[1])
         shown.append(Shown(sent, rgb, (float(x0), float(y0)), scale))
     return canvas.rgb, shown

@@ -41,7 +41,7 @@ def score_of(rules: Rules, history: Sequence[Happened], things: Mapping[str, Thi
         failed = [entry for entry in judged if entry.verdict.state == "failure"]
         end = failed[0] if failed else judged[-1]
     if end.verdict.state == "success":
-        return Score(True, None, f"all {len(rules.goals) + len(rules.counts)} goals are met")
+        return Score(True, None, "every goal is met")
     upto = judged[: list(judged).index(end) + 1]
     reason = end.verdict.reason or rules.unmet(end.progress, end.poses, things)
     if len(history) - 1 > rules.horizon and end.verdict.state == "open":

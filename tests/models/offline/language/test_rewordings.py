@@ -230,3 +230,16 @@ def test_surfaces_in_words(text: str) -> None:
 def test_the_list_is_long() -> None:
     """So that a slip in one group cannot hide behind a short list."""
     assert sum(len(_lines(group)) for group in (PUT, TEXTURE, ROTATE, MATCH, SURFACES)) >= 130
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "Sort the fruits: each goes to the region that has its colour, where such a region exists.",
+        "Sort the fruits: each goes to the region that has its colour.",
+    ],
+)
+def test_a_shared_colour_is_never_lost_on_the_way(text: str) -> None:
+    (command,) = understand(text).commands
+    assert command.to is not None
+    assert (command.to.how, command.to.aspect) == ("matching", "colour")

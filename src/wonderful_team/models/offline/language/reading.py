@@ -34,11 +34,43 @@ def understand(text: str) -> Understood:
     asides = set_aside(in_order(without_reasons(text)), try_describe)
     plain, conditional = open_conditions(asides.text)
     tokens = _joined(tokenise(plain))
-    commands = _commands(tokens, asides.text, text)
+    commands = _with_what_is_shared(_commands(tokens, asides.text, text), tokens, asides.text, text)
     if conditional or asides.others_without:
         commands = tuple(replace(command, conditional=True) for command in commands)
     used = tuple(token.text for token in tokens)
     return Understood(text, commands, used, asides.nothing_else, asides.spared)
+
+
+_SHARED = re.compile(r"\b(?:its|their|same|match\w*|own)\s+(?:\w+\s+)?colou?rs?\b|\bcolou?rs?\s+match", re.IGNORECASE)
+"""Words that make two things share a colour."""
+
+
+def _with_what_is_shared(
+    commands: tuple[Command, ...], tokens: list[Token], words: str, text: str
+) -> tuple[Command, ...]:
+    """The commands, unless "its colour" was said of many things and got lost on the way: then the gist, or a refusal.
+
+    A plan that forgets it would put everything anywhere, which is worse than not to understand.
+    """
+    many = [command for command in commands if command.kind == "put" and command.thing.quantity in ("each", "all")]
+    lost = [command for command in many if _goes_anywhere(command)]
+    if not lost or not _SHARED.search(words):
+        return commands
+    gist = gist_of_matching(tokens)
+    if gist is None:
+        raise NotUnderstoodError(_no_sentence(text, tokens, "which things share a colour"))
+    return (gist,)
+
+
+def _goes_anywhere(command: Command) -> bool:
+    """Whether nothing but the kind of place is said."""
+    to = command.to
+    return (
+        to is not None
+        and to.how in ("in", "on")
+        and to.what is not None
+        and not (command.thing.related or to.what.related or to.what.colours)
+    )
 
 
 def _commands(tokens: list[Token], words: str, text: str) -> tuple[Command, ...]:

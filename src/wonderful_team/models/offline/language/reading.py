@@ -31,7 +31,7 @@ def understand(text: str) -> Understood:
     Raises:
         NotUnderstoodError: A word is unknown, or the words do not make an instruction; says which.
     """
-    asides = set_aside(in_order(without_reasons(text)), try_describe)
+    asides = set_aside(in_order(without_reasons(_ACCORDINGLY.sub("", text))), try_describe)
     plain, conditional = open_conditions(asides.text)
     tokens = _joined(tokenise(plain))
     commands = _with_what_is_shared(_commands(tokens, asides.text, text), tokens, asides.text, text)
@@ -41,6 +41,11 @@ def understand(text: str) -> Understood:
     return Understood(text, commands, used, asides.nothing_else, asides.spared)
 
 
+_ACCORDINGLY = re.compile(
+    r"[.;,]?\s*(?:and |so |then |please )*(?:place|put|sort|move|arrange|distribute)\s+(?:them|it|these|everything)(?:\s+all)?\s+accordingly\b",
+    re.IGNORECASE,
+)
+"""Says once more to do what was just said."""
 _SHARED = re.compile(r"\b(?:its|their|same|match\w*|own)\s+(?:\w+\s+)?colou?rs?\b|\bcolou?rs?\s+match", re.IGNORECASE)
 """Words that make two things share a colour."""
 

@@ -51,7 +51,7 @@ _TONES = {
 _BADGES = {
     "offline": "classical vision and a grammar answered; no vision-language model took part",
     "simulated": "a simulated model with access to the truth answered; not a measurement of any real model",
-    "injected": "something was put in from outside, such as true boxes",
+    "injected": "an answer was replaced from outside, such as a planted mistake",
     "cached": "answers came from the cache",
     "replayed": "answers were replayed from an earlier run",
     "scripted": "answers were written beforehand",

@@ -130,7 +130,7 @@ def test_what_was_injected_or_simulated_is_badged(folder, tmp_path):
     (copy / "record.json").write_text(json.dumps(record), encoding="utf-8")
     _, text = read(write_page(copy))
     assert "a simulated model with access to the truth answered" in text
-    assert "something was put in from outside" in text
+    assert "an answer was replaced from outside" in text
 
 
 def test_text_of_instruction_and_model_stays_text(tmp_path):

@@ -18,6 +18,8 @@ from wonderful_team.types import (
     Request,
     StepReport,
     SubgoalRun,
+    TrueSight,
+    TrueThing,
     Verdict,
 )
 
@@ -72,6 +74,23 @@ class Privileged(Protocol):
         ...
 
 
+@runtime_checkable
+class SceneTruth(Privileged, Protocol):
+    """Truth that a simulated model can answer from: what stands where, and what each picture really shows."""
+
+    def things(self) -> Mapping[str, TrueThing]:
+        """Everything on the table as it stands now, by name."""
+        ...
+
+    def start(self) -> Mapping[str, TrueThing]:
+        """The same, as it stood when the world was made: where a thing is restored to."""
+        ...
+
+    def sights(self, view_id: str) -> Sequence[TrueSight]:
+        """What really was in every look at a view so far, newest first; one for an instruction's picture; () for an unknown id."""
+        ...
+
+
 @dataclass(frozen=True, eq=False)
 class Situation:
     """What a method is told each time it is asked what to do.
@@ -79,6 +98,7 @@ class Situation:
     Attributes:
         attempt: 0 for the first plan, then one more per replan.
         executed: What ran since the last question, subgoal by subgoal.
+        looks_left: How often the method may still run a part of its plan and be asked again with a new picture.
         refused: The gate's report when the last answer was refused.
         plan: A plan that was read and approved beforehand and must be run as it is.
     """
@@ -92,15 +112,21 @@ class Situation:
     executed: tuple[SubgoalRun, ...] = ()
     refused: GateReport | None = None
     plan: Plan | None = None
+    looks_left: int = 0
 
 
 @dataclass(frozen=True, eq=False)
 class Act:
-    """Run these actions. `plan` lets the gate check hash, picture and approval, and the page tell the story."""
+    """Run these actions. `plan` lets the gate check hash, picture and approval, and the page tell the story.
+
+    `look`: they are only the first of what is to be done; the method asks to be shown a new picture after them. That uses
+    one of the looks that the situation grants, not a replan; without any left it is a last attempt like any other.
+    """
 
     actions: tuple[PlannedAction, ...]
     plan: Plan | None = None
     verdicts: tuple[Verdict, ...] = ()
+    look: bool = False
 
 
 @dataclass(frozen=True)
@@ -169,6 +195,7 @@ __all__ = [
     "Model",
     "Policy",
     "Privileged",
+    "SceneTruth",
     "Score",
     "Situation",
     "Subscriber",

@@ -18,6 +18,7 @@ from wonderful_team.types.planned import (
     Target,
 )
 from wonderful_team.types.seen import Instruction, Observation, RobotState, Slot, SlotKind, View
+from wonderful_team.types.true import TrueSight, TrueThing
 
 __all__ = [
     "Answer",
@@ -47,6 +48,8 @@ __all__ = [
     "SubgoalRun",
     "Target",
     "Trial",
+    "TrueSight",
+    "TrueThing",
     "Usage",
     "Verdict",
     "View",

@@ -7,7 +7,9 @@ import pytest
 
 gymnasium = pytest.importorskip("gymnasium", reason="gymnasium is not installed")
 
-from wonderful_team.errors import ConfigError  # noqa: E402
+from gymnasium.utils.env_checker import check_env  # noqa: E402
+
+from wonderful_team.errors import ConfigError, UnknownNameError  # noqa: E402
 from wonderful_team.sims.tabletop import gymnasium_env, task_names  # noqa: E402
 
 
@@ -53,3 +55,49 @@ def test_wrong_actions_are_named() -> None:
     with pytest.raises(ConfigError, match=r"expected \(5,\) numbers from -1 to 1"):
         env.step(np.full(5, 2.0, dtype=np.float32))
     env.close()
+
+
+@pytest.mark.parametrize("task", ["rotate", "sweep_without_touching"])
+def test_gymnasiums_own_checker_has_nothing_to_say(task: str) -> None:
+    gymnasium_env.register()
+    env = gymnasium.make(f"wonderful_team/{task}-v0", size_px=(256, 128), render_mode="rgb_array")
+    check_env(env.unwrapped)
+    env.close()
+
+
+def test_levels_tiers_and_sizes_are_options_of_make() -> None:
+    gymnasium_env.register()
+    options = {"partition": "L3", "clutter": 2, "texture": 1, "size_px": (256, 128)}
+    env = gymnasium.make("wonderful_team/visual_manipulation-v0", **options)
+    observation, _ = env.reset(seed=4)
+    assert observation["front"].shape == (128, 256, 3)
+    world = env.unwrapped.world
+    assert (world.partition, world.tiers.clutter, world.tiers.texture) == ("L3", 2, 1)
+    assert len(world.privileged.truth()["things"]) == 7
+    env.close()
+    with pytest.raises(UnknownNameError, match=r"partition of rotate 'L4'"):
+        gymnasium.make("wonderful_team/rotate-v0", partition="L4")
+    with pytest.raises(ConfigError, match="clutter: expected a tier"):
+        gymnasium.make("wonderful_team/rotate-v0", clutter=9)
+
+
+def test_the_example_in_the_modules_words_runs() -> None:
+    lines = (gymnasium_env.__doc__ or "").split("    import gymnasium")[1]
+    code = "\n".join(line.removeprefix("    ") for line in ("    import gymnasium" + lines).splitlines())
+    said: dict[str, object] = {}
+    exec(compile(code, "example", "exec"), said)  # noqa: S102
+    assert said["ended"] is True
+    assert said["info"]["success"] is False, "chance does not solve it"
+
+
+def test_a_vector_of_environments_steps_together() -> None:
+    gymnasium_env.register()
+    envs = gymnasium.make_vec(
+        "wonderful_team/rotate-v0", num_envs=2, vectorization_mode="sync", size_px=(256, 128), clutter=1
+    )
+    observation, _ = envs.reset(seed=1)
+    assert observation["top"].shape == (2, 128, 256, 3)
+    assert not np.array_equal(observation["top"][0], observation["top"][1])
+    _, rewards, *_ = envs.step(envs.action_space.sample())
+    assert rewards.shape == (2,)
+    envs.close()

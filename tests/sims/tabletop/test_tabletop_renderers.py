@@ -60,3 +60,20 @@ def test_a_missing_opengl_library_is_only_a_note(platform: str) -> None:
 def test_an_unknown_renderer_is_refused() -> None:
     with pytest.raises(ConfigError, match="'rays', got 'vulkan'"):
         make_world("rotate", renderer="vulkan")
+
+
+def test_nothing_is_drawn_unless_something_looks(monkeypatch: pytest.MonkeyPatch) -> None:
+    from wonderful_team.sims.tabletop import table
+
+    opened = []
+    real = table.open_renderer
+    monkeypatch.setattr(table, "open_renderer", lambda *a: (opened.append(1), real(*a))[1])
+    world = make_world("visual_manipulation@clutter=2@lighting=2", 2)
+    for action in world.privileged.oracle():
+        world.execute(action)
+    assert world.privileged.score().success
+    assert world.privileged.truth()["things"]
+    assert opened == []
+    world.observe()
+    assert opened == [1]
+    world.close()

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 import pytest
 
 from wonderful_team.errors import UnknownNameError
 from wonderful_team.sims.tabletop import make_world, partitions, task_names
+from wonderful_team.sims.tabletop.registering import filled, find_task
 from wonderful_team.sims.tabletop.shapes import shape_names
-from wonderful_team.sims.tabletop.textures import texture_names
+from wonderful_team.sims.tabletop.textures import texture, texture_names
 
 BUILT_IN = [name for name in task_names() if not name.startswith(("test/", "mine/"))]
 
@@ -60,10 +63,112 @@ def test_levels_split_shapes_and_textures() -> None:
     assert not worn["L1"] & worn["L2"], "L2 swaps which textures are carried and which hold"
 
 
-def test_there_are_the_shapes_and_textures_of_vima_bench() -> None:
+CARRIED = """block, L-shaped block, letter A, letter E, letter G, letter M, letter R, letter T, letter V, cross, diamond,
+triangle, flower, heart, hexagon, pentagon, ring, round, star, shorter block"""
+HOLDING = "pan, bowl, frame, square, container, pallet"
+SWEPT = "three-sided rectangle, small block, line"
+PLAIN = "blue, red, green, orange, yellow, purple, pink, cyan, olive"
+IMAGES = "brick, tiles, wooden, granite, plastic, polka dot, checkerboard, tiger, magma, rainbow"
+
+
+def _listed(*lists: str) -> list[str]:
+    return [name for names in lists for name in names.replace("\n", " ").split(", ")]
+
+
+def test_there_are_the_29_shapes_of_vima_bench_by_name() -> None:
     fruits = set(shape_names("fruit")) | {"paper"}
-    assert len(set(shape_names()) - fruits) == 29
-    assert len(texture_names(dark=True)) >= 65
+    assert sorted(set(shape_names()) - fruits) == sorted(_listed(CARRIED, HOLDING, SWEPT))
+    assert len(_listed(CARRIED, HOLDING, SWEPT)) == 29
+
+
+def test_there_are_the_82_textures_of_vima_bench_by_name() -> None:
+    names = set(texture_names(dark=True))
+    first = ("red", "yellow", "green", "blue", "purple")
+    assert set(_listed(PLAIN, IMAGES)) <= names
+    assert {f"dark {name}" for name in _listed(PLAIN) if name != "olive"} <= names
+    for shade in ("", "dark "):
+        for kind in ("stripe", "polka dot"):
+            assert sum(name.startswith(shade) and f" and {c} {kind}" in name for name in names for c in first) >= 10
+        assert {f"{shade}{colour} swirl" for colour in first} <= names
+    assert {f"{colour} paisley" for colour in first} <= names
+    assert (len(texture_names()), len(names)) == (49, 82)
+    tiles = [texture(name) for name in names]
+    assert len({tile.tobytes() for tile in tiles}) == 82, "no two look the same"
+    assert all(tile.shape == (128, 128, 3) for tile in tiles)
+
+
+WORDS = {
+    "visual_manipulation": r"Put the {dragged_obj_1} into the {base_obj}\.",
+    "scene_understanding": r"Put the [a-z ]+ object in {scene} into the [a-z ]+ object\.",
+    "rotate": r"Rotate the {dragged_obj} (30|60|90|120|150) degrees\.",
+    "rearrange": r"Rearrange to this {scene}\.",
+    "rearrange_then_restore": r"Rearrange objects to this setup {scene} and then restore\.",
+    "novel_adj": r"({demo_blicker_obj_(\d)} is (daxer|blicker|modier|kobar) than {demo_less_blicker_obj_\2}\. ){3}"
+    r"Put the (less )?\3 {dragged_obj} into the {base_obj}\.",
+    "novel_noun": r"(This is a (dax|blicket|wug|zup) {(dragged_obj_1|base_obj)}\. ){2}Put a \w+ into a \w+\.",
+    "novel_adj_and_noun": r"(This is a (dax|blicket|wug|zup) {(dragged_obj|base_obj)}\. ){2}"
+    r"({demo_blicker_obj_(\d)} is (\w+) than {demo_less_blicker_obj_\5}\. ){3}Put the (less )?\6 \w+ into the \w+\.",
+    "twist": r'"Twist" is defined as rotating object a specific angle\. For examples: '
+    r"(From {before_twist_(\d)} to {after_twist_\2}\. ){3}Now twist all [a-z ]+ objects\.",
+    "follow_motion": r"Follow this motion for {dragged_obj}: {frame_0} {frame_1} {frame_2}\.",
+    "follow_order": r"Stack objects in this order {frame_0} {frame_1} {frame_2}\.",
+    "sweep_without_exceeding": r"Sweep (any|one|two|three|all) {swept_obj} into {bounds} without exceeding {constraint}\.",
+    "sweep_without_touching": r"Sweep (any|one|two|three|all) {swept_obj} into {bounds} without touching {constraint}\.",
+    "same_texture": r"Put all objects with the same texture as {base_obj} into it\.",
+    "same_shape": r"Put all objects with the same profile as {base_obj} into it\.",
+    "manipulate_old_neighbor": r"First put {dragged_obj} into {base_obj} then put the object that was previously at its "
+    r"(north|south|west|east) into the same {base_obj}\.",
+    "pick_in_order_then_restore": r"Put {dragged_obj} into {base_obj_1} then {base_obj_2}\. Finally restore it into its "
+    r"original container\.",
+}
+COUNTS_OF_THINGS = {
+    **dict.fromkeys(("visual_manipulation", "scene_understanding", "novel_adj", "novel_noun", "twist"), {3}),
+    **dict.fromkeys(("rotate", "follow_motion"), {2}),
+    **dict.fromkeys(("follow_order", "same_texture", "same_shape"), {4}),
+    **dict.fromkeys(("rearrange", "rearrange_then_restore"), {2, 3}),
+    **dict.fromkeys(("sweep_without_exceeding", "sweep_without_touching"), {4, 6, 8}),
+    **{"novel_adj_and_noun": {5}, "manipulate_old_neighbor": {6}, "pick_in_order_then_restore": {7}},
+}
+
+
+@pytest.mark.parametrize("name", sorted(WORDS))
+def test_words_slots_and_numbers_of_things_are_those_of_vima_bench(name: str) -> None:
+    kinds = {"frame": "frame", "before": "before", "after_": "after", "scene": "scene"}
+    for seed in range(6):
+        scene = find_task(name).scene(seed)
+        text = filled(find_task(name).instruction, scene.words)
+        assert re.fullmatch(WORDS[name], text), text
+        assert len(scene.things) in COUNTS_OF_THINGS[name]
+        for slot, shown in scene.pictures.items():
+            wanted = next((kind for start, kind in kinds.items() if slot.startswith(start)), "object")
+            assert shown.kind == wanted, slot
+            assert (shown.index is None) == (wanted in ("object", "scene"))
+
+
+def test_new_words_are_defined_by_grey_shapes_and_adjectives_by_coloured_pairs() -> None:
+    for name in ("novel_adj", "novel_noun", "novel_adj_and_noun"):
+        scene = find_task(name).scene(2)
+        looks = {prop.name: prop.texture for prop in scene.props}
+        for slot, shown in scene.pictures.items():
+            assert (looks[shown.thing] == "grey") == (not slot.startswith("demo")), slot
+
+
+def test_six_like_containers_that_are_no_pans() -> None:
+    for seed in range(20):
+        things = find_task("pick_in_order_then_restore").scene(seed).things
+        holders = [thing for thing in things if thing.body.kind == "base"]
+        assert len(holders) == len({holder.texture for holder in holders}) == 6
+        assert len({holder.shape for holder in holders} - {"pan"}) == 1
+
+
+def test_same_profile_means_square_or_round() -> None:
+    square, round_ = {"frame", "square", "container", "pallet"}, {"bowl", "pan"}
+    for seed in range(20):
+        scene = find_task("same_shape").scene(seed)
+        base = next(thing.shape for thing in scene.things if thing.body.kind == "base")
+        wanted = {thing.shape for thing in scene.things if thing.name in {goal.thing for goal in scene.goals}}
+        assert wanted <= ({"shorter block"} if base in square else {"ring", "round"})
+        assert base in square | round_
 
 
 def test_frames_and_pairs_say_what_they_are() -> None:

@@ -6,7 +6,8 @@ from wonderful_team.sims.tabletop.scene import Scene
 from wonderful_team.sims.tabletop.world import TabletopWorld
 
 make_world = TabletopWorld
-"""make_world("visual_manipulation", seed=3, size_px=(640, 320), recolour=None, renderer=None, partition=None)"""
+"""make_world("visual_manipulation", seed=3, partition="L3", size_px=(256, 128), clutter=1, lighting=0, camera=0, texture=0,
+recolour=None, renderer=None); the name may say the same: "visual_manipulation@L3@small@clutter=1"."""
 
 __all__ = ["Scene", "TabletopWorld", "make_world", "partitions", "task", "task_names"]
 del _tasks

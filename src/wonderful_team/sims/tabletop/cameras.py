@@ -26,7 +26,9 @@ class Lens:
     Attributes:
         position_m: Centre of the picture at zero depth, shape (3,) [m].
         right, down, forward: Unit axes of the camera in the base frame, shape (3,) each.
-        scale_px_m: Pixels per metre.
+        seen_width_m: How much of the scene is as wide as the picture [m].
+        wrong_m, wrong_rad: How far off planners are told that it stands, along its own right and down, and how it is
+            rolled: a calibration error.
     """
 
     name: str
@@ -35,10 +37,14 @@ class Lens:
     down: Array
     forward: Array
     size_px: tuple[int, int]
+    seen_width_m: float = SEEN_WIDTH_M
+    wrong_m: tuple[float, float] = (0.0, 0.0)
+    wrong_rad: float = 0.0
 
     @property
     def scale_px_m(self) -> float:
-        return self.size_px[0] / SEEN_WIDTH_M
+        """Pixels per metre."""
+        return self.size_px[0] / self.seen_width_m
 
     @property
     def seen_height_m(self) -> float:
@@ -46,15 +52,20 @@ class Lens:
 
     @property
     def camera(self) -> AffineCamera:
-        """The same camera for planners: base frame to pixels and depth."""
+        """The same camera for planners, as far as its calibration goes: base frame to pixels and depth."""
         width, height = self.size_px
+        right, down, position = self.right, self.down, self.position_m
+        if self.wrong_rad or any(self.wrong_m):
+            position = position + self.wrong_m[0] * right + self.wrong_m[1] * down
+            turn, across = math.cos(self.wrong_rad), math.sin(self.wrong_rad)
+            right, down = turn * right + across * down, turn * down - across * right
         rows = []
         for axis, offset, scale in (
-            (self.right, width / 2, self.scale_px_m),
-            (self.down, height / 2, self.scale_px_m),
+            (right, width / 2, self.scale_px_m),
+            (down, height / 2, self.scale_px_m),
             (self.forward, 0.0, 1.0),
         ):
-            rows.append([*(axis * scale), offset - scale * float(axis @ self.position_m)])
+            rows.append([*(axis * scale), offset - scale * float(axis @ position)])
         return AffineCamera(np.array(rows))
 
 

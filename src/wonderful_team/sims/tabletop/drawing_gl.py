@@ -72,7 +72,7 @@ class OpenGLRenderer:
         _THREAD.ensure_context()
         model = self._built.model
         self._scene = mj.MjvScene(model, maxgeom=400)
-        self._scene.flags[mj.mjtRndFlag.mjRND_SHADOW] = 0
+        self._scene.flags[mj.mjtRndFlag.mjRND_SHADOW] = int(self._built.look.light.shadows)
         self._scene.flags[mj.mjtRndFlag.mjRND_REFLECTION] = 0
         self._scene.flags[mj.mjtRndFlag.mjRND_SKYBOX] = 0
         self._option = mj.MjvOption()

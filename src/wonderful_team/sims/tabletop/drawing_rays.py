@@ -13,11 +13,8 @@ from wonderful_team.sims.tabletop.cameras import Lens
 from wonderful_team.sims.tabletop.drawing import Drawn
 from wonderful_team.sims.tabletop.engine import mj
 from wonderful_team.sims.tabletop.model import (
-    AMBIENT,
-    DIFFUSE,
     FLOOR_GROUP,
     FLOOR_RGB,
-    LIGHT_DIRECTION,
     TABLE_GROUP,
     TABLE_RGB,
     THING_GROUP,
@@ -27,6 +24,8 @@ from wonderful_team.sims.tabletop.model import (
 FAR_M = 1000.0
 """Rays start this far away: from there they are as good as parallel (0.03 px over the whole table) [m]."""
 BOUNDS_FACTOR = 3.0
+SHADOW_BIAS_M = 0.002
+"""How much nearer to the light something must lie to throw a shadow [m]."""
 
 
 class RayRenderer:
@@ -49,11 +48,14 @@ class RayRenderer:
         geoms, distance, normals, points = self._cast(
             state, lens, (THING_GROUP,) if alone else (THING_GROUP, TABLE_GROUP, FLOOR_GROUP)
         )
+        light = self._built.look.light
+        lit = self._lit(state, points) if light.shadows and not alone else np.ones(geoms.shape)
         rgb = np.full((*geoms.shape, 3), 255.0)
         for geom in np.unique(geoms[geoms >= 0]):
             here = geoms == geom
-            shade = AMBIENT + DIFFUSE * np.clip(-(normals[here] @ LIGHT_DIRECTION), 0, 1)
-            rgb[here] = self._colours(state, int(geom), points[here], normals[here]) * shade[:, None]
+            facing = np.clip(-(normals[here] @ light.direction), 0, 1)[:, None] * lit[here][:, None]
+            shade = np.array(light.ambient) + np.array(light.diffuse) * facing
+            rgb[here] = self._colours(state, int(geom), points[here], normals[here]) * shade
         depth = np.where(geoms >= 0, distance, np.nan)
         return Drawn(np.clip(np.rint(rgb), 0, 255).astype(np.uint8), depth.astype(np.float32))
 
@@ -73,6 +75,22 @@ class RayRenderer:
         aim = through + lens.forward * (FAR_M + 1.0)
         rays = aim / np.linalg.norm(aim, axis=-1, keepdims=True)
         start = lens.position_m - lens.forward * FAR_M
+        geoms, reach, normals = self._shot(state, start, rays, groups)
+        points = start + rays * reach[..., None]
+        depth = (points - lens.position_m) @ lens.forward
+        return geoms, depth, normals, points
+
+    def _lit(self, state: Any, points: Array) -> Array:
+        """1 where the light reaches a point, 0 in a shadow, shape (H, W)."""
+        start = np.array([0.5, 0.0, 0.0]) - FAR_M * self._built.look.light.direction
+        way = points - start
+        length = np.linalg.norm(way, axis=-1)
+        _, reach, _ = self._shot(state, start, way / length[..., None], (THING_GROUP, TABLE_GROUP))
+        return np.where((reach < 0) | (reach > length - SHADOW_BIAS_M), 1.0, 0.0)
+
+    def _shot(self, state: Any, start: Array, rays: Array, groups: tuple[int, ...]) -> tuple[Array, Array, Array]:
+        """Geom, distance and surface normal of what each ray meets, shapes (H, W), (H, W), (H, W, 3); -1 for nothing."""
+        height, width = rays.shape[:2]
         count = width * height
         geoms, reach, normals = np.full(count, -1, dtype=np.int32), np.empty(count), np.zeros((count, 3))
         chosen = np.zeros(6, dtype=np.uint8)
@@ -80,9 +98,7 @@ class RayRenderer:
         mj.mj_multiRay(
             self._model, state, start, rays.ravel(), chosen, 1, -1, geoms, reach, normals.ravel(), count, mj.mjMAXVAL
         )
-        points = start + rays * reach.reshape(height, width, 1)
-        depth = (points - lens.position_m) @ lens.forward
-        return geoms.reshape(height, width), depth, normals.reshape(height, width, 3), points
+        return geoms.reshape(height, width), reach.reshape(height, width), normals.reshape(height, width, 3)
 
     def _colours(self, state: Any, geom: int, points: Array, normals: Array) -> Array:
         """Colours of one geom at points of its surface, unshaded, shape (N, 3)."""

@@ -5,15 +5,20 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cache, lru_cache
 from typing import Literal, TypeAlias
 
+import numpy as np
+import shapely
 from shapely import Point, Polygon
 from shapely.affinity import rotate, translate
 from shapely.geometry.base import BaseGeometry
 
 from wonderful_team.geometry import Pose, wrap_angle
+from wonderful_team.geometry.arrays import Array
 from wonderful_team.sims.tabletop.cameras import TABLE_HIGH_M, TABLE_LOW_M
 from wonderful_team.sims.tabletop.model import Thing
+from wonderful_team.sims.tabletop.shapes import shape
 
 NEAR_M = 0.1
 """How close two centres count as together, seen from above [m]; VIMA-Bench's figure."""
@@ -56,6 +61,14 @@ class Goal:
             return False
         return self.yaw_rad is None or abs(wrap_angle(pose.yaw_rad - self.yaw_rad)) <= TURN_TOLERANCE_RAD
 
+    def turned_like(self, poses: Poses, other: str) -> bool:
+        """Whether another thing is turned as this one is, where the goal asks how it is turned; else always.
+
+        A thing that has to be turned is taken for another only where their turns agree, too: VIMA-Bench compares poses.
+        """
+        apart = wrap_angle(poses[self.thing].yaw_rad - poses[other].yaw_rad)
+        return self.yaw_rad is None or abs(apart) <= TURN_TOLERANCE_RAD
+
     def target_points(self, poses: Poses) -> list[tuple[float, float]]:
         """The points (x, y) [m] that it may be near."""
         points = [(float(poses[n].position_m[0]), float(poses[n].position_m[1])) for n in self.near]
@@ -64,7 +77,13 @@ class Goal:
 
 def footprint_at(thing: Thing, x_m: float, y_m: float, yaw_rad: float) -> BaseGeometry:
     """What a thing covers of the table, as a shapely geometry in base frame x and y [m]."""
-    turned = rotate(thing.body.footprint, 90 + math.degrees(yaw_rad), origin=(0, 0))
+    return _covered(thing.shape, thing.stretch, x_m, y_m, yaw_rad)
+
+
+@lru_cache(maxsize=256)
+def _covered(shape_name: str, stretch: float, x_m: float, y_m: float, yaw_rad: float) -> BaseGeometry:
+    """Kept for a while: most things stand still while one is pushed."""
+    turned = rotate(shape(shape_name, stretch).footprint, 90 + math.degrees(yaw_rad), origin=(0, 0))
     return translate(turned, x_m, y_m)
 
 
@@ -100,9 +119,14 @@ class Zone:
 
     def region(self, poses: Poses) -> BaseGeometry:
         """Where it lies now, base frame x and y [m]."""
-        pose = poses[self.of]
-        turned = rotate(Polygon(self.corners_ab), 90 + math.degrees(pose.yaw_rad), origin=(0, 0))
-        return translate(turned, float(pose.position_m[0]), float(pose.position_m[1]))
+        return _region(self.corners_ab, *centre_of(poses[self.of]), poses[self.of].yaw_rad)
+
+
+@lru_cache(maxsize=64)
+def _region(corners_ab: tuple[tuple[float, float], ...], x_m: float, y_m: float, yaw_rad: float) -> BaseGeometry:
+    placed = translate(rotate(Polygon(corners_ab), 90 + math.degrees(yaw_rad), origin=(0, 0)), x_m, y_m)
+    shapely.prepare(placed)
+    return placed
 
 
 @dataclass(frozen=True)
@@ -123,15 +147,13 @@ class Count:
     def inside(self, poses: Poses, things: Mapping[str, Thing]) -> frozenset[str]:
         """Which of the things lie in the zone with their eight sample points: corners and middles of the sides."""
         region = self.zone.region(poses)
-        return frozenset(
-            n for n in self.things if all(region.covers(Point(p)) for p in sample_points(things[n], poses[n]))
-        )
+        return frozenset(n for n in self.things if _covers(region, sample_points(things[n], poses[n])).all())
 
     def intruder(self, poses: Poses, things: Mapping[str, Thing]) -> str | None:
         """A stranger with a sample point in the zone."""
         region = self.zone.region(poses)
         for name in self.strangers:
-            if any(region.covers(Point(p)) for p in sample_points(things[name], poses[name])):
+            if _covers(region, sample_points(things[name], poses[name])).any():
                 return name
         return None
 
@@ -152,12 +174,23 @@ class Never:
         return None
 
 
-def sample_points(thing: Thing, pose: Pose) -> list[tuple[float, float]]:
-    """Corners of a thing's outline box and the middles of its sides, base frame x and y [m]."""
-    a0, b0, a1, b1 = thing.body.footprint.bounds
+def sample_points(thing: Thing, pose: Pose) -> Array:
+    """Corners of a thing's outline box and the middles of its sides, base frame x and y, shape (8, 2) [m]."""
+    return np.asarray(pose.apply(_around(thing.shape, thing.stretch))[:, :2])
+
+
+@cache
+def _around(shape_name: str, stretch: float) -> Array:
+    """The same in the thing's own frame, shape (8, 3) [m]."""
+    a0, b0, a1, b1 = shape(shape_name, stretch).footprint.bounds
     a, b = (a0 + a1) / 2, (b0 + b1) / 2
     around = [(a0, b0), (a, b0), (a1, b0), (a1, b), (a1, b1), (a, b1), (a0, b1), (a0, b)]
-    return [(float(p[0]), float(p[1])) for p in pose.apply([(-v, u, 0.0) for u, v in around])]
+    return np.array([(-v, u, 0.0) for u, v in around])
+
+
+def _covers(region: BaseGeometry, points_m: Array) -> Array:
+    """Which points lie in a region or on its edge, shape (N,) bool."""
+    return np.asarray(shapely.covers(region, shapely.points(points_m)))
 
 
 def centre_of(pose: Pose) -> tuple[float, float]:

@@ -4,13 +4,13 @@ An observation is a dictionary: `top` and `front` (uint8, height x width x 3) ar
 its words and its pictures, is in the `info` of `reset`. An action is four numbers from -1 to 1: where to pick (or start
 a push) and where to place (or end it), as shares of the picture: x to the right, y down; pick and place takes a fifth,
 the turn, as a share of half a turn counter-clockwise. The reward is 1 when the task is solved, else 0. An episode is
-terminated when the task is solved or failed, and truncated at the horizon.
+terminated when the task is solved or failed, and truncated at the horizon; `info["success"]` says which.
 
     import gymnasium
     from wonderful_team.sims.tabletop import gymnasium_env
 
     gymnasium_env.register()
-    env = gymnasium.make("wonderful_team/visual_manipulation-v0")
+    env = gymnasium.make("wonderful_team/visual_manipulation-v0", partition="L3", clutter=1)
     observation, info = env.reset(seed=3)
     print(info["instruction"].text, list(info["instruction"].slots))
     ended = False
@@ -23,6 +23,7 @@ terminated when the task is solved or failed, and truncated at the horizon.
 from __future__ import annotations
 
 import math
+from dataclasses import asdict
 from typing import Any
 
 import numpy as np
@@ -30,7 +31,8 @@ import numpy as np
 from wonderful_team.actions import PickPlace, Push
 from wonderful_team.errors import ConfigError
 from wonderful_team.geometry.arrays import Array
-from wonderful_team.sims.tabletop.cameras import CAMERA_NAMES, SIZE_PX, TABLE_HIGH_M, TABLE_LOW_M
+from wonderful_team.sims.tabletop.cameras import CAMERA_NAMES, TABLE_HIGH_M, TABLE_LOW_M
+from wonderful_team.sims.tabletop.options import Tiers, asked
 from wonderful_team.sims.tabletop.registering import find_task, task_names
 from wonderful_team.sims.tabletop.world import TabletopWorld
 
@@ -44,15 +46,35 @@ class TabletopEnv(gymnasium.Env[Any, Any]):
     """One task as a gymnasium environment; the module's first lines say what actions and observations are.
 
     Args:
-        task: Name of the task, such as "rotate" or "rotate@L3".
+        task: Name of the task, such as "rotate" or "rotate@L3@small".
+        partition: Generalisation level, L1 to L4.
         size_px: Width and height of the pictures.
+        render_mode: None or "rgb_array".
+        clutter, lighting, camera, texture: How much harder than usual the scenes are, 0 to 3; see `options.Tiers`.
+
+    Raises:
+        ConfigError: An option is out of its range, or name and options say different things.
+        UnknownNameError: No such task, or it does not exist at that level.
     """
 
     metadata = {"render_modes": ["rgb_array"], "render_fps": 2}
 
-    def __init__(self, task: str, size_px: tuple[int, int] = SIZE_PX, render_mode: str | None = None) -> None:
-        self.task, self.size_px, self.render_mode = task, size_px, render_mode
-        self._pushes = find_task(task.partition("@")[0]).vocabulary.kinds == ("push",)
+    def __init__(
+        self,
+        task: str,
+        partition: str | None = None,
+        size_px: tuple[int, int] | None = None,
+        render_mode: str | None = None,
+        clutter: int = 0,
+        lighting: int = 0,
+        camera: int = 0,
+        texture: int = 0,
+    ) -> None:
+        self.asked = asked(task, partition, size_px, Tiers(clutter, lighting, camera, texture))
+        self.render_mode, size_px = render_mode, self.asked.size_px
+        found = find_task(self.asked.task)
+        found.check_partition(self.asked.partition)
+        self._pushes = found.vocabulary.kinds == ("push",)
         picture = gymnasium.spaces.Box(0, 255, (size_px[1], size_px[0], 3), np.uint8)
         self.observation_space = gymnasium.spaces.Dict({name: picture for name in CAMERA_NAMES})
         self.action_space = gymnasium.spaces.Box(-1.0, 1.0, (4 if self._pushes else 5,), np.float32)
@@ -66,7 +88,7 @@ class TabletopEnv(gymnasium.Env[Any, Any]):
         super().reset(seed=seed)
         scene = int(self.np_random.integers(2**31)) if seed is None else seed
         self.close()
-        self.world, self._steps = TabletopWorld(self.task, scene, size_px=self.size_px), 0
+        self.world, self._steps = self._made(scene), 0
         return self._look(self.world), {"instruction": self.world.instruction, "seed": scene}
 
     def step(self, action: Array) -> tuple[dict[str, Array], float, bool, bool, dict[str, Any]]:
@@ -85,7 +107,12 @@ class TabletopEnv(gymnasium.Env[Any, Any]):
         self._steps += 1
         score = world.privileged.score()
         ended = bool(score.success) or world.privileged.failed
-        info = {"measured": dict(report.measured), "fault": report.fault, "reason": score.reason}
+        info = {
+            "success": bool(score.success),
+            "measured": dict(report.measured),
+            "fault": report.fault,
+            "reason": score.reason,
+        }
         return self._look(world), float(bool(score.success)), ended, self._steps >= world.horizon and not ended, info
 
     def render(self) -> Any:
@@ -97,6 +124,10 @@ class TabletopEnv(gymnasium.Env[Any, Any]):
         if self.world is not None:
             self.world.close()
             self.world = None
+
+    def _made(self, seed: int) -> TabletopWorld:
+        said = self.asked
+        return TabletopWorld(said.task, seed, size_px=said.size_px, partition=said.partition, **asdict(said.tiers))
 
     def _opened(self) -> TabletopWorld:
         if self.world is None:

@@ -43,7 +43,7 @@ def score_of(rules: Rules, history: Sequence[Happened], things: Mapping[str, Thi
     if end.verdict.state == "success":
         return Score(True, None, "every goal is met")
     upto = judged[: list(judged).index(end) + 1]
-    reason = end.verdict.reason or rules.unmet(end.progress, end.poses, things)
+    reason = end.verdict.reason or rules.unmet(end.progress)
     if len(history) - 1 > rules.horizon and end.verdict.state == "open":
         reason += f"; the horizon of {rules.horizon} actions was reached"
     return Score(False, _stage(rules, upto, things), reason)
@@ -65,7 +65,7 @@ def _stage(rules: Rules, history: Sequence[Happened], things: Mapping[str, Thing
     if last.verdict.state == "failure" and rules.order != "free" and "later goal" in last.verdict.reason:
         return "plan"
     for goal in rules.phases[last.progress.phase]:
-        if goal.met(last.poses, things):
+        if goal in last.progress.done:
             continue
         moves = [(b, a) for b, a, picked in done if picked.under_pick == goal.thing]
         if not moves:

@@ -8,18 +8,21 @@ from dataclasses import dataclass
 from typing import Any, Literal, TypeAlias
 
 import numpy as np
+import shapely
 
 from wonderful_team.geometry.arrays import Array
 from wonderful_team.sims.tabletop import textures
-from wonderful_team.sims.tabletop.cameras import CAMERA_NAMES, SEEN_WIDTH_M, Lens, lens
+from wonderful_team.sims.tabletop.cameras import SEEN_WIDTH_M, Lens
 from wonderful_team.sims.tabletop.engine import mj
+from wonderful_team.sims.tabletop.looks import Light, Look, plain_look
 from wonderful_team.sims.tabletop.shapes import Shape, shape
+from wonderful_team.sims.tabletop.solids import Mesh, extruded
 
 TIMESTEP_S = 0.002
 THING_GROUP, TABLE_GROUP, FLOOR_GROUP, WHITE_GROUP, COLLISION_GROUP = 0, 1, 2, 4, 3
 """What is drawn together: things, the table, the floor round it, a white ground for pictures of one thing alone."""
-AMBIENT, DIFFUSE = 0.62, 0.42
-LIGHT_DIRECTION = np.array([-0.35, 0.25, -1.0]) / math.sqrt(0.35**2 + 0.25**2 + 1)
+SHADOW_PX = 4096
+"""Side of the map that shadows are drawn from [px]."""
 SHADE = 0.82
 """How bright the floor inside a container is, against its walls."""
 TABLE_RGB = (224, 219, 208)
@@ -64,25 +67,33 @@ class BuiltModel:
 
     Attributes:
         covers: Texture of each geom that is seen and how bright it is, by geom id.
+        look: How it is lit and from where it is seen.
         tool: What the robot holds: a suction cup, which needs no body of its own, or a spatula.
     """
 
     model: Any
     things: tuple[Thing, ...]
     covers: dict[int, tuple[str, float]]
-    lenses: dict[str, Lens]
+    look: Look
     tool: ToolName = "suction"
+
+    @property
+    def lenses(self) -> dict[str, Lens]:
+        """The cameras by name."""
+        return self.look.lenses
 
     def body_id(self, name: str) -> int:
         return int(mj.mj_name2id(self.model, mj.mjtObj.mjOBJ_BODY, name))
 
 
-def build(things: Sequence[Thing], size_px: tuple[int, int], tool: ToolName = "suction") -> BuiltModel:
-    """Compile a model with these things and a tool."""
+def build(
+    things: Sequence[Thing], size_px: tuple[int, int], tool: ToolName = "suction", look: Look | None = None
+) -> BuiltModel:
+    """Compile a model with these things, a tool and a look; the usual look if none is given."""
     spec = mj.MjSpec()
-    lenses = {name: lens(name, size_px) for name in CAMERA_NAMES}
-    _set_options(spec, size_px)
-    _add_surroundings(spec, lenses)
+    look = look or plain_look(size_px)
+    _set_options(spec, size_px, look)
+    _add_surroundings(spec, look)
     held = spec.worldbody.add_body(name="tool", mocap=True, pos=(0.5, 0.0, 0.3))
     if tool == "spatula":
         held.add_geom(
@@ -102,35 +113,29 @@ def build(things: Sequence[Thing], size_px: tuple[int, int], tool: ToolName = "s
             geom = int(mj.mj_name2id(model, mj.mjtObj.mjOBJ_GEOM, name))
             if geom >= 0:
                 covers[geom] = (thing.texture, brightness)
-    return BuiltModel(model, tuple(things), covers, lenses, tool)
+    if look.table_cover is not None:
+        covers[int(mj.mj_name2id(model, mj.mjtObj.mjOBJ_GEOM, "see table"))] = (look.table_cover, 1.0)
+    return BuiltModel(model, tuple(things), covers, look, tool)
 
 
-def _set_options(spec: Any, size_px: tuple[int, int]) -> None:
+def _set_options(spec: Any, size_px: tuple[int, int], look: Look) -> None:
     spec.option.timestep = TIMESTEP_S
     spec.option.integrator = mj.mjtIntegrator.mjINT_IMPLICITFAST
     spec.option.cone = mj.mjtCone.mjCONE_ELLIPTIC
     spec.option.impratio = 5.0
     spec.visual.global_.offwidth, spec.visual.global_.offheight = size_px
     spec.visual.quality.offsamples = 4
-    spec.visual.quality.shadowsize = 0
+    spec.visual.quality.shadowsize = SHADOW_PX if look.light.shadows else 0
     spec.visual.headlight.active = 0
     spec.visual.map.znear, spec.visual.map.zfar = 0.1, 4.0
     spec.stat.extent = 1.0
     spec.stat.center = (0.5, 0.0, 0.0)
 
 
-def _add_surroundings(spec: Any, lenses: dict[str, Lens]) -> None:
+def _add_surroundings(spec: Any, look: Look) -> None:
     world = spec.worldbody
-    world.add_light(
-        type=mj.mjtLightType.mjLIGHT_DIRECTIONAL,
-        pos=(0.5, 0.0, 2.0),
-        dir=LIGHT_DIRECTION,
-        ambient=(AMBIENT,) * 3,
-        diffuse=(DIFFUSE,) * 3,
-        specular=(0.0,) * 3,
-        castshadow=False,
-    )
-    for one in lenses.values():
+    _add_lights(world, look.light)
+    for one in look.lenses.values():
         world.add_camera(
             name=one.name,
             pos=one.position_m,
@@ -150,10 +155,12 @@ def _add_surroundings(spec: Any, lenses: dict[str, Lens]) -> None:
         size=size,
         pos=(0.5, 0, -0.02),
         material="table",
-        group=TABLE_GROUP,
+        group=TABLE_GROUP if look.table_cover is None else COLLISION_GROUP,
         friction=(0.9, 0.005, 0.002),
         condim=6,
     )
+    if look.table_cover is not None:
+        _add_table_cover(spec, look.table_cover)
     far = SEEN_WIDTH_M * 2
     ground = {"type": box, "size": (far, far, 0.01)}
     world.add_geom(name="floor", pos=(0.5, 0, -0.06), material="floor", group=FLOOR_GROUP, **ground)
@@ -162,6 +169,32 @@ def _add_surroundings(spec: Any, lenses: dict[str, Lens]) -> None:
     world.add_geom(
         name="white", pos=(0.5, 0, -0.0105), material="white", group=WHITE_GROUP, contype=0, conaffinity=0, **ground
     )
+
+
+def _add_lights(world: Any, light: Light) -> None:
+    """A light that casts shadows takes its ambient share away in them, so that this share has a light of its own."""
+    parts = [((0.0,) * 3, light.diffuse, True), (light.ambient, (0.0,) * 3, False)]
+    for ambient, diffuse, shadows in parts if light.shadows else [(light.ambient, light.diffuse, False)]:
+        world.add_light(
+            type=mj.mjtLightType.mjLIGHT_DIRECTIONAL,
+            pos=np.array([0.5, 0.0, 0.0]) - 2.0 * light.direction if shadows else (0.5, 0.0, 2.0),
+            dir=light.direction,
+            ambient=ambient,
+            diffuse=diffuse,
+            specular=(0.0,) * 3,
+            castshadow=shadows,
+        )
+
+
+def _add_table_cover(spec: Any, cover: str) -> None:
+    """What is seen of a table with a pattern, where otherwise the box itself is seen."""
+    _add_texture(spec, cover)
+    mesh = extruded(shapely.box(-0.5, -0.75, 0.5, -0.25), -0.04, 0.0, 0.0)
+    _add_mesh(spec, "see table", mesh)
+    spec.worldbody.add_geom(
+        name="see table", type=mj.mjtGeom.mjGEOM_MESH, meshname="see table", material=f"cover {cover}",
+        group=TABLE_GROUP, contype=0, conaffinity=0, mass=0,
+    )  # fmt: skip
 
 
 def _camera_quaternion(one: Lens) -> Array:
@@ -188,13 +221,18 @@ def _add_meshes(spec: Any, body: Shape) -> None:
     for name, mesh in ((f"see {body.key}", body.mesh), (f"floor of {body.key}", body.inside)):
         if mesh is None:
             continue
-        faces = np.arange(len(mesh.points_m), dtype=np.int32)
-        seen = spec.add_mesh(name=name, inertia=mj.mjtMeshInertia.mjMESH_INERTIA_SHELL)
-        seen.uservert, seen.usernormal = mesh.points_m.ravel(), mesh.normals.ravel()
-        seen.usertexcoord = (mesh.texture_m / textures.TILE_M + 0.5).ravel()
-        seen.userface = seen.userfacenormal = seen.userfacetexcoord = faces
+        _add_mesh(spec, name, mesh)
     for k, piece in enumerate(body.pieces):
         spec.add_mesh(name=f"touch {body.key} {k}", uservert=piece.ravel())
+
+
+def _add_mesh(spec: Any, name: str, mesh: Mesh) -> None:
+    """Something to look at."""
+    faces = np.arange(len(mesh.points_m), dtype=np.int32)
+    seen = spec.add_mesh(name=name, inertia=mj.mjtMeshInertia.mjMESH_INERTIA_SHELL)
+    seen.uservert, seen.usernormal = mesh.points_m.ravel(), mesh.normals.ravel()
+    seen.usertexcoord = (mesh.texture_m / textures.TILE_M + 0.5).ravel()
+    seen.userface = seen.userfacenormal = seen.userfacetexcoord = faces
 
 
 def _add_thing(spec: Any, thing: Thing) -> None:

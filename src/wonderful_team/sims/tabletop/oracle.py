@@ -37,7 +37,8 @@ def solve(rules: Rules, progress: Progress, poses: Poses, things: Mapping[str, T
     actions: list[PickPlace] = []
     if progress.verdict.state != "open" and rules.ends_when_reached:
         return actions
-    for phase in rules.phases[progress.phase :]:
+    for number, goals in enumerate(rules.phases[progress.phase :]):
+        phase = [goal for goal in goals if not (rules.goals_last and number == 0 and goal in progress.done)]
         limit = len(actions) + 2 * len(phase) + len(rules.distractors)
         while len(actions) < limit and (move := _next_move(rules, phase, believed, things)) is not None:
             name, end = move
@@ -66,11 +67,20 @@ def _next_move(
     for name in (*taken, *(goal.thing for goal in waiting)):
         if things[name].body.movable:
             away = [target for goal in rules.goals for target in goal.target_points(poses)]
+            kept = [_kept(goal, name, poses, things) for goal in rules.goals]
             # Where nothing is free away from every target, any free place will do for the time being.
-            aside = _free_table(things[name], poses, things, away) or _free_table(things[name], poses, things)
+            aside = _free_table(things[name], poses, things, away, kept) or _free_table(things[name], poses, things)
             if aside is not None:
                 return name, aside
     return None
+
+
+def _kept(goal: Goal, aside: str, poses: Poses, things: Mapping[str, Thing]) -> BaseGeometry:
+    """What a thing will cover of the table where it goes; nothing where that is the thing that goes aside."""
+    if goal.at_m is None or goal.thing == aside:
+        return Point()
+    yaw = poses[goal.thing].yaw_rad if goal.yaw_rad is None else goal.yaw_rad
+    return footprint_of(things[goal.thing], Pose.at((*goal.at_m, 0.0), yaw)).convex_hull
 
 
 def _in_the_way(goal: Goal, end: Pose, poses: Poses, things: Mapping[str, Thing]) -> list[str]:
@@ -100,10 +110,14 @@ def _destination(goal: Goal, poses: Poses, things: Mapping[str, Thing]) -> Pose 
 
 
 def _free_table(
-    thing: Thing, poses: Poses, things: Mapping[str, Thing], away: Sequence[tuple[float, float]] = ()
+    thing: Thing,
+    poses: Poses,
+    things: Mapping[str, Thing],
+    away: Sequence[tuple[float, float]] = (),
+    kept: Sequence[BaseGeometry] = (),
 ) -> Pose | None:
     table = box(TABLE_LOW_M[0], TABLE_LOW_M[1], TABLE_HIGH_M[0], TABLE_HIGH_M[1])
-    return _free_spot(thing, table, (), poses, things, away)
+    return _free_spot(thing, table, (), poses, things, away, kept)
 
 
 def _free_spot(
@@ -113,10 +127,12 @@ def _free_spot(
     poses: Poses,
     things: Mapping[str, Thing],
     away: Sequence[tuple[float, float]] = (),
+    kept: Sequence[BaseGeometry] = (),
 ) -> Pose | None:
     """The free place nearest to the middle of a region, the thing turned as it is."""
     pose = poses[thing.name]
     others = [footprint_of(t, poses[n]) for n, t in things.items() if n != thing.name and n not in ignore]
+    others += [place for place in kept if not place.is_empty]
     own = footprint_of(thing, Pose.at((0.0, 0.0, 0.0), pose.yaw_rad)).convex_hull
     middle = room.centroid
     low_x, low_y, high_x, high_y = room.bounds

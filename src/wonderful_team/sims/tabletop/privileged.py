@@ -16,14 +16,36 @@ from wonderful_team.jsonable import to_jsonable
 from wonderful_team.sims.tabletop import oracle as _oracle
 from wonderful_team.sims.tabletop import oracle_push
 from wonderful_team.sims.tabletop.judging import score_of
+from wonderful_team.sims.tabletop.sights import Sights, true_things
 from wonderful_team.sims.tabletop.table import Table
+from wonderful_team.types import Observation, TrueSight, TrueThing
 
 
 class TabletopTruth:
-    """Implements the Privileged protocol for one table."""
+    """Implements the SceneTruth protocol for one table."""
 
     def __init__(self, table: Table) -> None:
         self._table = table
+        self._sights = Sights(table)
+
+    def things(self) -> Mapping[str, TrueThing]:
+        """Everything on the table as it stands now, by name."""
+        return true_things(self._table.things, self._table.poses())
+
+    def start(self) -> Mapping[str, TrueThing]:
+        """The same, as it stood when the table was set."""
+        return true_things(self._table.things, self._table.history[0].poses)
+
+    def sights(self, view_id: str) -> Sequence[TrueSight]:
+        """What really was in every look at a view so far, newest first; one for an instruction's picture; () for an unknown id.
+
+        Their masks are drawn when they are first asked for.
+        """
+        return self._sights.of(view_id)
+
+    def saw(self, observation: Observation) -> None:
+        """Told by the world of every look, so that it can say later what was really in it."""
+        self._sights.keep(observation)
 
     def score(self) -> Score:
         """Success, or failure with its stage, judged from the true poses after every action."""

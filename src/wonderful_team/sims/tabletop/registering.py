@@ -12,7 +12,10 @@ import numpy as np
 
 from wonderful_team.actions import PICK_PLACE, Vocabulary
 from wonderful_team.errors import ConfigError, UnknownNameError
-from wonderful_team.sims.tabletop.scene import CrowdedError, Scene, generator
+from wonderful_team.sims.tabletop.clutter import add_clutter
+from wonderful_team.sims.tabletop.options import Tiers
+from wonderful_team.sims.tabletop.scene import CrowdedError, Scene
+from wonderful_team.sims.tabletop.seeds import generator
 
 SetTable: TypeAlias = Callable[[Scene, np.random.Generator], None]
 ATTEMPTS = 60
@@ -32,15 +35,17 @@ class TabletopTask:
     vocabulary: Vocabulary = PICK_PLACE
     partitions: tuple[str, ...] = ()
 
-    def scene(self, seed: int, recolour: int | None = None, partition: str | None = None) -> Scene:
-        """Set the table; the same seed sets the same table.
+    def scene(
+        self, seed: int, recolour: int | None = None, partition: str | None = None, tiers: Tiers | None = None
+    ) -> Scene:
+        """Set the table; the same seed sets the same table, and things stand at the same places at every tier.
 
         Raises:
             UnknownNameError: The task does not exist at this generalisation level.
             ConfigError: The task never finds room for its things, sets no goal, or leaves a slot of its words open.
         """
-        if partition is not None and partition not in self.partitions:
-            raise UnknownNameError(f"partition of {self.name}", partition, self.partitions)
+        self.check_partition(partition)
+        tiers = tiers or Tiers()
         for attempt in range(ATTEMPTS):
             paint = seed if recolour is None else recolour
             use = "colours" if recolour is None else "recolour"
@@ -48,14 +53,24 @@ class TabletopTask:
                 generator(number, f"{self.name}/{purpose}", attempt)
                 for number, purpose in ((seed, "layout"), (paint, use), (seed, "choices"))
             )
-            scene = Scene(layout, colours, partition=partition)
+            scene = Scene(layout, colours, partition=partition, alike=tiers.texture)
             try:
                 self.set_table(scene, choices)
             except CrowdedError:
                 continue
             self._check(scene)
+            add_clutter(scene, generator(seed, f"{self.name}/clutter", attempt), tiers.clutter)
             return scene
         raise ConfigError(f"task {self.name!r} with seed {seed}: no room for its things in {ATTEMPTS} tries")
+
+    def check_partition(self, partition: str | None) -> None:
+        """Whether the task exists at a generalisation level.
+
+        Raises:
+            UnknownNameError: It does not; lists those at which it does.
+        """
+        if partition is not None and partition not in self.partitions:
+            raise UnknownNameError(f"partition of {self.name}", partition, self.partitions)
 
     def _check(self, scene: Scene) -> None:
         wanted = set(SLOT.findall(self.instruction))

@@ -25,12 +25,16 @@ class Progress:
         phase: Number of the phase that is worked on, from 0.
         counted: Things that were inside the zone of a count at any time, one set per count.
         met: Goals that were met after the last action.
+        done: Goals of the phase that count as reached; they stay so where goals last.
+        at_start: Goals that were met before the first action.
     """
 
     verdict: Verdict
     phase: int = 0
     counted: tuple[frozenset[str], ...] = ()
     met: frozenset[Goal] = frozenset()
+    done: frozenset[Goal] = frozenset()
+    at_start: frozenset[Goal] = frozenset()
 
 
 @dataclass(frozen=True)
@@ -45,6 +49,8 @@ class Rules:
         nevers: What must not happen, not even during an action.
         order: What a wrong order of the phases costs.
         distractors_matter: When distractors are judged.
+        goals_last: Whether a goal stays reached once it was met after an action of its phase, whatever happens to the
+            thing later, as in VIMA-Bench; otherwise the goals of a phase must be met together.
     """
 
     phases: tuple[tuple[Goal, ...], ...]
@@ -55,6 +61,7 @@ class Rules:
     nevers: tuple[Never, ...] = ()
     order: Order = "free"
     distractors_matter: Distractors = "always"
+    goals_last: bool = False
 
     @property
     def goals(self) -> tuple[Goal, ...]:
@@ -68,35 +75,37 @@ class Rules:
 
     def start(self, poses: Poses, things: Mapping[str, Thing]) -> Progress:
         """Before the first action; what is right by then is not yet an achievement of a later phase."""
-        empty = Progress(Verdict("open"), 0, tuple(frozenset() for _ in self.counts))
         met = self._met(poses, things)
-        verdict = self._failed_at_rest(empty, poses, things) or self._reached(empty, met, poses)
-        return replace(empty, met=met, verdict=verdict)
+        done = frozenset() if self.goals_last or not self.phases else met.intersection(self.phases[0])
+        empty = Progress(Verdict("open"), 0, tuple(frozenset() for _ in self.counts), met, done, met)
+        return replace(empty, verdict=self._failed_at_rest(empty, poses) or self._reached(empty, poses))
 
     def after(self, before: Progress, during: Sequence[Poses], poses: Poses, things: Mapping[str, Thing]) -> Progress:
         """After one action: `during` are poses on the way, `poses` those at rest. A failure stays a failure."""
         if before.verdict.state == "failure":
             return before
-        counted, failure = before.counted, None
-        for moment in (*during, poses):
-            counted, failure = self._watch(counted, moment, things)
-            if failure is not None:
-                return replace(before, verdict=failure, counted=counted)
+        broken = self._broken(during, poses, things)
+        if broken is not None:
+            return replace(before, verdict=broken)
+        counted, failure = self._gathered(before.counted, poses, things)
         met, phase = self._met(poses, things), before.phase
-        now = Progress(Verdict("open"), phase, counted, met)
-        failure = self._wrong_order(before, met) or self._failed_at_rest(now, poses, things)
+        done = self._done(before, met)
+        now = replace(before, verdict=Verdict("open"), counted=counted, met=met, done=done)
+        failure = failure or self._wrong_order(before, now) or self._failed_at_rest(now, poses)
         if failure is not None:
             return replace(now, verdict=failure)
-        verdict = self._reached(now, met, poses)
-        if verdict.state == "open" and phase < len(self.phases) - 1 and met.issuperset(self.phases[phase]):
-            phase += 1
-        return replace(now, verdict=verdict, phase=phase)
+        verdict = self._reached(now, poses)
+        if verdict.state == "open" and phase < len(self.phases) - 1 and done.issuperset(self.phases[phase]):
+            # Goals that last count from the next action on.
+            begun = frozenset() if self.goals_last else met.intersection(self.phases[phase + 1])
+            now = replace(now, phase=phase + 1, done=begun)
+        return replace(now, verdict=verdict)
 
-    def unmet(self, progress: Progress, poses: Poses, things: Mapping[str, Thing]) -> str:
+    def unmet(self, progress: Progress) -> str:
         """What is still missing, in words."""
         later = self.phases[progress.phase :]
         missing = [
-            f"goals not met: {', '.join(g.thing for g in phase if not g.met(poses, things))}" for phase in later[:1]
+            f"goals not met: {', '.join(g.thing for g in phase if g not in progress.done)}" for phase in later[:1]
         ]
         if len(later) > 1:
             missing.append(f"phase {progress.phase + 1} of {len(self.phases)}")
@@ -107,67 +116,75 @@ class Rules:
     def _met(self, poses: Poses, things: Mapping[str, Thing]) -> frozenset[Goal]:
         return frozenset(goal for goal in self.goals if goal.met(poses, things))
 
-    def _watch(
-        self, counted: tuple[frozenset[str], ...], poses: Poses, things: Mapping[str, Thing]
+    def _done(self, before: Progress, met: frozenset[Goal]) -> frozenset[Goal]:
+        """The goals of the phase that count as reached."""
+        due = frozenset(self.phases[before.phase]) if self.phases else frozenset[Goal]()
+        return due & (met | before.done if self.goals_last else met)
+
+    def _broken(self, during: Sequence[Poses], poses: Poses, things: Mapping[str, Thing]) -> Verdict | None:
+        """What must not happen at any time."""
+        for moment in (*during, poses):
+            for never in self.nevers:
+                name = never.broken(moment, things)
+                if name is not None:
+                    return Verdict("failure", f"{name} touched {never.over}")
+        return None
+
+    def _gathered(
+        self, before: tuple[frozenset[str], ...], poses: Poses, things: Mapping[str, Thing]
     ) -> tuple[tuple[frozenset[str], ...], Verdict | None]:
-        """What is judged at every moment: counts and what must never happen."""
-        for never in self.nevers:
-            name = never.broken(poses, things)
-            if name is not None:
-                return counted, Verdict("failure", f"{name} touched {never.over}")
-        now = []
+        """What lies in the zones, or did after an action before; too many, or a stranger, is a failure."""
+        counted = tuple(inside | count.inside(poses, things) for count, inside in zip(self.counts, before, strict=True))
         for count, inside in zip(self.counts, counted, strict=True):
-            reached = inside | count.inside(poses, things)
-            if len(reached) > count.exactly:
-                return counted, Verdict(
-                    "failure", f"{len(reached)} things are in the zone, exactly {count.exactly} may"
-                )
             intruder = count.intruder(poses, things)
             if intruder is not None:
                 return counted, Verdict("failure", f"{intruder} came into the zone")
-            now.append(reached)
-        return tuple(now), None
+            if len(inside) > count.exactly:
+                reason = f"{len(inside)} things are in the zone, exactly {count.exactly} may"
+                return counted, Verdict("failure", reason)
+        return counted, None
 
-    def _wrong_order(self, before: Progress, met: frozenset[Goal]) -> Verdict | None:
+    def _wrong_order(self, before: Progress, now: Progress) -> Verdict | None:
         if self.order == "free":
             return None
         due = self.phases[before.phase]
-        if met.issuperset(due):
+        if now.done.issuperset(due):
             return None
         if self.order == "every action":
             return Verdict("failure", f"an action did not bring {due[0].thing} to step {before.phase + 1}")
-        for phase in self.phases[before.phase + 1 :]:
-            for goal in phase:
-                if goal not in due and goal in met and goal not in before.met:
-                    return Verdict("failure", f"{goal.thing} reached a later goal before the next one")
+        # Where a thing stood at the start it may be at any time: that skips nothing.
+        for goal in (goal for phase in self.phases[before.phase + 1 :] for goal in phase):
+            if goal in now.met and goal not in {*due, *before.met, *before.at_start}:
+                return Verdict("failure", f"{goal.thing} reached a later goal before the next one")
         return None
 
-    def _failed_at_rest(self, now: Progress, poses: Poses, things: Mapping[str, Thing]) -> Verdict | None:
-        remaining = [goal for goals in self.phases[now.phase :] for goal in goals]
-        placed = {goal.thing for goal in remaining if goal.met(poses, things)}.union(*now.counted)
-        for name in sorted(self.wanted - placed):
+    def _failed_at_rest(self, now: Progress, poses: Poses) -> Verdict | None:
+        remaining = {goal.thing for goals in self.phases[now.phase :] for goal in goals if goal not in now.done}
+        remaining |= {name for count in self.counts for name in count.things}.difference(*now.counted)
+        for name in sorted(remaining):
             if off_table(poses[name]):
                 x, y = centre_of(poses[name])
                 return Verdict("failure", f"{name} left the table at ({x:.3f}, {y:.3f}) m")
-        reason = self._disturbed(remaining, poses) if self.distractors_matter == "always" else ""
+        reason = self._disturbed(poses) if self.distractors_matter == "always" else ""
         return Verdict("failure", reason) if reason else None
 
-    def _reached(self, now: Progress, met: frozenset[Goal], poses: Poses) -> Verdict:
+    def _reached(self, now: Progress, poses: Poses) -> Verdict:
         counts = zip(self.counts, now.counted, strict=True)
         last = now.phase >= len(self.phases) - 1
         if not last or not all(len(inside) == count.exactly for count, inside in counts):
             return Verdict("open")
-        if self.phases and not met.issuperset(self.phases[-1]):
+        if self.phases and not now.done.issuperset(self.phases[-1]):
             return Verdict("open")
-        reason = self._disturbed(self.phases[-1], poses) if self.phases else ""
+        reason = self._disturbed(poses)
         return Verdict("failure", reason) if reason else Verdict("success")
 
-    def _disturbed(self, goals: Sequence[Goal], poses: Poses) -> str:
-        for goal in goals:
+    def _disturbed(self, poses: Poses) -> str:
+        """A distractor at a target of any goal, or with something that has a goal; which goals are reached is all one."""
+        for goal in self.goals:
             at = centre_of(poses[goal.thing])
             for name in self.distractors:
                 other = centre_of(poses[name])
-                if math.dist(at, other) < goal.within_m:
+                if math.dist(at, other) < goal.within_m and goal.turned_like(poses, name):
                     return (
                         f"{goal.thing} lies {math.dist(at, other):.3f} m from the distractor {name} "
                         f"(limit {goal.within_m} m)"

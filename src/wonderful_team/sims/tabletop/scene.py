@@ -3,27 +3,20 @@
 from __future__ import annotations
 
 import math
-import zlib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-
-import numpy as np
 
 from wonderful_team.errors import ConfigError
 from wonderful_team.sims.tabletop import textures
 from wonderful_team.sims.tabletop.goals import NEAR_M, Count, Goal, Never, Zone, footprint_at
+from wonderful_team.sims.tabletop.likeness import look_alikes
 from wonderful_team.sims.tabletop.model import Thing
 from wonderful_team.sims.tabletop.placing import CrowdedError, Floor, Room, Spot
 from wonderful_team.sims.tabletop.rules import Distractors, Order
 from wonderful_team.sims.tabletop.showing import Shown, Stand
 from wonderful_team.types import SlotKind
 
-__all__ = ["CrowdedError", "Scene", "Spot", "generator"]
-
-
-def generator(seed: int, purpose: str, attempt: int) -> np.random.Generator:
-    """One independent generator per purpose, so that a change in one leaves the others alone."""
-    return np.random.default_rng([seed, zlib.crc32(purpose.encode()), attempt])
+__all__ = ["CrowdedError", "Scene", "Spot"]
 
 
 @dataclass
@@ -32,12 +25,18 @@ class Scene(Floor):
 
     Attributes:
         partition: Generalisation level that was asked for (L1 to L4), or None; see `tasks/choices.py`.
+        alike: How much alike the covers are that `pick_textures` draws: from 0, at random, to 3, the most alike.
+        clutter: Names of things that no rule is about.
+        whole: Picture slots that show all that stands on the table.
         words: Text slots of the instruction; a word may hold picture slots of its own.
         pictures: Picture slots.
-        ends_when_reached, order, distractors_matter: See `rules.Rules`.
+        ends_when_reached, order, distractors_matter, goals_last: See `rules.Rules`.
     """
 
     partition: str | None = None
+    alike: int = 0
+    clutter: list[str] = field(default_factory=list)
+    whole: list[str] = field(default_factory=list)
     phases: list[list[Goal]] = field(default_factory=lambda: [[]])
     counts: list[Count] = field(default_factory=list)
     nevers: list[Never] = field(default_factory=list)
@@ -47,6 +46,8 @@ class Scene(Floor):
     ends_when_reached: bool = True
     order: Order = "free"
     distractors_matter: Distractors = "always"
+    goals_last: bool = False
+    _drawn: list[str] = field(default_factory=list)
 
     def add(
         self,
@@ -183,12 +184,19 @@ class Scene(Floor):
         """
         stands = {thing.name: stand for thing, stand in (moved or {}).items()}
         seen = self.things if only is None else only
-        self.pictures[slot] = Shown(kind, index, tuple(stands.get(t.name, Stand(t.name)) for t in seen))
+        everything = tuple(stands.get(t.name, Stand(t.name)) for t in seen)
+        self.pictures[slot] = Shown(kind, index, everything)
+        if only is None:
+            self.whole.append(slot)
 
     def pick_textures(self, count: int, among: Sequence[str] | None = None) -> list[str]:
-        """Different textures, drawn by the colour generator."""
+        """Different textures, drawn by the colour generator; in harder scenes they look like those drawn before."""
         names = list(among if among is not None else textures.texture_names())
-        return [names[int(k)] for k in self.colours.choice(len(names), size=count, replace=False)]
+        drawn = [names[int(k)] for k in self.colours.choice(len(names), size=count, replace=False)]
+        if self.alike:
+            drawn = look_alikes(drawn, names, self._drawn, self.alike)
+        self._drawn += drawn
+        return drawn
 
 
 def _names(things: Thing | Sequence[Thing]) -> tuple[str, ...]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from wonderful_team.geometry import Pose
@@ -11,6 +11,7 @@ from wonderful_team.geometry.arrays import Array
 from wonderful_team.sims.tabletop.cameras import CAMERA_NAMES
 from wonderful_team.sims.tabletop.drawing import Renderer, open_renderer
 from wonderful_team.sims.tabletop.engine import mj
+from wonderful_team.sims.tabletop.looks import PLAIN_LIGHT
 from wonderful_team.sims.tabletop.model import BuiltModel, Thing, build
 from wonderful_team.sims.tabletop.moving import put_body
 from wonderful_team.types import Slot, SlotKind, View
@@ -56,32 +57,58 @@ class Studio:
     def __init__(
         self, built: BuiltModel, start_qpos: Array, props: Sequence[Thing], size_px: tuple[int, int], wanted: str | None
     ) -> None:
-        self._table, self._props = built, tuple(props)
-        self._built = build((*built.things, *props), size_px, tool=built.tool) if props else built
+        # The pictures were taken before, in ordinary light, by cameras that stood where they stand now.
+        look = replace(built.look, light=PLAIN_LIGHT)
+        self._own = bool(props) or look.light is not built.look.light
+        self._built = build((*built.things, *props), size_px, built.tool, look) if self._own else built
         self._state = mj.MjData(self._built.model)
         self._start = _start_poses(built, start_qpos)
         self._wanted = wanted
 
     def slots(self, pictures: Mapping[str, Shown], table_renderer: Renderer) -> dict[str, Slot]:
         """Every picture, from both cameras."""
-        renderer = open_renderer(self._built, self._wanted)[0] if self._props else table_renderer
+        renderer = open_renderer(self._built, self._wanted)[0] if self._own else table_renderer
         try:
             return {name: self._slot(name, shown, renderer) for name, shown in pictures.items()}
         finally:
-            if self._props:
+            if self._own:
                 renderer.close()
 
+    def masks(self, shown: Shown, camera: str, table_renderer: Renderer) -> dict[str, Array]:
+        """Which pixels of a picture show each thing in it, props too, shape (H, W) bool by name."""
+        renderer = open_renderer(self._built, self._wanted)[0] if self._own else table_renderer
+        try:
+            self._set_up(shown)
+            ids = renderer.bodies(self._state, camera)
+        finally:
+            if self._own:
+                renderer.close()
+        return {stand.thing: ids == self._built.body_id(stand.thing) for stand in shown.stands}
+
+    def stands(self, shown: Shown) -> list[tuple[Thing, Pose]]:
+        """Everything in a picture, props too, and where it stands in it."""
+        things = {thing.name: (k, thing) for k, thing in enumerate(self._built.things)}
+        found = []
+        for stand in shown.stands:
+            number, thing = things[stand.thing]
+            found.append((thing, self._pose(thing, stand, shown.kind == "object", number)))
+        return found
+
     def _slot(self, name: str, shown: Shown, renderer: Renderer) -> Slot:
-        stands = {stand.thing: stand for stand in shown.stands}
-        for k, thing in enumerate(self._built.things):
-            stand = stands.get(thing.name)
-            put_body(self._built, self._state, thing.name, self._pose(thing, stand, shown.kind == "object", k))
-        mj.mj_forward(self._built.model, self._state)
+        self._set_up(shown)
         views = {}
         for camera in CAMERA_NAMES:
             drawn = renderer.draw(self._state, camera, alone=shown.kind == "object")
             views[camera] = View(f"slot:{name}:{camera}", camera, 0.0, drawn.rgb)
         return Slot(name, shown.kind, views, shown.index)
+
+    def _set_up(self, shown: Shown) -> None:
+        """Put everything where the picture shows it, and the rest out of sight."""
+        stands = {stand.thing: stand for stand in shown.stands}
+        for k, thing in enumerate(self._built.things):
+            stand = stands.get(thing.name)
+            put_body(self._built, self._state, thing.name, self._pose(thing, stand, shown.kind == "object", k))
+        mj.mj_forward(self._built.model, self._state)
 
     def _pose(self, thing: Thing, stand: Stand | None, alone: bool, number: int) -> Pose:
         if stand is None:

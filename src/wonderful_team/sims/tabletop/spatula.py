@@ -49,6 +49,7 @@ class Spatula:
     def __init__(self, built: BuiltModel, state: Any, poses: Callable[[], Poses]) -> None:
         self._built, self._model, self._state, self._poses = built, built.model, state, poses
         self._blade = int(mj.mj_name2id(built.model, mj.mjtObj.mjOBJ_GEOM, "blade"))
+        self._slot = int(built.model.body_mocapid[built.body_id("tool")])
         self.tool_m = np.array(HOME_M)
 
     def push(self, action: Push) -> Pushed:
@@ -101,14 +102,13 @@ class Spatula:
         return during, reach
 
     def _stuck(self) -> bool:
-        contacts = (self._state.contact[k] for k in range(self._state.ncon))
-        return any(c.dist < -RESISTANCE_M for c in contacts if self._blade in (c.geom1, c.geom2))
+        contact = self._state.contact
+        return bool(((contact.geom == self._blade).any(axis=1) & (contact.dist < -RESISTANCE_M)).any())
 
     def _place(self, position_m: Array, yaw_rad: float) -> None:
         self.tool_m = position_m
-        slot = int(self._model.body_mocapid[self._built.body_id("tool")])
-        self._state.mocap_pos[slot] = position_m
-        self._state.mocap_quat[slot] = (math.cos(yaw_rad / 2), 0.0, 0.0, math.sin(yaw_rad / 2))
+        self._state.mocap_pos[self._slot] = position_m
+        self._state.mocap_quat[self._slot] = (math.cos(yaw_rad / 2), 0.0, 0.0, math.sin(yaw_rad / 2))
 
     def _things(self) -> list[tuple[Thing, Pose]]:
         poses = self._poses()

@@ -47,6 +47,7 @@ class Suction:
         self._movable = {built.body_id(thing.name) for thing in built.things if thing.body.movable}
         self._groups = np.zeros(6, dtype=np.uint8)
         self._groups[[THING_GROUP, TABLE_GROUP]] = 1
+        self._slot = int(built.model.body_mocapid[built.body_id("tool")])
         self.tool_m = np.array(HOME_M)
         self.holding = False
 
@@ -109,9 +110,8 @@ class Suction:
 
     def _place_tool(self, position_m: Array, yaw_rad: float) -> None:
         self.tool_m = np.array(position_m)
-        slot = int(self._model.body_mocapid[self._built.body_id("tool")])
-        self._state.mocap_pos[slot] = position_m
-        self._state.mocap_quat[slot] = (math.cos(yaw_rad / 2), 0.0, 0.0, math.sin(yaw_rad / 2))
+        self._state.mocap_pos[self._slot] = position_m
+        self._state.mocap_quat[self._slot] = (math.cos(yaw_rad / 2), 0.0, 0.0, math.sin(yaw_rad / 2))
 
     def _attach(self, body: int) -> None:
         """Weld the thing to the tool as it stands now."""
@@ -157,9 +157,7 @@ class Suction:
         return contact_z + origin_below_tool
 
     def _touches(self, body: int) -> bool:
-        for k in range(self._state.ncon):
-            contact = self._state.contact[k]
-            pair = {int(self._model.geom_bodyid[contact.geom1]), int(self._model.geom_bodyid[contact.geom2])}
-            if body in pair and len(pair) == 2 and contact.dist < 0.0:
-                return True
-        return False
+        contact = self._state.contact
+        pairs = self._model.geom_bodyid[contact.geom]
+        with_another = (pairs == body).sum(axis=1) == 1
+        return bool((with_another & (contact.dist < 0.0)).any())

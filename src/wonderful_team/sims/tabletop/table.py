@@ -3,7 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
+
+import numpy as np
 
 from wonderful_team.actions import PickPlace, Push
 from wonderful_team.errors import ConfigError
@@ -13,14 +17,33 @@ from wonderful_team.sims.tabletop.drawing import Drawn, Renderer, open_renderer
 from wonderful_team.sims.tabletop.engine import mj
 from wonderful_team.sims.tabletop.goals import Poses
 from wonderful_team.sims.tabletop.judging import Happened
-from wonderful_team.sims.tabletop.model import Thing, build
+from wonderful_team.sims.tabletop.looks import look_of
+from wonderful_team.sims.tabletop.model import Thing, ToolName, build
 from wonderful_team.sims.tabletop.moving import put_body, settle
+from wonderful_team.sims.tabletop.options import Tiers
 from wonderful_team.sims.tabletop.registering import TabletopTask, filled
 from wonderful_team.sims.tabletop.rules import Rules
 from wonderful_team.sims.tabletop.showing import Studio
 from wonderful_team.sims.tabletop.spatula import Spatula
 from wonderful_team.sims.tabletop.suction import Picked, Suction
 from wonderful_team.types import Instruction
+
+
+@dataclass(frozen=True, eq=False)
+class Snapshot:
+    """Where every body stood at one instant: enough to draw it again."""
+
+    qpos: Array
+    mocap_pos: Array
+    mocap_quat: Array
+
+    def same_as(self, other: Snapshot) -> bool:
+        """Whether nothing at all moved between the two."""
+        return (
+            np.array_equal(self.qpos, other.qpos)
+            and np.array_equal(self.mocap_pos, other.mocap_pos)
+            and np.array_equal(self.mocap_quat, other.mocap_quat)
+        )
 
 
 class Table:
@@ -40,9 +63,11 @@ class Table:
         recolour: int | None = None,
         renderer: str | None = None,
         partition: str | None = None,
+        tiers: Tiers | None = None,
     ) -> None:
         self.task, self.seed = task, seed
-        self.scene = scene = task.scene(seed, recolour, partition)
+        tiers = tiers or Tiers()
+        self.scene = scene = task.scene(seed, recolour, partition, tiers)
         self.things: Mapping[str, Thing] = {thing.name: thing for thing in scene.things}
         self.rules = Rules(
             tuple(tuple(phase) for phase in scene.phases if phase),
@@ -53,8 +78,10 @@ class Table:
             tuple(scene.nevers),
             scene.order,
             scene.distractors_matter,
+            scene.goals_last,
         )
-        self.built = build(scene.things, size_px, "spatula" if "push" in task.vocabulary.kinds else "suction")
+        tool: ToolName = "spatula" if "push" in task.vocabulary.kinds else "suction"
+        self.built = build(scene.things, size_px, tool, look_of(seed, tiers, size_px))
         self._state = mj.MjData(self.built.model)
         mj.mj_forward(self.built.model, self._state)
         self.tool: Suction | Spatula = (
@@ -85,10 +112,13 @@ class Table:
 
     def poses(self) -> Poses:
         """True pose of each thing now."""
+        return self._poses(self._state)
+
+    def _poses(self, state: Any) -> Poses:
         found = {}
         for name in self.things:
             body = self.built.body_id(name)
-            found[name] = Pose(self._state.xpos[body].copy(), self._state.xquat[body].copy())
+            found[name] = Pose(state.xpos[body].copy(), state.xquat[body].copy())
         return found
 
     def run(self, action: PickPlace | Push) -> Mapping[str, Any]:
@@ -135,11 +165,48 @@ class Table:
         """Id of the body that each pixel of a view shows, shape (H, W)."""
         return self.renderer().bodies(self._state, camera)
 
-    def instruction(self) -> Instruction:
-        """Words with their slots filled, and a picture for every picture slot."""
-        studio = Studio(self.built, self._start_qpos, self.scene.props, self._size_px, self._wanted_renderer)
+    def snapshot(self) -> Snapshot:
+        """Where everything stands now, kept."""
+        state = self._state
+        return Snapshot(state.qpos.copy(), state.mocap_pos.copy(), state.mocap_quat.copy())
+
+    def masks_at(self, at: Snapshot, camera: str) -> dict[str, Array]:
+        """Which pixels of a view showed each thing at an earlier instant, shape (H, W) bool by name."""
+        ids = self.renderer().bodies(self._state_at(at), camera)
+        return {name: ids == self.built.body_id(name) for name in self.things}
+
+    def poses_at(self, at: Snapshot) -> Poses:
+        """True pose of each thing at an earlier instant."""
+        return self._poses(self._state_at(at))
+
+    def _state_at(self, at: Snapshot) -> Any:
+        state = mj.MjData(self.built.model)
+        state.qpos[:], state.mocap_pos[:], state.mocap_quat[:] = at.qpos, at.mocap_pos, at.mocap_quat
+        mj.mj_kinematics(self.built.model, state)
+        mj.mj_comPos(self.built.model, state)
+        mj.mj_camlight(self.built.model, state)
+        return state
+
+    def slot_masks(self, slot: str, camera: str) -> dict[str, Array]:
+        """Which pixels of an instruction's picture show each thing or prop, shape (H, W) bool by name."""
+        return self._studio.masks(self.scene.pictures[slot], camera, self.renderer())
+
+    def slot_stands(self, slot: str) -> list[tuple[Thing, Pose]]:
+        """What an instruction's picture shows, props too, and where it stands in it."""
+        return self._studio.stands(self.scene.pictures[slot])
+
+    @cached_property
+    def _studio(self) -> Studio:
+        return Studio(self.built, self._start_qpos, self.scene.props, self._size_px, self._wanted_renderer)
+
+    @cached_property
+    def _instruction(self) -> Instruction:
         text = filled(self.task.instruction, self.scene.words)
-        return Instruction(text, studio.slots(self.scene.pictures, self.renderer()))
+        return Instruction(text, self._studio.slots(self.scene.pictures, self.renderer()))
+
+    def instruction(self) -> Instruction:
+        """Words with their slots filled, and a picture for every picture slot; drawn once."""
+        return self._instruction
 
     def close(self) -> None:
         """Give the renderer back; safe to call twice."""

@@ -9,7 +9,7 @@ import numpy as np
 
 from wonderful_team.errors import UnknownNameError
 from wonderful_team.geometry.arrays import Array
-from wonderful_team.sims.tabletop import patterns
+from wonderful_team.sims.tabletop import patterns, table_patterns
 from wonderful_team.sims.tabletop.patterns import SIDE_PX, TILE_M, Colour, mixed
 
 __all__ = ["PAPER_SHADES", "SIDE_PX", "TILE_M", "texture", "texture_names"]
@@ -36,6 +36,8 @@ SKINS: dict[str, Colour] = {
 }
 GREY = "grey"
 """Of things in pictures that show a shape alone."""
+TABLE_COVERS = ("planks table", "gingham table", "terrazzo table")
+"""What covers the table in harder scenes, tier after tier."""
 PAPER_SHADES = {
     "paper": ((235, 235, 235), 0.2),
     "pale paper": ((250, 250, 250), 0.4),
@@ -73,9 +75,12 @@ def _makers() -> dict[str, Callable[[], Array]]:
 
 
 def _special() -> dict[str, Callable[[], Array]]:
-    """Skins of fruits, colours of papers and the grey of examples; not offered for other things."""
+    """Skins of fruits, colours of papers, covers of tables and the grey of examples; not offered for other things."""
     made: dict[str, Callable[[], Array]] = {f"{f} skin": partial(patterns.skin, f, rgb) for f, rgb in SKINS.items()}
     made[GREY] = partial(patterns.plain, (150, 150, 150))
+    made |= dict(
+        zip(TABLE_COVERS, (table_patterns.planks, table_patterns.gingham, table_patterns.terrazzo), strict=True)
+    )
     for kind, (other, share) in PAPER_SHADES.items():
         made |= {f"{name} {kind}": partial(patterns.plain, mixed(rgb, other, share)) for name, rgb in PLAIN.items()}
     return made

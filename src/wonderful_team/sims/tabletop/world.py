@@ -7,11 +7,12 @@ from functools import cached_property
 
 from wonderful_team.actions import Action, PickPlace, Push, Vocabulary
 from wonderful_team.errors import ConfigError
-from wonderful_team.sims.tabletop.cameras import CAMERA_NAMES, SIZE_PX, TABLE_HIGH_M, TABLE_LOW_M
+from wonderful_team.sims.tabletop.cameras import CAMERA_NAMES, TABLE_HIGH_M, TABLE_LOW_M
+from wonderful_team.sims.tabletop.options import Tiers, asked
 from wonderful_team.sims.tabletop.privileged import TabletopTruth
 from wonderful_team.sims.tabletop.registering import find_task
 from wonderful_team.sims.tabletop.spatula import SHORTEST_M
-from wonderful_team.sims.tabletop.table import Table
+from wonderful_team.sims.tabletop.table import Snapshot, Table
 from wonderful_team.types import Instruction, Limits, Observation, RobotState, StepReport, View
 
 
@@ -19,7 +20,8 @@ class TabletopWorld:
     """Implements the World protocol; time is simulated, and everything follows from the seed.
 
     Attributes:
-        task, seed, partition: Which scene this is; a task's name may say its partition, as in "rotate@L3".
+        task, seed, partition, tiers: Which scene this is; a task's name may say more of it, see `options.py`:
+            "rotate@L3", "rotate@small" for pictures of 256 x 128 px, "rotate@clutter=2".
         horizon: How many actions are judged.
         privileged: The truth, for scorers and simulated models only.
     """
@@ -29,24 +31,30 @@ class TabletopWorld:
         task: str,
         seed: int = 0,
         *,
-        size_px: tuple[int, int] = SIZE_PX,
+        size_px: tuple[int, int] | None = None,
         recolour: int | None = None,
         renderer: str | None = None,
         partition: str | None = None,
+        clutter: int = 0,
+        lighting: int = 0,
+        camera: int = 0,
+        texture: int = 0,
     ) -> None:
-        task, _, level = task.partition("@")
-        partition = partition or level or None
-        found = find_task(task)
+        wanted = asked(task, partition, size_px, Tiers(clutter, lighting, camera, texture))
+        found, partition = find_task(wanted.task), wanted.partition
         if seed < 0 or (recolour is not None and recolour < 0):
             raise ConfigError(f"seed and recolour must be 0 or more, got {seed} and {recolour}")
         if renderer not in (None, "rays"):
             raise ConfigError(f"renderer: expected None (the best that works here) or 'rays', got {renderer!r}")
         self.task, self.seed, self.horizon = found.name, seed, found.horizon
-        self.partition = partition
+        self.partition, self.tiers = partition, wanted.tiers
         self.vocabulary: Vocabulary = found.vocabulary
         self.limits = Limits(TABLE_LOW_M, TABLE_HIGH_M)
-        self._table = Table(found, seed, size_px, recolour=recolour, renderer=renderer, partition=partition)
+        self._table = Table(
+            found, seed, wanted.size_px, recolour=recolour, renderer=renderer, partition=partition, tiers=wanted.tiers
+        )
         self._stopped = False
+        self._seen: tuple[Snapshot, Observation] | None = None
         self.privileged = TabletopTruth(self._table)
 
     @cached_property
@@ -70,14 +78,22 @@ class TabletopWorld:
         return self._table.time_s
 
     def observe(self) -> Observation:
-        """Draw both views of the table as it stands now, the robot out of the way."""
+        """Both views of the table as it stands now, the robot out of the way; drawn again only when something moved."""
+        at = self._table.snapshot()
+        if self._seen is not None and not self._table.closed:
+            before, seen = self._seen
+            if before.same_as(at) and seen.main.time_s == self.time_s:
+                return seen
         views = {}
         for name in CAMERA_NAMES:
             drawn = self._table.draw(name)
             camera = self._table.built.lenses[name].camera
             views[name] = View(name, name, self.time_s, drawn.rgb, drawn.depth_m, camera)
         tool = self._table.tool
-        return Observation(views, RobotState(tool.tool_m.copy(), None, tool.holding))
+        observation = Observation(views, RobotState(tool.tool_m.copy(), None, tool.holding))
+        self.privileged.saw(observation)
+        self._seen = (at, observation)
+        return observation
 
     def execute(self, action: Action) -> StepReport:
         """Run one action.

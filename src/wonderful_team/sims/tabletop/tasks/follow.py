@@ -31,7 +31,7 @@ def waypoint(number: int) -> Spot:
 )
 def follow_motion(scene: Scene, rng: np.random.Generator) -> None:
     """Move a pictured thing through the places that the frames show, one place an action; another thing stands by."""
-    scene.order = "every action"
+    scene.order, scene.goals_last = "every action", True
     cover, other = scene.pick_textures(2, kit_textures(scene))
     spots = [waypoint(int(k)) for k in rng.choice(WAYPOINTS, size=FRAMES, replace=False)]
     yaw = float(scene.layout.integers(4)) * math.pi / 2
@@ -56,7 +56,7 @@ def follow_motion(scene: Scene, rng: np.random.Generator) -> None:
 )
 def follow_order(scene: Scene, rng: np.random.Generator) -> None:
     """Stack things in the order that the frames show, one move an action; a fourth thing is left alone."""
-    scene.order = "every action"
+    scene.order, scene.goals_last = "every action", True
     scene.apart_m = 0.16
     covers = scene.pick_textures(4, kit_textures(scene))
     flat = kit_shapes(scene, FLAT)

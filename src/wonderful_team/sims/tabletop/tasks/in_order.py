@@ -32,7 +32,7 @@ WITHIN_M = 0.05
 )
 def pick_in_order_then_restore(scene: Scene, rng: np.random.Generator) -> None:
     """Put a thing into one container, then into another, then back into its own; six containers differ by texture."""
-    scene.order = "no skipping"
+    scene.order, scene.goals_last = "no skipping", True
     name = one_of(rng, base_shapes(scene, CONTAINERS))
     covers = scene.pick_textures(6, base_textures(scene))
     places = [(x, y) for x in ROWS_M for y in COLUMNS_M]

@@ -32,7 +32,7 @@ SKEW_RAD = math.radians(6)
 )
 def manipulate_old_neighbor(scene: Scene, rng: np.random.Generator) -> None:
     """Put a pictured thing into a container, then the neighbour that it had on a named side; three more stand by."""
-    scene.order = "no skipping"
+    scene.order, scene.goals_last = "no skipping", True
     covers = scene.pick_textures(5, kit_textures(scene))
     base_name, base_cover = one_of(rng, base_shapes(scene)), scene.pick_textures(1, base_textures(scene))[0]
     direction = one_of(rng, tuple(STEP_M))
@@ -47,7 +47,6 @@ def manipulate_old_neighbor(scene: Scene, rng: np.random.Generator) -> None:
     base = scene.add(base_name, base_cover)
     scene.goal(carried, near=base)
     scene.then()
-    scene.goal(carried, near=base)
     scene.goal(neighbour, near=base)
     scene.show(dragged_obj=carried, base_obj=base)
     scene.say(direction=direction)

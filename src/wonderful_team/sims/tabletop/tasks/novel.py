@@ -73,7 +73,7 @@ def novel_noun(scene: Scene, rng: np.random.Generator) -> None:
     carried = scene.add(one_of(rng, kit_shapes(scene)), cover)
     _other_geometry(scene, rng, carried, base, like_base=rng.random() < 0.5, cover=other)
     scene.goal(carried, near=base)
-    first, second = _definitions(scene, rng, carried, base)
+    first, second = _definitions(scene, rng, carried, base, "dragged_obj_1")
     scene.say(first_noun=first, second_noun=second)
 
 
@@ -89,7 +89,7 @@ def novel_adj_and_noun(scene: Scene, rng: np.random.Generator) -> None:
     covers = scene.pick_textures(2, kit_textures(scene))
     for cover, like_base in zip(covers, (False, True), strict=True):
         _other_geometry(scene, rng, carried, base, like_base=like_base, cover=cover)
-    first, second = _definitions(scene, rng, carried, base)
+    first, second = _definitions(scene, rng, carried, base, "dragged_obj")
     quality = f"less {adjective.word}" if adjective.less else adjective.word
     scene.say(adjective=adjective.word, quality=quality, first_noun=first, second_noun=second)
 
@@ -113,13 +113,13 @@ def _comparison(scene: Scene, rng: np.random.Generator) -> tuple[Thing, Thing, _
     return variants[not adjective.less], base, adjective
 
 
-def _definitions(scene: Scene, rng: np.random.Generator, carried: Thing, base: Thing) -> tuple[str, str]:
-    """Say what two nouns mean, in any order, with grey pictures of the shapes."""
+def _definitions(scene: Scene, rng: np.random.Generator, carried: Thing, base: Thing, slot: str) -> tuple[str, str]:
+    """Say what two nouns mean, in any order, with grey pictures of the shapes; `slot` shows what is carried."""
     first, second = some_of(rng, NOUNS, 2)
-    lines = [f"This is a {first} {{dragged_obj_1}}.", f"This is a {second} {{base_obj}}."]
+    lines = [f"This is a {first} {{{slot}}}.", f"This is a {second} {{base_obj}}."]
     if rng.random() < 0.5:
         lines.reverse()
-    scene.show(dragged_obj_1=scene.prop(carried.shape, GREY), base_obj=scene.prop(base.shape, GREY))
+    scene.show(**{slot: scene.prop(carried.shape, GREY), "base_obj": scene.prop(base.shape, GREY)})
     scene.say(definitions=" ".join(lines))
     return first, second
 

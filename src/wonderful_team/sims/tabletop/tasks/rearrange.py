@@ -40,7 +40,7 @@ def rearrange_then_restore(scene: Scene, rng: np.random.Generator) -> None:
 def _to_the_picture(scene: Scene, rng: np.random.Generator) -> list[Thing]:
     """Things, a picture of where they go, and the goals; with one thing there is one that must not be there."""
     scene.apart_m = APART_M
-    scene.distractors_matter = "at the end"
+    scene.distractors_matter, scene.goals_last = "at the end", True
     count = int(rng.integers(1, 4))
     covers = scene.pick_textures(count + 1, kit_textures(scene))
     things = [scene.add(one_of(rng, kit_shapes(scene)), cover) for cover in covers[:count]]

@@ -23,7 +23,7 @@ SQUARE_BASES, CIRCLE_BASES = ("frame", "square", "container", "pallet"), ("bowl"
 )
 def same_texture(scene: Scene, rng: np.random.Generator) -> None:
     """Put the two things that have a pictured container's texture into it; one has another texture."""
-    scene.apart_m = WITHIN_M + 0.015
+    scene.apart_m, scene.goals_last = WITHIN_M + 0.015, True
     cover, other = scene.pick_textures(2, kit_textures(scene))
     base = scene.add(one_of(rng, base_shapes(scene)), cover)
     shapes = (*kit_shapes(scene), *SQUARE_LIKE)
@@ -38,7 +38,7 @@ def same_texture(scene: Scene, rng: np.random.Generator) -> None:
 )
 def same_shape(scene: Scene, rng: np.random.Generator) -> None:
     """Put the two things that are square, or round, like a pictured container into it; one has the other outline."""
-    scene.apart_m = WITHIN_M + 0.015
+    scene.apart_m, scene.goals_last = WITHIN_M + 0.015, True
     base_name = one_of(rng, base_shapes(scene))
     like, unlike = SQUARE_LIKE, CIRCLE_LIKE
     if base_name in CIRCLE_BASES:

@@ -24,6 +24,7 @@ WORDS = (
 @task("twist", instruction=WORDS, horizon=7, partitions=L123)
 def twist(scene: Scene, rng: np.random.Generator) -> None:
     """Turn every thing of a named texture by the angle that three pairs of pictures show, where it stands."""
+    scene.goals_last = True
     turned_rad = -math.radians(ANGLES_DEG[int(rng.integers(len(ANGLES_DEG)))])
     cover, *others = scene.pick_textures(3 + EXAMPLES, kit_textures(scene))
     count = int(rng.integers(1, 3))

@@ -1,0 +1,149 @@
+"""What was really seen: the truth behind every look at a table and behind every picture of its instruction.
+
+A look is kept as the pixels that were handed out and the state they were drawn from. Which pixels show which thing is
+drawn only when somebody asks.
+"""
+
+from __future__ import annotations
+
+import threading
+from collections import deque
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import TypeVar
+
+import numpy as np
+import shapely
+from shapely.geometry.base import BaseGeometry
+
+from wonderful_team.geometry import Pose
+from wonderful_team.geometry.arrays import Array
+from wonderful_team.sims.tabletop.goals import footprint_of
+from wonderful_team.sims.tabletop.model import Thing
+from wonderful_team.sims.tabletop.oracle import grasp_point
+from wonderful_team.sims.tabletop.table import Snapshot, Table
+from wonderful_team.types import Observation, TrueSight, TrueThing, View
+
+LOOKS = 24
+"""How many different looks are kept; a task of the suite has at most 17 actions."""
+T = TypeVar("T")
+OUTLINE_STEP_M = 0.0005
+"""How far an outline that is handed out may lie off the true one [m]."""
+KINDS = {"base": "container", "area": "area"}
+
+
+class Lazily(Mapping[str, T]):
+    """A mapping that is worked out when something in it is first asked for."""
+
+    def __init__(self, make: Callable[[], Mapping[str, T]]) -> None:
+        self._make: Callable[[], Mapping[str, T]] | None = make
+        self._made: Mapping[str, T] = {}
+        self._lock = threading.Lock()
+
+    def _all(self) -> Mapping[str, T]:
+        with self._lock:
+            if self._make is not None:
+                self._made, self._make = self._make(), None
+            return self._made
+
+    def __getitem__(self, name: str) -> T:
+        return self._all()[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._all())
+
+    def __len__(self) -> int:
+        return len(self._all())
+
+
+@dataclass(frozen=True, eq=False)
+class Look:
+    """One look: the state it was drawn from, and the sight of each camera."""
+
+    state: Snapshot
+    sights: Mapping[str, TrueSight]
+
+
+class Sights:
+    """Keeps what was looked at; bounded, and without any drawing of its own until somebody asks."""
+
+    def __init__(self, table: Table) -> None:
+        self._table = table
+        self._looks: deque[Look] = deque(maxlen=LOOKS)
+        self._slots: Mapping[str, TrueSight] | None = None
+        self._lock = threading.RLock()
+
+    def keep(self, observation: Observation) -> None:
+        """Remember one look; a second look at the same state shows the same and is not kept."""
+        state = self._table.snapshot()
+        if self._looks and self._looks[-1].state.same_as(state):
+            return
+        sights = {name: self._sight(view, state) for name, view in observation.views.items()}
+        self._looks.append(Look(state, sights))
+
+    def of(self, view_id: str) -> Sequence[TrueSight]:
+        """Every look at a view, newest first; one for a picture of the instruction; () for an unknown id."""
+        if view_id.startswith("slot:"):
+            found = self._of_slots().get(view_id)
+            return () if found is None else (found,)
+        return tuple(look.sights[view_id] for look in reversed(self._looks) if view_id in look.sights)
+
+    def _sight(self, view: View, state: Snapshot) -> TrueSight:
+        table, camera = self._table, view.camera_name
+        return TrueSight(
+            replace(view, depth_m=None),
+            Lazily(lambda: self._drawn(lambda: table.masks_at(state, camera))),
+            Lazily(lambda: true_things(table.things, table.poses_at(state))),
+        )
+
+    def _of_slots(self) -> Mapping[str, TrueSight]:
+        with self._lock:
+            if self._slots is None:
+                self._slots = {
+                    view.id: self._slot_sight(name, view)
+                    for name, slot in self._table.instruction().slots.items()
+                    for view in slot.views.values()
+                }
+            return self._slots
+
+    def _slot_sight(self, name: str, view: View) -> TrueSight:
+        table = self._table
+        return TrueSight(
+            view,
+            Lazily(lambda: self._drawn(lambda: table.slot_masks(name, view.camera_name))),
+            Lazily(lambda: {thing.name: true_thing(thing, pose) for thing, pose in table.slot_stands(name)}),
+        )
+
+    def _drawn(self, draw: Callable[[], Mapping[str, Array]]) -> Mapping[str, Array]:
+        """One drawing at a time: all pictures of an instruction are set up in the same state."""
+        with self._lock:
+            return draw()
+
+
+def true_things(things: Mapping[str, Thing], poses: Mapping[str, Pose]) -> dict[str, TrueThing]:
+    """The things at these poses, as simulated models are told of them."""
+    return {name: true_thing(thing, poses[name]) for name, thing in things.items()}
+
+
+def true_thing(thing: Thing, pose: Pose) -> TrueThing:
+    """One thing at a pose."""
+    body, position = thing.body, pose.position_m
+    return TrueThing(
+        name=thing.name,
+        words=f"{thing.texture} {thing.shape}",
+        kind=KINDS.get(body.kind, "object"),
+        shape=thing.shape,
+        cover=thing.texture,
+        position_m=position,
+        yaw_rad=pose.yaw_rad,
+        height_m=float(position[2]) + body.height_m,
+        outline_m=_outline(footprint_of(thing, pose)),
+        grasp_m=np.array(grasp_point(thing, pose)),
+    )
+
+
+def _outline(footprint: BaseGeometry) -> Array:
+    """The corners of what is covered; of several pieces, those of their hull. Holes are filled."""
+    whole = footprint if footprint.geom_type == "Polygon" else footprint.convex_hull
+    corners = shapely.get_coordinates(whole.exterior.simplify(OUTLINE_STEP_M))
+    return np.asarray(corners[:-1])

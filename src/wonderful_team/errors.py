@@ -60,6 +60,13 @@ class ModelUnavailableError(WonderfulTeamError):
     exit_code = 3
 
 
+class WorldUnavailableError(WonderfulTeamError):
+    """A simulator broke, hangs, or cannot set up its scene; the trial is an error, never the method's failure."""
+
+    exit_code = 6
+    stage = "world"
+
+
 class CacheMissError(ModelUnavailableError):
     """`--cache only` forbids asking a model, and the cache holds no answer."""
 

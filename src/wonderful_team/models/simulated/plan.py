@@ -1,0 +1,250 @@
+"""What has to be done, from the oracle's actions: which thing is meant, and what the place is that it goes to.
+
+The oracle speaks in metres; here its numbers become things and places that can be named.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+import shapely
+
+from wonderful_team.actions import Action, PickPlace, Push
+from wonderful_team.geometry import wrap_angle
+from wonderful_team.geometry.arrays import Array
+from wonderful_team.geometry.cameras import Camera
+from wonderful_team.interfaces import SceneTruth
+from wonderful_team.types import Instruction, TrueSight, TrueThing
+
+SAME_M = 0.02
+"""Two centres this close are the same place [m]."""
+REACH_M = 0.006
+"""A point this close to an outline still touches the thing [m]."""
+TURNED_RAD = math.radians(0.5)
+LANE_M = 0.02
+"""Half the width of what a push may meet [m]."""
+PICTURED = ("scene", "frame", "before", "after")
+
+
+@dataclass(frozen=True)
+class Spot:
+    """Where something goes, with one way to name it.
+
+    Attributes:
+        how: self (turned where it stands) | thing (a container, or another thing to be stacked on) | origin (where it stood
+            when this plan begins) | start (where it stood at the very start) | slot (as a picture of the instruction
+            shows it) | spot (free space).
+        at_m: Where the thing's centre ends [m].
+        thing: The other thing; for a spot, what it lies on, if anything.
+        slot: Name of the instruction's picture.
+    """
+
+    how: str
+    at_m: tuple[float, float]
+    thing: str | None = None
+    slot: str | None = None
+
+
+@dataclass(frozen=True)
+class Put:
+    """Carry a thing."""
+
+    thing: str
+    to: Spot
+    rotate_deg: float
+
+
+@dataclass(frozen=True)
+class Shove:
+    """Push a thing.
+
+    Attributes:
+        to_m: Where its centre ends [m].
+        into: The container that it then lies in, if any.
+        clear_of: Flat things on the table that it keeps off.
+    """
+
+    thing: str
+    to_m: tuple[float, float]
+    into: str | None
+    clear_of: tuple[str, ...] = ()
+
+
+Move = Put | Shove
+
+
+@dataclass
+class _Table:
+    """How things are believed to stand while a plan is followed."""
+
+    things: Mapping[str, TrueThing]
+    centres: dict[str, tuple[float, float]] = field(init=False)
+    turns: dict[str, float] = field(default_factory=dict)
+    moved: list[str] = field(default_factory=list)
+
+    def __post_init__(self) -> None:
+        self.centres = {name: _xy(thing.position_m) for name, thing in self.things.items()}
+
+    def outline(self, name: str) -> shapely.Polygon:
+        thing = self.things[name]
+        turn = self.turns.get(name, 0.0)
+        c, s = math.cos(turn), math.sin(turn)
+        around = (thing.outline_m - thing.position_m[:2]) @ np.array([[c, s], [-s, c]])
+        return shapely.Polygon(around + np.array(self.centres[name]))
+
+    def top_at(self, point: tuple[float, float], kinds: Sequence[str]) -> str | None:
+        """The uppermost thing at a point: what was put down last, else the highest."""
+        at = shapely.Point(point)
+        found = [
+            name
+            for name, thing in self.things.items()
+            if thing.kind in kinds and self.outline(name).distance(at) <= REACH_M
+        ]
+        return max(found, key=self._level, default=None)
+
+    def _level(self, name: str) -> tuple[int, float]:
+        return (self.moved.index(name) if name in self.moved else -1), self.things[name].height_m
+
+    def nearest_kind(self, point: tuple[float, float], kinds: Sequence[str], leave_out: str) -> str | None:
+        """A thing whose centre is that very place."""
+        near = [
+            (math.dist(centre, point), name)
+            for name, centre in self.centres.items()
+            if name != leave_out and self.things[name].kind in kinds
+        ]
+        return next((name for distance, name in sorted(near) if distance <= SAME_M), None)
+
+    def carry(self, name: str, to: tuple[float, float], turn: float) -> None:
+        self.centres[name] = to
+        self.turns[name] = self.turns.get(name, 0.0) + turn
+        if name in self.moved:
+            self.moved.remove(name)
+        self.moved.append(name)
+
+
+def moves_of(actions: Sequence[Action], truth: SceneTruth, instruction: Instruction | None) -> list[Move]:
+    """The oracle's actions as moves of things; an action on nothing is left out."""
+    table = _Table(truth.things())
+    pictured = _pictured(truth, instruction)
+    start = {name: _xy(thing.position_m) for name, thing in truth.start().items()}
+    moves: list[Move] = []
+    for action in actions:
+        if isinstance(action, PickPlace):
+            put = _put(action, table, pictured, start)
+            if put is not None:
+                moves.append(put)
+        elif isinstance(action, Push):
+            shove = _shove(action, table)
+            if shove is not None:
+                moves.append(shove)
+    return moves
+
+
+def _put(
+    action: PickPlace,
+    table: _Table,
+    pictured: Sequence[tuple[str, Mapping[str, tuple[float, float]]]],
+    start: Mapping[str, tuple[float, float]],
+) -> Put | None:
+    name = table.top_at(_xy(action.pick_m), ("object",)) or table.top_at(_xy(action.pick_m), ("container", "area"))
+    if name is None:
+        return None
+    turn = wrap_angle(action.yaw_rad)
+    centre = np.array(table.centres[name])
+    c, s = math.cos(turn), math.sin(turn)
+    offset = np.array([[c, -s], [s, c]]) @ (centre - action.pick_m[:2])
+    end = _xy(action.place_m[:2] + offset)
+    spot = _spot(name, end, abs(turn) > TURNED_RAD, table, pictured, start)
+    table.carry(name, end, turn)
+    degrees = round(-math.degrees(turn), 2) if abs(turn) > TURNED_RAD else 0.0
+    return Put(name, spot, degrees + 0.0)
+
+
+def _spot(
+    name: str,
+    end: tuple[float, float],
+    turned: bool,
+    table: _Table,
+    pictured: Sequence[tuple[str, Mapping[str, tuple[float, float]]]],
+    start: Mapping[str, tuple[float, float]],
+) -> Spot:
+    if turned and math.dist(end, table.centres[name]) <= SAME_M:
+        return Spot("self", end)
+    container = table.nearest_kind(end, ("container",), name)
+    if container is not None:
+        return Spot("thing", end, container)
+    if name in table.moved and math.dist(end, _xy(table.things[name].position_m)) <= SAME_M:
+        return Spot("origin", end)
+    under = table.nearest_kind(end, ("object",), name)
+    if under is not None:
+        return Spot("thing", end, under)
+    shown = [slot for slot, centres in pictured if name in centres and math.dist(centres[name], end) <= SAME_M]
+    if shown:
+        return Spot("slot", end, slot=shown[0])
+    if name in start and math.dist(start[name], end) <= SAME_M:
+        return Spot("start", end)
+    return Spot("spot", end, table.top_at(end, ("area", "container")))
+
+
+def _shove(action: Push, table: _Table) -> Shove | None:
+    start, end = _xy(action.start_m), _xy(action.end_m)
+    lane = shapely.LineString([start, end]).buffer(LANE_M)
+    met = [
+        (table.outline(name).distance(shapely.Point(start)), name)
+        for name, thing in table.things.items()
+        if thing.kind == "object" and table.outline(name).intersects(lane)
+    ]
+    if not met:
+        return None
+    name = min(met)[1]
+    way = np.subtract(end, start) / max(math.dist(start, end), 1e-9)
+    # Pushed far enough, a side of it lies against the blade.
+    around = (table.things[name].outline_m - table.things[name].position_m[:2]) @ _turned(-table.things[name].yaw_rad)
+    reach = float(np.abs(around).max(axis=0).min())
+    to = _xy(np.array(end) + way * reach)
+    table.carry(name, to, 0.0)
+    hulls = {n: table.outline(n).convex_hull for n, thing in table.things.items() if thing.kind == "container"}
+    into = next((n for n, hull in hulls.items() if hull.covers(shapely.Point(to))), None)
+    return Shove(name, to, into, tuple(n for n, thing in table.things.items() if thing.kind == "area"))
+
+
+def _turned(angle_rad: float) -> Array:
+    """Turns rows of points counter-clockwise, shape (2, 2)."""
+    c, s = math.cos(angle_rad), math.sin(angle_rad)
+    return np.array([[c, s], [-s, c]])
+
+
+def _pictured(
+    truth: SceneTruth, instruction: Instruction | None
+) -> list[tuple[str, Mapping[str, tuple[float, float]]]]:
+    """Where things stand in the instruction's pictures of the table, picture after picture."""
+    found: list[tuple[str, Mapping[str, tuple[float, float]]]] = []
+    for name, slot in {}.items() if instruction is None else instruction.slots.items():
+        if slot.kind not in PICTURED:
+            continue
+        view = next(iter(slot.views.values()))
+        looks = truth.sights(view.camera_name)
+        for sight in truth.sights(view.id):
+            camera = sight.view.camera or (looks[0].view.camera if looks else None)
+            places = {thing: stands_at(sight, thing, camera) for thing in sight.masks}
+            found.append((name, {thing: at for thing, at in places.items() if at is not None}))
+    return found
+
+
+def stands_at(sight: TrueSight, name: str, camera: Camera | None) -> tuple[float, float] | None:
+    """Where a thing stands in a picture [m]: as the sight says, else in the middle of the pixels that show it."""
+    thing = sight.things.get(name)
+    if thing is not None:
+        return _xy(thing.position_m)
+    rows, columns = np.nonzero(sight.masks[name])
+    if camera is None or not len(rows):
+        return None
+    middle = ((columns.min() + columns.max() + 1) / 2, (rows.min() + rows.max() + 1) / 2)
+    return _xy(camera.on_plane([middle], 0.0)[0])
+
+
+def _xy(position: Array) -> tuple[float, float]:
+    return float(position[0]), float(position[1])

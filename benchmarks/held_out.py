@@ -6,6 +6,9 @@
 Each task runs with its own words, with other words for the same thing, and with its scenes redrawn in other colours;
 nonsense and unknown nouns must be refused by name, not guessed. The model is `offline` (classical vision and a
 grammar); the figures say nothing about any vision-language model.
+
+Other words for all 17 VIMA tasks are in wordings_first.txt and wordings_last.txt, read by `benchmarks.wordings`; two tasks in
+one instruction are in `benchmarks.combined`.
 """
 
 from __future__ import annotations

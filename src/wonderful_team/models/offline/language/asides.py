@@ -55,7 +55,7 @@ _NOTHING_ELSE = (
 """Nothing but what is named may be moved."""
 _THESE = (
     rf"(?P<join>{_JOIN})(?:do not|don't|never) {_TOUCH} (?P<what>[^.,;{{}}]+)",
-    rf"\s*,?\s*without {_TOUCH} (?P<what>(?:the|any|a|both) [^.,;{{}}]+)",
+    rf"\s*,?\s*without {_TOUCH} (?P<what>(?:the|any|a|both) [^.,;{{}}]+|(?:the )?\{{[^{{}}]+\}})",
     rf"(?P<join>{_JOIN})(?:leave|keep) (?P<what>(?:the|both|all) [^.,;{{}}]+?)(?: (?:alone|untouched|as (?:it|they) (?:is|are)|unmoved|where (?:it|they) "
     r"(?:is|are|lies?|stands?)|in (?:its|their) places?))(?=\s*[.,;!]|\s*$)",
     rf"(?P<join>{_JOIN})(?P<what>the [^.,;{{}}]+?) {_STAYS}(?=\s*[.,;!]|\s*$)",

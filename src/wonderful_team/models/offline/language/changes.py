@@ -28,9 +28,17 @@ def thing_of(tree: Tree[Token]) -> Description:
     for child in tree.children:
         if isinstance(child, Tree):
             description = CHANGES[str(child.data)](child)(description)
+    if _is_bare_one(tree, description):
+        description = replace(description, noun="thing", name=PRONOUN)
     if description.quantity == "all" and any(token.type == "OF_TWO" for token in tokens_in(tree)):
         description = replace(description, quantity="one")
     return replace(description, text=render(description))
+
+
+def _is_bare_one(tree: Tree[Token], description: Description) -> bool:
+    """Whether the words are "this one" or "that one" alone."""
+    heads = [token.type for head in trees(tree, "head") for token in tokens_in(head)]
+    return heads == ["ONE"] and description == Description(noun="object", text="")
 
 
 def _place_of(tree: Tree[Token]) -> Description:
@@ -230,7 +238,8 @@ def _of_kind(tree: Tree[Token], whole: Description) -> Description:
 def _post(tree: Tree[Token]) -> Change:
     beside = next((token for token in tokens_in(tree) if token.type == "BESIDE_IT"), None)
     if beside is not None:
-        it = (Description(noun="thing", text="it", name=PRONOUN),)
+        named = list(trees(tree, "np"))
+        it = (thing_of(named[0]) if named else Description(noun="thing", text="it", name=PRONOUN),)
         both = (Related(value_of(beside), it), Related("near", it))
         return lambda d: replace(d, related=(*d.related, *both))
     related = related_of(tree)

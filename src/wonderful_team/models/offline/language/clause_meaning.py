@@ -168,6 +168,9 @@ def read_put(parts: Parts, meaning: Meaning) -> None:
     """Things go to a place, are taken away, or are only named for the next clause."""
     if "except" in parts.kinds:
         raise Unclear("it is not clear what is left out")
+    passed_over = parts.kinds & {"origin", "angle", "again", "turn", "ASPECT", "MEASURE", "FACE", "OPPOSITE", "STACK"}
+    if passed_over:
+        raise Unclear(f"it is not clear what {', '.join(sorted(passed_over)).lower()} is for")
     kind = "push" if "PUSH" in parts.kinds else "put"
     special = next((reader for word, reader in _SPECIAL.items() if word in parts.kinds), None)
     if special is not None:
@@ -313,15 +316,26 @@ def _without_place(parts: Parts, things: list[Description], meaning: Meaning, go
     if not things:
         raise Unclear("it names nothing to be moved")
     meaning.mentioned = [thing for thing in things if thing.name not in (PRONOUN, "table")]
+    if meaning.last_thing is not None:
+        things = meaning.or_last(things)
     meaning.mention(things)
     if meaning.done and meaning.last_goal is not None and not parts.kinds & {"TAKE", "SHARE", "AUX"}:
         # "put the star into the red bowl, then the blue one": another place for the same thing.
         last = meaning.done[-1]
+        if _stood_beside(things[0]):
+            # "put the star into the bowl, then what was left of it": another thing to the same place.
+            meaning.put(things[0], meaning.last_goal, last.kind)
+            return
         if last.to is not None and last.to.what is not None and _alike_kind(things[0], last.to.what):
             meaning.put(last.thing, replace(last.to, what=things[0]), last.kind)
             return
     if goes and things[0].name != PRONOUN:
         raise Unclear("it is not said where to put it")
+
+
+def _stood_beside(thing: Description) -> bool:
+    """Whether a thing is told by where it stands."""
+    return len(thing.related) > 1 and thing.related[-1].relation == "near"
 
 
 def _alike_kind(one: Description, other: Description) -> bool:

@@ -43,6 +43,8 @@ class Command:
         conditional: Only where the destination exists ("if such an area exists").
         after_last: The words say that the command before it comes first ("then").
         pictures: Names of the instruction's pictures that show what to do: the goal for arrange, the frames for follow.
+        off: What a pushed thing must not touch on its way nor at its end.
+        limit: A line inside the destination that a pushed thing must not pass.
     """
 
     kind: CommandKind
@@ -52,6 +54,8 @@ class Command:
     conditional: bool = False
     after_last: bool = False
     pictures: tuple[str, ...] = ()
+    off: Description | None = None
+    limit: Description | None = None
 
 
 @dataclass(frozen=True)

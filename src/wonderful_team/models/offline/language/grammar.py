@@ -67,7 +67,7 @@ angle: (BY | TO | OF)? ANGLE (TURN | SIDE_POST | IN? TURN)?
 
 stack: STACK things (COMMA? (ON | ONTO | IN | INTO) np)+
 push: PUSH things goal | WANT things AUX* PUSH goal | things AUX+ PUSH goal
-    | PUSH things SIDE | PUSH goal things | TAKE things (AND | COMMA | THEN)? PUSH IT? goal
+    | PUSH things SIDE | PUSH goal things | goal COMMA? PUSH things | TAKE things (AND | COMMA | THEN)? PUSH IT? goal
 swap: SWAP np (AND | WITH | FOR) np
 sort: MATCH things (WITH | TO | AND) goal
     | SORT things THAT (EACH (ONE | NOUN)? | ALL | IT | THEY) AUX* PUT? goal
@@ -133,7 +133,7 @@ spared: AND | COMMA
 in_slot: (IN | FROM | ON) SLOT
 post: THAT? AUX* PUT? relation np
     | THAT? AUX* BETWEEN np AND np
-    | THAT? AUX* BESIDE_IT
+    | THAT? AUX* BESIDE_IT (OF np)?
 relation: LEFT_OF | RIGHT_OF | ABOVE | BELOW | near | FAR | ON | IN
 """
 """`goal` against `post`: "the block left of the bowl" may end a noun phrase or start a goal; the reader picks the tree

@@ -11,7 +11,6 @@ from lark import Token, Tree
 from wonderful_team.errors import NotUnderstoodError
 from wonderful_team.models.offline.description import Description
 from wonderful_team.models.offline.language.changes import (
-    CHANGES,
     PRONOUN,
     first_token,
     thing_of,
@@ -20,6 +19,7 @@ from wonderful_team.models.offline.language.changes import (
     value_of,
 )
 from wonderful_team.models.offline.language.commands import Command, Destination
+from wonderful_team.models.offline.language.sharing import own_match, sharing
 from wonderful_team.models.offline.language.wording import render, split_colours
 
 _GOALS = {"IN": "in", "INTO": "in", "TO": "in", "ON": "on", "ONTO": "on", "LEFT_OF": "left", "RIGHT_OF": "right", "ABOVE": "above", "BELOW": "below",
@@ -76,6 +76,7 @@ class Meaning:
             goal = matched
         if goal is None:
             raise NotUnderstoodError("it is not said what 'it' or 'there' means; name the place")
+        goal = own_match(goal, things[0])
         for item in things:
             for thing in split_colours(item):
                 self._add(Command(kind, thing, goal, conditional=conditional))  # type: ignore[arg-type]
@@ -141,7 +142,7 @@ class Meaning:
                 found = descriptions
                 self.last_thing = descriptions[-1]
             for had in trees(things, "had_match"):
-                matched = _matching(next(trees(had, "matched")))
+                matched = sharing(next(trees(had, "matched")), found[0])
         return found, matched
 
     def _goal(self, tree: Tree[Token], thing: Description) -> Destination | None:
@@ -160,7 +161,7 @@ class Meaning:
                 other = self._resolved(thing_of(next(trees(child, "np"))))
                 return Destination("origin", other)
             case "goal_match":
-                goal = _matching(next(trees(child, "matched")))
+                goal = sharing(next(trees(child, "matched")), thing)
             case "goal_side":
                 token = first_token(child, ("SIDE_POST", "CORNER"))
                 value = value_of(token)
@@ -325,26 +326,6 @@ def two_of(named: Sequence[Description]) -> tuple[Description, Description]:
         left, right = (replace(single, superlative=side) for side in ("leftmost", "rightmost"))
         return replace(left, text=render(left)), replace(right, text=render(right))
     raise NotUnderstoodError("'between' needs two things; name both")
-
-
-def _matching(tree: Tree[Token]) -> Destination:
-    """The goal of `matched`: the kind of thing, and what it must share with the thing moved."""
-    description = Description(noun="area", text="")
-    aspect = "colour"
-    for child in tree.children:
-        if isinstance(child, Token):
-            if child.type == "NOUN":
-                noun, name, _ = value_of(child)
-                description = replace(description, noun=noun, name=name)
-            elif child.type == "SHAPE":
-                description = replace(description, noun="object", shape=value_of(child)[0])
-            elif child.type == "ASPECT":
-                aspect = str(value_of(child))
-        elif child.data == "adj":
-            description = CHANGES["adj"](child)(description)
-        elif child.data == "match_post":
-            aspect = next((str(value_of(token)) for token in tokens_in(child) if token.type == "ASPECT"), aspect)
-    return Destination("matching", replace(description, text=render(description)), aspect=aspect)  # type: ignore[arg-type]
 
 
 def _area() -> Description:

@@ -6,7 +6,7 @@ import re
 
 _HAVING = r"(?:(?:you(?: have| ve|'ve)?|having|we have|it is|the robot has)\s+)?"
 _AFTER = r"(?:after|once|when|as soon as)"
-_VERBISH = r"(?:put|plac|mov|rotat|turn|stack|push|sort|swap|drop|spin|set|bring|brought|transfer|slid|pick|lift|done|finish)[a-z]*"
+_VERBISH = r"(?:put|plac|mov|rotat|turn|stack|push|sort|swap|drop|spin|set|bring|brought|rearrang|arrang|follow|sweep|swept|transfer|slid|pick|lift|done|finish)[a-z]*"
 _OPENED = (
     (r"\b(?:whatever|anything that|all that|everything which)\s+(?:is|are)\b", "everything that is"),
     (r"\banything\b(?! else)", "everything"),

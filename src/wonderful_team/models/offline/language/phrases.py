@@ -208,7 +208,7 @@ PHRASES: dict[tuple[str, ...], Entry] = {
         (("EVERYTHING", "everything"), ("every thing", "all things")),
         (("THEN", "then"), ("and then", "after that", "and after that", "next", "followed by", "and afterwards",
                             "and finally", "finally", "before you", "and subsequently", "once that is done",
-                            "when that is done", "and next", "and lastly", "after which", "as a second step")),
+                            "when that is done", "and next", "and lastly", "after which", "as a second step", "at last", "and at last", "last of all")),
         (("ON_TABLE", "table"), ("on the table", "on this table", "of the table", "on the desk", "on the workspace",
                                  "in the workspace", "on the surface", "in the scene", "on table", "in this scene",
                                  "on the tabletop", "from the table", "in view", "in the view", "off the table",

@@ -11,14 +11,18 @@ from functools import lru_cache
 
 from wonderful_team.errors import NotUnderstoodError
 from wonderful_team.models.offline.description import Description
+from wonderful_team.models.offline.language.accounting import passed_over
 from wonderful_team.models.offline.language.asides import set_aside, without_reasons
+from wonderful_team.models.offline.language.bounds import Bounds, set_bounds
 from wonderful_team.models.offline.language.changes import related_of, thing_of
 from wonderful_team.models.offline.language.clause_parts import VERBS, Unclear
 from wonderful_team.models.offline.language.commands import Command, Understood
 from wonderful_team.models.offline.language.conditions import open_conditions
+from wonderful_team.models.offline.language.gists import gist_of_gathering, whole_gist
 from wonderful_team.models.offline.language.grammar import parse
 from wonderful_team.models.offline.language.meaning import Meaning
 from wonderful_team.models.offline.language.ordering import in_order
+from wonderful_team.models.offline.language.plain_speech import put_plainly
 from wonderful_team.models.offline.language.slots import BY_PARTS, gist_of_matching, read_clauses
 from wonderful_team.models.offline.language.tokens import Token, refusal, tokenise
 from wonderful_team.models.offline.language.vocabulary import known_words
@@ -31,16 +35,35 @@ def understand(text: str) -> Understood:
     Raises:
         NotUnderstoodError: A word is unknown, or the words do not make an instruction; says which.
     """
-    asides = set_aside(in_order(without_reasons(_ACCORDINGLY.sub("", text))), try_describe)
+    later = _LATER.search(text)
+    if later is not None:
+        raise NotUnderstoodError(refusal([], [later.group(0)]))
+    bounds = set_bounds(put_plainly(without_reasons(_ACCORDINGLY.sub("", text))), try_describe)
+    asides = set_aside(in_order(bounds.text), try_describe)
     plain, conditional = open_conditions(asides.text)
     tokens = _joined(tokenise(plain))
     commands = _with_what_is_shared(_commands(tokens, asides.text, text), tokens, asides.text, text)
     if conditional or asides.others_without:
         commands = tuple(replace(command, conditional=True) for command in commands)
+    if bounds.off is not None or bounds.limit is not None:
+        commands = tuple(_kept_off(command, bounds) for command in commands)
+    lost = passed_over(tokens, commands)
+    if lost:
+        raise NotUnderstoodError(_no_sentence(text, tokens, f"it is not clear what is meant by {', '.join(lost)}"))
     used = tuple(token.text for token in tokens)
     return Understood(text, commands, used, asides.nothing_else, asides.spared)
 
 
+def _kept_off(command: Command, bounds: Bounds) -> Command:
+    """A push with what it must keep off; what is said of a push in other words ("get two into the frame") is one."""
+    moved = command.kind == "put" and command.to is not None and command.to.how in ("in", "on")
+    if command.kind != "push" and not (moved and bounds.pushes):
+        return command
+    return replace(command, kind="push", off=bounds.off, limit=bounds.limit)
+
+
+_LATER = re.compile(r"\b(?:that|which|who) will (?:be|stand|lie|sit)\b", re.IGNORECASE)
+"""Speaks of how things will stand, which no picture shows."""
 _ACCORDINGLY = re.compile(
     r"[.;,]?\s*(?:and |so |then |please )*(?:place|put|sort|move|arrange|distribute)\s+(?:them|it|these|everything)(?:\s+all)?\s+accordingly\b",
     re.IGNORECASE,
@@ -80,6 +103,9 @@ def _goes_anywhere(command: Command) -> bool:
 
 def _commands(tokens: list[Token], words: str, text: str) -> tuple[Command, ...]:
     """Commands by the grammar; by parts where it knows no such order of words; by the gist where all says "matching"."""
+    gathered = gist_of_gathering(tokens)
+    if gathered is not None:
+        return (gathered,)
     tree = None if any(token.kind in BY_PARTS for token in tokens) else parse(tokens, "sentence")
     missed = ""
     if tree is not None:
@@ -99,7 +125,12 @@ def _commands(tokens: list[Token], words: str, text: str) -> tuple[Command, ...]
     try:
         commands = read_clauses(tokens, Meaning())
     except (Unclear, NotUnderstoodError) as error:
+        matching = gist_of_matching(tokens)
+        commands = whole_gist(tokens) if matching is None else (matching,)
+        if commands:
+            return commands
         raise NotUnderstoodError(_no_sentence(text, tokens, missed or str(error))) from error
+    commands = commands or whole_gist(tokens)
     if not commands:
         raise NotUnderstoodError(_no_sentence(text, tokens, "nothing in it says what to do"))
     return commands

@@ -18,8 +18,9 @@ from wonderful_team.models.offline.language.clause_meaning import (
     read_tower,
     read_turn,
 )
-from wonderful_team.models.offline.language.clause_parts import VERBS, Unclear, parts_of
+from wonderful_team.models.offline.language.clause_parts import PLACES, VERBS, Unclear, parts_of
 from wonderful_team.models.offline.language.commands import Command, Destination
+from wonderful_team.models.offline.language.gists import gist_of_gathering
 from wonderful_team.models.offline.language.grammar import parse
 from wonderful_team.models.offline.language.meaning import Meaning
 from wonderful_team.models.offline.language.tokens import Token
@@ -39,9 +40,12 @@ def clauses(tokens: Sequence[Token]) -> list[tuple[list[Token], bool]]:
         joins = (
             token.kind in ("AND", "COMMA")
             and after in VERBS
-            and any(t.kind in VERBS or t.kind == "AUX" for t in current)
+            and any(t.kind in VERBS or t.kind in ("AUX", "SLOT", "NOUN", "SHAPE", "IT") for t in current)
         )
-        if token.kind in ("SEP", "THEN") or joins:
+        back = (
+            token.kind in ("AND", "COMMA") and _back_follows(tokens, index) and any(t.kind in PLACES for t in current)
+        )
+        if token.kind in ("SEP", "THEN") or joins or back:
             if current:
                 out.append((current, then))
                 current, then = [], False
@@ -51,6 +55,14 @@ def clauses(tokens: Sequence[Token]) -> list[tuple[list[Token], bool]]:
     if current:
         out.append((current, then))
     return out
+
+
+def _back_follows(tokens: Sequence[Token], at: int) -> bool:
+    """Whether what follows says that something goes back to where it was ("and it goes back home")."""
+    after = at + 1
+    while after < len(tokens) and tokens[after].kind in ("IT", "THEY", "SLOT", "AUX"):
+        after += 1
+    return after < len(tokens) and tokens[after].kind == "ORIGIN"
 
 
 def read_clauses(tokens: Sequence[Token], meaning: Meaning) -> tuple[Command, ...]:
@@ -70,6 +82,11 @@ def read_clauses(tokens: Sequence[Token], meaning: Meaning) -> tuple[Command, ..
 
 
 def _read(clause: Sequence[Token], meaning: Meaning) -> None:
+    gathered = gist_of_gathering(clause)
+    if gathered is not None:
+        assert gathered.to is not None  # it goes into something
+        meaning.put(gathered.thing, gathered.to)
+        return
     tree = None if any(token.kind in BY_PARTS for token in clause) else parse(list(clause), "sentence")
     if tree is not None:
         meaning.commands(tree)
@@ -101,7 +118,7 @@ def gist_of_matching(tokens: Sequence[Token]) -> Command | None:
     nothing singles any of them out.
     """
     kinds = {token.kind for token in tokens}
-    if kinds & {"ANGLE", "TURN", "SUPER", "SIDE", "ORDINAL", "COLOUR", "PATTERN", "MATERIAL", "SWAP", "STACK", "BETWEEN", "LEFT_OF",
+    if kinds & {"ANGLE", "TURN", "SUPER", "SHAPE", "SIDE", "ORDINAL", "COLOUR", "PATTERN", "MATERIAL", "SWAP", "STACK", "BETWEEN", "LEFT_OF",
                 "RIGHT_OF", "NEAR", "ABOVE", "BELOW", "SLOT", "ORIGIN", "RETURN", "EXCEPT", "REMOVE", "PUSH", "ROTATE", "FAR"}:  # fmt: skip
         return None
     says = kinds & {"MATCH", "SAME", "ACCORDING"} or (kinds & {"ITS", "BY"} and "ASPECT" in kinds)

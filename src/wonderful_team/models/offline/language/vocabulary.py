@@ -62,10 +62,10 @@ _SHAPES: dict[str, str] = {
     "oval": "oval ellipse elliptical",
     "crescent": "crescent",
     "frame": "frame",
-    "long": "long elongated",
+    "long": "long elongated line bar stick rod strip",
 }
 _NOUNS: dict[str, str] = {
-    "object": "object item piece shape figure thing",
+    "object": "object something item piece shape figure thing",
     "block": "block cube ",
     "fruit": "fruit",
     "area": "area region zone field patch spot space paper sheet mat pad section location",
@@ -86,16 +86,16 @@ _VERBS: dict[str, str] = {
     "PUT": "put place move bring drop set lay transfer relocate deposit shift position carry deliver insert load placed "
     "moved brought dropped laid transferred relocated deposited shifted carried delivered inserted loaded putting "
     "placing moving bringing dropping transferring stick store throw toss slot pop stow stash dump "
-    "plop tuck add hand send haul convey transport lower slip pass stored thrown",
+    "plop tuck add hand send haul release convey transport lower slip pass stored thrown",
     "TAKE": "take grab pick get lift fetch find locate grasp identify seize collect gather see spot notice consider taking "
-    "picking grabbing choose select look",
+    "picking grabbing choose select look use",
     "ROTATE": "rotate turn spin rotated turned rotates turns spins spun rotation twist rotating turning spinning revolve swivel reorient orient pivot",
     "STACK": "stack pile stacked piled stacking",
     "SWAP": "swap exchange interchange switch swapped exchanged switched swapping exchanging switching trade",
     "RETURN": "return restore returned restored returning restoring undo reset",
     "REMOVE": "remove removed removing",
     "FACE": "point face points faces pointing facing pointed",
-    "PUSH": "push slide pushed slid shove nudge pushing sliding drag",
+    "PUSH": "push slide pushed slid shove nudge pushing sliding drag sweep swept sweeping shoved shoving brush wipe",
     "SORT": "sort distribute pair unite combine couple  group sorted distributed sorting allocate assign organise organize arrange",
     "GIVE": "give perform apply make do execute undergo undergoes receive receives does makes",
     "WANT": "want wish",
@@ -149,8 +149,8 @@ _SMALL: dict[str, str] = {
 }
 _ASPECTS: dict[str, str] = {
     "colour": "colour color colours colors coloured colored",
-    "texture": "texture pattern patterned textured textures patterns",
-    "shape": " profile outline form",
+    "texture": "texture pattern patterned textured textures patterns surface covering",
+    "shape": " profile outline form silhouette contour outlines profiles forms",
 }
 _MATERIALS: dict[str, str] = {
     "brick": "brick bricks brickwork",

@@ -86,6 +86,7 @@ class Team(Method):
             ConfigError: Wrong use.
             ModelUnavailableError: The provider did not answer.
         """
+        self.check_ready()
         wanted = instruction if isinstance(instruction, Instruction) else Instruction(instruction)
         words = vocabulary_named(vocabulary)
         bounds = limits or getattr(observation, "limits", None) or NO_WORKSPACE
@@ -112,6 +113,7 @@ class Team(Method):
         Raises:
             ConfigError: Nothing is asked for.
         """
+        self.check_ready()
         targets = [Target(f"T{number}", "object", words) for number, words in enumerate(objects, start=1)]
         targets += [Target(f"T{number}", "area", words) for number, words in enumerate(areas, start=len(targets) + 1)]
         if not targets:
@@ -184,6 +186,7 @@ def rollout(
     *,
     plan: MadePlan | Plan | None = None,
     replans: int = 0,
+    looks: int = 0,
     approval: Approval | Approver | None = None,
     seed: int | None = None,
     scene: str = "",
@@ -198,6 +201,7 @@ def rollout(
         world: Where it acts.
         plan: A plan that was read beforehand: exactly that plan runs, or the gate refuses.
         replans: How often the method may plan again after its first attempt.
+        looks: How often it may run only the first push of a plan, look, and plan the rest anew; that is no replan.
         approval: Consent to one plan, or a function that is asked for it before motion.
         seed: What the record says of the scene's seed.
         scene: What the record calls the scene.
@@ -208,6 +212,8 @@ def rollout(
     Raises:
         ConfigError: Wrong use, before anything moved.
     """
+    if isinstance(method, Method):
+        method = method.in_world(world)
     named = method if isinstance(method, Method) else None
     folder = new_run_folder(world.instruction.text, out if out is not None else (named.out if named else None))
     recorder = Recorder(folder, command=named.command if named else None)
@@ -226,6 +232,7 @@ def rollout(
         scene=scene,
         seed=seed,
         replans=replans,
+        looks=looks,
         plan=None if given is None else given.id,
         scored=scorer is not None,
     )
@@ -236,6 +243,7 @@ def rollout(
             plan=given,  # type: ignore[arg-type]
             plan_observation=made.observation if made is not None else None,
             replans=replans,
+            looks=looks,
             scorer=scorer,
             subscribers=(recorder, *subscribers, *(named.subscribers if named else ())),
             approval=approval,

@@ -183,6 +183,7 @@ def _trial_again(folder: Path, record: Mapping[str, Any], setup: Setup, team: Te
             world,
             plan=None if setup.plan is None else recorded_plan(folder, record, setup.plan),
             replans=setup.replans,
+            looks=setup.looks,
             seed=setup.seed,
             scene=setup.scene,
             scored=setup.scored,

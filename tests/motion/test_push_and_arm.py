@@ -65,7 +65,7 @@ def test_a_push_starts_behind_the_thing_and_brings_its_centre_to_the_end(x: floa
     assert behind < 0
     assert np.array(start.point_px) - box.centre == pytest.approx(behind * along, abs=1e-6)
     short = np.array((x, y)) - end.point_px
-    assert short @ along == pytest.approx(abs(along[0]) * box.width / 2 + abs(along[1]) * box.height / 2)
+    assert short @ along == pytest.approx(math.hypot(along[0] * box.width, along[1] * box.height) / 2)
     assert action.start_m[2] == action.end_m[2] == pytest.approx(0.0, abs=1e-6)
     assert start.position_m == pytest.approx(tuple(action.start_m))
 
@@ -78,6 +78,18 @@ def test_chosen_push_points_are_used_as_they_are() -> None:
     (planned,) = run(PushStep("G1", At("T1"), At("T1")), targets={"T1": chosen})
     assert [source.point_px for source in planned.sources] == [(90.0, 60.0), (180.0, 60.0)]
     assert [source.role for source in planned.sources] == ["push_start", "push_end"]
+
+
+def test_a_start_that_was_chosen_beside_a_thing_is_not_used_again_once_it_has_moved() -> None:
+    chosen = found(CAMERA, "T1", RED)
+    chosen = GroundedTarget(chosen.target, "found", "top", chosen.box, {"push_start": (90.0, 60.0)})
+    targets = TARGETS | {"T1": chosen, "T3": area("T3", (200, 100))}
+    first, second = run(PushStep("G1", At("T1"), At("T2")), PushStep("G1", At("T1"), At("T3")), targets=targets)
+    assert first.sources[0].point_px == (90.0, 60.0)
+    # The second push goes down: it starts above where the first one brought the thing.
+    x, y = second.sources[0].point_px
+    assert x == pytest.approx(200, abs=2)
+    assert y < 40
 
 
 def test_a_pushed_thing_is_picked_where_it_was_pushed() -> None:

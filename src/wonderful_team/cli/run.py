@@ -17,6 +17,10 @@ if TYPE_CHECKING:
     from wonderful_team.types import GateReport, Plan, PlannedAction
 
 
+LOOKS = 16
+"""More pushes than any sweep of the suite may take."""
+
+
 @click.command(
     short_help="Plan, pass the gate, act in a world, look, replan.",
     epilog="\b\nwonderful-team run tabletop/rotate --seed 3\nwonderful-team run tabletop/rotate --seed 3 --approve\n"
@@ -29,6 +33,11 @@ if TYPE_CHECKING:
 )
 @click.option("--plan", "plan_run", metavar="RUN", help="Run the plan of an earlier run, exactly as it was read.")
 @click.option("--replans", type=click.IntRange(0), default=3, show_default=True, help="Plans after the first.")
+@click.option(
+    "--looks",
+    type=click.IntRange(0),
+    help=f"New pictures after a push, the rest planned anew; default {LOOKS}, none with --replans 0 or --plan.",
+)
 @click.option("--approve", is_flag=True, help="Ask before anything moves.")
 @click.option("--keep-out", multiple=True, metavar="[NAME=]x0,y0,x1,y1[px|m]", help="A region nothing may enter.")
 @click.option("--video", type=PATH, metavar="FILE", help="Write an animation of the run (.webp, .gif or .png).")
@@ -40,6 +49,7 @@ def command(
     seed: int,
     plan_run: str | None,
     replans: int,
+    looks: int | None,
     approve: bool,
     keep_out: tuple[str, ...],
     video: Path | None,
@@ -60,6 +70,8 @@ def command(
     if video is not None:
         check_video_name(video)
     plan = read_plan(find_run(plan_run, common.out)) if plan_run is not None else None
+    if looks is None:
+        looks = LOOKS if replans and plan is None else 0
     kind = Method if team_way(common.method) is None else Team
     regions = read_keep_out(keep_out)
     progress = Progress()
@@ -74,6 +86,7 @@ def command(
             place,
             plan=plan,
             replans=replans,
+            looks=looks,
             approval=ask_person() if approve else None,
             seed=seed,
             scene=scene_name(world, seed),

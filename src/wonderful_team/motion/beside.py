@@ -62,7 +62,8 @@ def beside_px(box: Box, side: Side, half: tuple[float, float], view_size_px: tup
 def behind_px(box: Box, end: Point) -> tuple[Point, Point]:
     """Where a tool starts and ends so that pushing moves the centre of `box` to `end`.
 
-    It starts a gap behind the box, on the side away from the end, and stops half the box short of the end.
+    It starts a gap behind the box, on the side away from the end, and stops short of the end by half the extent of what
+    the box holds: that of an ellipse in it, since a corner turns away under a push.
 
     Raises:
         ValueError: The end is where the box already stands.
@@ -74,7 +75,8 @@ def behind_px(box: Box, end: Point) -> tuple[Point, Point]:
     dx, dy = dx / length, dy / length
     reach = (abs(dx) * box.width + abs(dy) * box.height) / 2
     back = reach + gap_px(box)
+    short = math.hypot(dx * box.width, dy * box.height) / 2
     return (
         (box.centre[0] - dx * back, box.centre[1] - dy * back),
-        (end[0] - dx * reach, end[1] - dy * reach),
+        (end[0] - dx * short, end[1] - dy * short),
     )

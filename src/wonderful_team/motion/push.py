@@ -57,7 +57,8 @@ def _given_start(step: PushStep, places: Places, progress: Progress) -> Point | 
     """The start that was chosen or named; None when it has to be computed."""
     if isinstance(step.start, At):
         target = places.target(step.start.target)
-        if "push_start" not in target.points:
+        if "push_start" not in target.points or progress.moved.get(step.start.target):
+            # A point that was chosen beside a thing is stale once the thing has moved: the next push may go elsewhere.
             return None
         return places.spot(step.start.target, ("push_start",), progress)[1].px
     return places.destination(step.start, progress, None).px

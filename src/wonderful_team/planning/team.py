@@ -26,6 +26,7 @@ from wonderful_team.planning import acting, grounding, judging, plan_loop
 from wonderful_team.planning.config import TeamConfig
 from wonderful_team.planning.desk import Desk, settle
 from wonderful_team.planning.functions import write_functions
+from wonderful_team.planning.looking import first_part, is_uncertain, looking_lines
 from wonderful_team.planning.plan_loop import PlanState
 from wonderful_team.planning.scene import SceneShown
 from wonderful_team.planning.together import both
@@ -86,6 +87,7 @@ class Team:
         )
         self._desk: Desk | None = None
         self._last: tuple[SceneShown, Plan] | None = None
+        self._looking = False
 
     @property
     def usage_by_role(self) -> Mapping[str, Usage]:
@@ -111,6 +113,7 @@ class Team:
         """Forget the trial: notebooks, memory, budget."""
         self._door.budget = Budget(self._caps)
         self._desk = self._last = None
+        self._looking = False
 
     async def make_plan(
         self,
@@ -238,12 +241,16 @@ class Team:
             if situation.plan is not None:
                 return self._take_over(situation, situation.plan)
             return await self._next_plan(situation, (), None)
+        looking, self._looking = self._looking, False
         if self._last is None:
             raise ConfigError("the team is asked to go on with a trial that it did not begin")
         scene, plan = self._last
         if situation.refused is not None:
             return await self._after_refusal(situation, plan)
         assert self._desk is not None
+        if looking and all(report.executed for run in situation.executed for report in run.reports):
+            # Not judged first: the new plan holds what is left to do in the new picture.
+            return await self._next_plan(situation, looking_lines(plan), plan)
         verdicts = await judging.judge_outcome(self._desk, scene, plan, situation.observation, situation.executed)
         if all(verdict.status == "done" for verdict in verdicts):
             return Done("every subgoal is done", verdicts)
@@ -293,6 +300,11 @@ class Team:
             return GaveUp(plan.message, plan.stage or "plan", plan, verdicts)
         if not plan.actions:
             return Done(plan.message, verdicts)
+        if situation.looks_left > 0 and is_uncertain(plan):
+            self._looking = True
+            first = first_part(plan)
+            self._last = None if self._last is None else (self._last[0], first)
+            return Act(first.actions, first, verdicts, look=True)
         return Act(plan.actions, plan, verdicts)
 
 

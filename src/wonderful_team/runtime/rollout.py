@@ -11,6 +11,7 @@ from wonderful_team.errors import (
     RobotFaultError,
     SafetyStopError,
     WonderfulTeamError,
+    WorldUnavailableError,
 )
 from wonderful_team.interfaces import Act, Decision, Done, GaveUp, Policy, Privileged, Situation, Subscriber, World
 from wonderful_team.runtime.approval import Approval, Approver
@@ -32,6 +33,7 @@ def rollout(
     plan: Plan | None = None,
     plan_observation: Observation | None = None,
     replans: int = 0,
+    looks: int = 0,
     scorer: Privileged | None = None,
     subscribers: Sequence[Subscriber] = (),
     approval: Approval | Approver | None = None,
@@ -48,6 +50,8 @@ def rollout(
         plan: A plan that was read beforehand: exactly its actions run, or the gate refuses.
         plan_observation: The picture that plan was made from; without it the scene must be pixel for pixel the same.
         replans: How often the policy may answer with new actions after its first ones ran out or were refused.
+        looks: How often the policy may run only the first actions of its plan and be asked again with a new picture, which is
+            not a replan. 0: every plan runs whole (open loop). A plan that was read beforehand always runs whole.
         scorer: Judges the outcome after the trial, and only then; None leaves it unscored.
         subscribers: Told of every event, in order.
         approval: Consent to one plan, or a function that is asked for it before motion; given, it is required.
@@ -65,13 +69,19 @@ def rollout(
     """
     if replans < 0:
         raise ConfigError(f"replans must be 0 or more, got {replans}")
+    if looks < 0:
+        raise ConfigError(f"looks must be 0 or more, got {looks}")
+    if looks and (plan is not None or isinstance(approval, Approval)):
+        raise ConfigError(
+            f"looks is {looks}, but the plan was read (or approved) beforehand: it runs as it is, so looks must be 0"
+        )
     progress = Progress(policy, scene, seed, tuple(subscribers))
-    setup = {"method": policy.name, "seed": seed, "replans": replans, **(configuration or {})}
+    setup = {"method": policy.name, "seed": seed, "replans": replans, "looks": looks, **(configuration or {})}
     progress.tell("run", scene, {**setup, "task": world.instruction, "limits": world.limits})
     execution = Execution(world, progress, approval, max_age_s, plan)
     try:
         with Caller() as caller:
-            ending = _attempts(policy, world, caller, execution, progress, plan, plan_observation, replans)
+            ending = _attempts(policy, world, caller, execution, progress, plan, plan_observation, replans, looks)
     except (KeyboardInterrupt, Exception) as error:  # noqa: BLE001  sorted by fault; what is unknown is raised again
         return _stop(world, progress, error)
     return _scored(progress, ending, scorer)
@@ -86,6 +96,7 @@ def _attempts(
     plan: Plan | None,
     plan_observation: Observation | None,
     replans: int,
+    looks: int,
 ) -> Ending:
     """Ask, gate, execute, until the policy or a bound ends it."""
     chunks = isinstance(policy, ChunkPolicy) and policy.chunks
@@ -106,6 +117,7 @@ def _attempts(
             executed=told,
             refused=refused,
             plan=plan if attempt == 0 else None,
+            looks_left=looks,
         )
         decision: Decision = caller.wait_for(policy.decide(situation))
         progress.decided(decision)
@@ -116,11 +128,14 @@ def _attempts(
         if halted is not None and halted.final:
             return halted
         refused = execution.refusal
-        if not chunks or refused is not None:
+        looking = decision.look and looks > 0 and halted is None
+        if looking:
+            looks -= 1
+        elif not chunks or refused is not None:
             if attempt >= replans:
                 return halted or Ending(None, None, "the plan's actions ran out")
             attempt += 1
-        observation = progress.observe(world, f"attempt {attempt}")
+        observation = progress.observe(world, "look" if looking else f"attempt {attempt}")
     return Ending("failure", "budget", f"the policy was asked {MAX_DECISIONS} times")
 
 
@@ -142,7 +157,7 @@ def _stop(world: World, progress: Progress, error: BaseException) -> Trial:
             world.stop()
             progress.tell("warning", "halt", f"{error}. The run is halted; a person should look before it goes on.")
             return progress.finish(Ending("failure", error.stage or "execution", str(error)))
-        case ModelUnavailableError():
+        case ModelUnavailableError() | WorldUnavailableError():
             world.stop()
             return progress.finish(Ending("error", error.stage or "model", str(error)))
         case WonderfulTeamError() if not isinstance(error, ConfigError):

@@ -32,6 +32,7 @@ class Setup:
     scene: str = ""
     seed: int | None = None
     replans: int = 0
+    looks: int = 0
     plan: str | None = None
     scored: bool = True
 

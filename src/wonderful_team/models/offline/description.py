@@ -49,6 +49,25 @@ class Related:
 
 
 @dataclass(frozen=True)
+class Way:
+    """A place on the way of a thing that is pushed.
+
+    Attributes:
+        thing: What is pushed.
+        into: Where to.
+        leg: before: where it rests on its way, outside; inside: where it ends; away: out of the way of others.
+        off: What it must not touch.
+        limit: A line in there that it must not pass.
+    """
+
+    thing: Description
+    into: Description
+    leg: Literal["before", "inside", "away"]
+    off: Description | None = None
+    limit: Description | None = None
+
+
+@dataclass(frozen=True)
 class Description:
     """A noun phrase, understood.
 
@@ -69,6 +88,7 @@ class Description:
         placed: For an area: the thing whose place in the instruction's picture `like` is meant.
         since: Name of the picture before it in a sequence: the place is where the thing came to between the two.
         excluded: What is left out of all that fit ("all blocks except the red one").
+        way: For an area: the free place where a thing is pushed to.
         text: The words it came from.
     """
 
@@ -90,3 +110,4 @@ class Description:
     excluded: tuple[Description, ...] = ()
     placed: Description | None = None
     since: str | None = None
+    way: Way | None = None

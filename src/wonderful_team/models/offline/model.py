@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from wonderful_team.errors import ModelOutputError, UnsupportedQuestion
+from wonderful_team.models.budget import Estimate
 from wonderful_team.models.offline.answers import ANSWERS, SAMPLED
 from wonderful_team.models.offline.vision import NotSeen
 from wonderful_team.types import Answer, Request, Usage
@@ -18,6 +19,10 @@ class OfflineModel:
     """
 
     name = MODEL_ID
+
+    def estimate(self, request: Request) -> Estimate:
+        """What a request may cost: nothing, answered or not."""
+        return Estimate(0, 0, 0.0, 0.0)
 
     def answer(self, request: Request) -> Answer:
         """Answer one request.

@@ -124,3 +124,10 @@ def test_a_right_doubt_changes_the_plan_and_a_wrong_one_does_not() -> None:
     assert isinstance(changed, PlanRevision)
     assert changed.plan is not None
     assert changed.plan.subgoals[0].text == "put the green star onto the blue square"
+
+
+def test_what_shows_through_a_hole_is_not_brought_away() -> None:
+    held = table(("square", "blue", 300, 160, 70), ("ring", "red", 300, 160, 36), ("disc", "green", 520, 160, 50))
+    texts = [subgoal.text for subgoal in draft("put the red ring into the green circle", held).subgoals]
+    assert len(texts) == 1
+    assert "red" in texts[0]

@@ -269,3 +269,19 @@ def test_a_push_starts_on_the_far_side() -> None:
 
 def test_the_scene_has_the_size_that_the_boxes_assume() -> None:
     assert SCENE.size_px == SIZE
+
+
+def test_a_free_area_keeps_off_the_places_that_others_need() -> None:
+    from wonderful_team.contracts import ShownSlot
+
+    free = Target("T1", "area", "free area", use=("place",))
+    (alone,) = read(SCENE, free).targets
+    assert alone.box is not None
+    x, y = (int(value) for value in in_view(alone.box, SCENE).centre)
+    goal = table(("star", "green", x, y, 36))
+    place = Target("T2", "area", "place of the green star", source="slot", like=("goal",), use=("place",))
+    slots = (ShownSlot("goal", "scene", (picture(goal),)),)
+    spot, there = read(SCENE, free, place, slots=slots).targets
+    assert spot.box is not None
+    assert there.box is not None
+    assert in_view(spot.box, SCENE).intersection(in_view(there.box, SCENE)) is None

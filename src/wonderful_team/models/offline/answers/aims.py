@@ -6,7 +6,15 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from typing import Literal
 
-from wonderful_team.models.offline.answers.eyes import GOOD, NEARLY_EQUAL, Eyes, one_of, place_words, unique_words
+from wonderful_team.models.offline.answers.eyes import (
+    GOOD,
+    NEARLY_EQUAL,
+    Eyes,
+    as_pictured,
+    one_of,
+    place_words,
+    unique_words,
+)
 from wonderful_team.models.offline.description import Description
 from wonderful_team.models.offline.language import Command, Destination, Understood, render
 from wonderful_team.models.offline.vision import Match, Thing
@@ -48,6 +56,9 @@ class Aim:
             "" for rotate.
         to, other: References of the destination.
         after: Positions of aims that must come first.
+        off, limit: What a pushed thing must not touch, and a line that it must not pass.
+        legs: Where straight pushes take it, one after the other: before | inside | away; () where one push does.
+        others: Numbers of other things that would do as well.
     """
 
     kind: Literal["put", "rotate", "push"]
@@ -59,6 +70,10 @@ class Aim:
     rotate_deg: float = 0.0
     after: tuple[int, ...] = ()
     why: str = ""
+    off: Named | None = None
+    limit: Named | None = None
+    legs: tuple[str, ...] = ()
+    others: frozenset[int] = frozenset()
 
     def same_goal(self, other: Aim) -> bool:
         """Whether both bring the thing to the same state."""
@@ -69,7 +84,8 @@ class Aim:
         return _same(self.to, other.to) and _same(self.other, other.other)
 
     def same(self, other: Aim) -> bool:
-        return self.thing.same(other.thing) and self.same_goal(other)
+        alike = self.thing.same(other.thing) or other.thing.number in self.others or self.thing.number in other.others
+        return alike and self.same_goal(other)
 
 
 @dataclass
@@ -137,7 +153,8 @@ def _of_command(command: Command, eyes: Eyes, result: Aims, strict: bool) -> lis
     into = goal is not None and goal.how == "in" and goal.what is not None
     # What goes into something is smaller than it: that settles words which fit both.
     place = eyes.best(one_of(goal.what)) if into and goal is not None and goal.what is not None else None
-    things = _things(command.thing, eyes, result, strict, place.thing if place is not None else None)
+    pushed = command.kind == "push" and into
+    things = _things(command.thing, eyes, result, strict, place.thing if place is not None else None, every=pushed)
     if command.kind == "rotate":
         return [Aim("rotate", thing, rotate_deg=command.rotate_deg) for thing in things]
     assert goal is not None  # the grammar gives every put and push a goal
@@ -145,6 +162,13 @@ def _of_command(command: Command, eyes: Eyes, result: Aims, strict: bool) -> lis
         return [aim for thing in things for aim in _matching_aim(command, goal, thing, eyes, result)]
     many = command.thing.quantity != "one"
     taken = frozenset(thing.number for thing in things if thing.number is not None) if not many else frozenset()
+    if pushed and goal.what is not None:
+        from wonderful_team.models.offline.answers.sweeps import swept_aims
+
+        aims = swept_aims(command, goal.what, things, eyes, result)
+        if aims is not None:
+            return aims
+        things = things[: command.thing.number] if command.thing.quantity == "number" else things
     moved = eyes.thing(things[0].number) if len(things) == 1 and into else None
     to = _one(goal.what, eyes, result, strict, taken=taken, holds=moved) if goal.what is not None else None
     other = _one(goal.other, eyes, result, strict, taken=taken) if goal.other is not None else None
@@ -168,7 +192,10 @@ def _of_command(command: Command, eyes: Eyes, result: Aims, strict: bool) -> lis
     return aims
 
 
-def _things(description: Description, eyes: Eyes, result: Aims, strict: bool, place: Thing | None) -> list[Named]:
+def _things(
+    description: Description, eyes: Eyes, result: Aims, strict: bool, place: Thing | None, *, every: bool = False
+) -> list[Named]:
+    """The things that a description means; `every`: all that it fits, however many are asked for."""
     if description.quantity == "one":
         return [_one(description, eyes, result, strict, fits_in=place)]
     wanted = description if description.quantity == "all" else replace(description, quantity="all")
@@ -186,7 +213,7 @@ def _things(description: Description, eyes: Eyes, result: Aims, strict: bool, pl
     if place is not None:
         # What goes into something is neither that thing itself nor larger than it.
         matches = [m for m in matches if m.thing is not None and m.thing.number != place.number] or matches
-    if description.quantity == "number":
+    if description.quantity == "number" and not every:
         matches = matches[: description.number]
     if not matches:
         result.notes.append(f"no {one_of(description).noun} of that kind is in the picture")
@@ -229,6 +256,7 @@ def _one(
     single = replace(single, text=render(single))
     everything = eyes.find(single)
     matches = [match for match in everything if match.thing is None or match.thing.number not in taken]
+    matches = as_pictured(single, matches, eyes)
     equal = _equal(single, matches)
     if len(equal) > 1:
         equal = _by_size(equal, holds, fits_in) or equal
@@ -238,7 +266,9 @@ def _one(
     if best is None or best.thing is None:
         return Named(single, None)
     plain = not (single.superlative or single.like or single.related)
-    if best is not everything[0] or (plain and len(equal) == 1 and len(everything) > 1 and _rivalled(everything)):
+    from_side = single.superlative in ("tallest", "shortest") and best.thing.height_m is None
+    rivalled = plain and len(equal) == 1 and len(everything) > 1 and _rivalled(everything)
+    if from_side or best is not everything[0] or rivalled:
         # The words alone lead elsewhere or could: say it so that they do not.
         return Named(unique_words(eyes, best.thing, single.noun, single.name, single.shape), best.thing.number)
     return Named(single, best.thing.number)

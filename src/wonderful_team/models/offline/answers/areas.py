@@ -4,21 +4,48 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+import numpy as np
+
 from wonderful_team.contracts import ShownSlot
 from wonderful_team.geometry import Box
+from wonderful_team.geometry.arrays import Array
 from wonderful_team.models.offline.answers.eyes import eyes_of
 from wonderful_team.models.offline.description import Description
 from wonderful_team.models.offline.vision import BoxFit, Scene, free_spots, see
+from wonderful_team.models.offline.vision.colours import to_lab
+from wonderful_team.models.offline.vision.scene import shrink, working_zoom
+from wonderful_team.models.offline.vision.table import find_table
 from wonderful_team.pictures import Picture, Point
 
 PLACE_SLACK = 0.25
 """How far the middle of a box may lie from the place shown, in shares of the place's sides."""
 FREE_ENOUGH = 0.08
 """Share of a box that things may cover while it still counts as free."""
+SMOOTH, LEAST_TABLE = 8.0, 0.2
+"""At least this share of a picture lies within this distance (CIELAB) of its table's fitted colour, else it has no table."""
+SAME_TABLE = 18.0
+"""CIELAB distance within which two pictures of one camera show the same table."""
+LOST = (0, 255)
+"""A picture that holds one of these values and nothing else shows nothing."""
+
+
+def table_of(picture: Picture) -> Array | None:
+    """The table's colour in a picture, CIELAB, shape (3,); None where it shows no table."""
+    rgb, depth, valid = shrink(picture, working_zoom(picture))
+    if not valid.any() or any((rgb[valid] == value).all() for value in LOST):
+        return None
+    lab = to_lab(rgb)
+    table = find_table(lab, valid, depth)
+    smooth = np.linalg.norm(lab - table.surface, axis=-1)[valid] < SMOOTH
+    if smooth.mean() < LEAST_TABLE:
+        return None
+    return np.asarray(np.median(table.surface[valid], axis=0))
 
 
 def judge_area(crop: Picture, box: Box) -> BoxFit:
     """How free the box is, by what lies in it."""
+    if table_of(crop) is None:
+        return BoxFit("absent", None, None, 0.0, None, (), (), 0.0, "the crop shows no table")
     scene = see(crop)
     covered, under = 0.0, None
     for thing in scene.objects:
@@ -52,6 +79,15 @@ def judge_place(description: Description, crop: Picture, box: Box, slots: Sequen
     found = eyes_of(crop, slots).find(description)
     if not found:
         return BoxFit("absent", None, None, 0.0, None, (), (), 0.0, f"no picture shows the {description.text}")
+    seen = table_of(crop)
+    if seen is None:
+        return BoxFit("absent", None, None, 0.0, None, (), (), 0.0, "the crop shows no table")
+    shown = next((slot.pictures[0] for slot in slots if slot.name == description.like and slot.pictures), None)
+    known = None if shown is None else table_of(shown)
+    if known is not None and float(np.linalg.norm(seen - known)) > SAME_TABLE:
+        return BoxFit(
+            "absent", None, None, 0.0, None, (), (), 0.0, f"the crop is not of the table in {{{description.like}}}"
+        )
     there = found[0].box
     iou = there.iou(box)
     near = max(abs(there.centre[0] - box.centre[0]) / there.width, abs(there.centre[1] - box.centre[1]) / there.height)

@@ -7,6 +7,20 @@ from collections.abc import Sequence
 from wonderful_team.models.offline.answers.aims import Aim, Named
 from wonderful_team.models.offline.answers.eyes import Eyes, unique_words
 from wonderful_team.models.offline.description import Description
+from wonderful_team.models.offline.vision import Thing
+
+LOWER_M = 0.002
+"""What is lower than a thing by more than this does not lie on it [m]."""
+SAME_COLOURS = 0.6
+"""Likeness of colours from which two patches belong to one thing (0 to 1)."""
+
+
+def _shows_through(upper: Thing, thing: Thing, eyes: Eyes) -> bool:
+    """Whether a patch within a thing's outline is what the thing lies on or in, seen through a hole in it."""
+    if upper.height_m is not None and thing.height_m is not None and upper.height_m < thing.height_m - LOWER_M:
+        return True
+    host = eyes.thing(thing.on)
+    return host is not None and float(host.look.histogram @ upper.look.histogram) > SAME_COLOURS
 
 
 def obstacles(aim: Aim, others: Sequence[Aim], eyes: Eyes) -> list[Aim]:
@@ -20,6 +34,8 @@ def obstacles(aim: Aim, others: Sequence[Aim], eyes: Eyes) -> list[Aim]:
     away = []
     for upper in eyes.scene.on(thing):
         if upper.area_px > thing.area_px or any(other.thing.number == upper.number for other in others):
+            continue
+        if _shows_through(upper, thing, eyes):
             continue
         spot = Description(noun="area", name="free", text="free area")
         away.append(

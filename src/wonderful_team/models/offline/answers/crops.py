@@ -56,7 +56,7 @@ def marked_box(crop: Picture) -> Box:
 def measure(target: Target, crop: Picture, box: Box, examples: Sequence[ShownSlot]) -> BoxFit:
     """How a box stands to what the crop shows of the target; a free area is judged by what lies in the box."""
     description = target_description(target)
-    if is_free_area(description):
+    if is_free_area(description) or description.way is not None:
         return judge_area(crop, box)
     if description.placed is not None:
         return judge_place(description, crop, box, examples)
@@ -196,7 +196,7 @@ def answer_choose_point(question: ChoosePoint) -> PointChoice:
         fit = judge_place(description, question.crop, box, question.examples)
         wanted = (fit.best or box).centre
         return _nearest(points, wanted, range(1, len(points) + 1), fit.why)
-    if is_free_area(description):
+    if is_free_area(description) or description.way is not None:
         spot = nearest_free(see(question.crop), box)
         return _nearest(points, spot, range(1, len(points) + 1), "the freest place in the box")
     known = examples_of(question.examples)

@@ -23,6 +23,8 @@ from wonderful_team.errors import NotUnderstoodError
 from wonderful_team.models.offline.answers.aims import Aim, Aims, Named, derive
 from wonderful_team.models.offline.answers.eyes import Eyes, eyes_of_task
 from wonderful_team.models.offline.answers.instruction import read_task
+from wonderful_team.models.offline.answers.sweeping import place_words
+from wonderful_team.models.offline.answers.sweeps import way_places
 from wonderful_team.models.offline.description import Description
 from wonderful_team.models.offline.language import describe, render, try_understand, understand
 from wonderful_team.models.offline.language.wording import relation_words
@@ -43,11 +45,16 @@ class _Writer:
 
     def target(self, description: Description, use: PointRole, kind: str | None = None) -> str:
         like = [name for name in (description.since, description.like) if name and name in self.slots]
+        if description.way is not None:
+            words, where, pictures = place_words(description.way)
+            return self._known(words, where, [name for name in pictures if name in self.slots], use, "area")
         words = render(replace(description, related=()))
         if description.placed is not None:
             words = render(replace(description, like=None))
         where = "; ".join(relation_words(related) for related in description.related)
-        what = kind or ("area" if description.noun == "area" else "object")
+        return self._known(words, where, like, use, kind or ("area" if description.noun == "area" else "object"))
+
+    def _known(self, words: str, where: str, like: list[str], use: PointRole, what: str) -> str:
         for position, known in enumerate(self.targets):
             if (known.words, known.where, known.like) == (words, where, like):
                 if use not in known.use:
@@ -70,6 +77,10 @@ def aim_text(aim: Aim) -> str:
     if aim.how == "side":
         return f"{verb} {thing} {_side_words(aim.side)}"
     assert aim.to is not None  # every other destination has a reference
+    if aim.kind == "push" and (aim.off or aim.limit):
+        kept = f" without touching the {aim.off.words}" if aim.off else ""
+        kept += f" without exceeding the {aim.limit.words}" if aim.limit else ""
+        return f"push {thing} into the {aim.to.words}{kept}"
     if aim.how == "between" and aim.other is not None:
         return f"{verb} {thing} between the {aim.to.words} and the {aim.other.words}"
     return f"{verb} {thing} {_SIDE_WORDS[aim.how]} the {aim.to.words}"
@@ -107,7 +118,13 @@ def write_plan(aims: Sequence[Aim], slots: tuple[str, ...], with_targets: bool, 
 
 
 def aim_targets(aim: Aim, writer: _Writer) -> list[str]:
-    """Ids of the targets that an aim needs: the thing, then its destination."""
+    """Ids of the targets that an aim needs: the thing, then its destination, place after place on its way."""
+    if aim.legs:
+        # The tool's start is computed behind the thing for each push, so a point on the thing is enough.
+        return [
+            writer.target(aim.thing.description, "pick"),
+            *(writer.target(spot, "place") for spot in way_places(aim)),
+        ]
     start: PointRole = "push_start" if aim.kind == "push" else "pick"
     end: PointRole = "push_end" if aim.kind == "push" else "place"
     ids = [writer.target(aim.thing.description, start)]

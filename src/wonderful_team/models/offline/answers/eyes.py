@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from wonderful_team.contracts import ShownSlot, ShownTask
-from wonderful_team.models.offline.description import COLOURS, SHAPES, Description
+from wonderful_team.models.offline.description import COLOURS, SHAPES, Description, Way
 from wonderful_team.models.offline.language import describe, render, try_describe
 from wonderful_team.models.offline.vision import (
     Example,
@@ -15,9 +15,11 @@ from wonderful_team.models.offline.vision import (
     Scene,
     Thing,
     free_spots,
+    likeness,
     resolve,
     see,
     study_example,
+    with_heights,
 )
 from wonderful_team.pictures import Picture
 from wonderful_team.types import Target
@@ -26,8 +28,14 @@ NEARLY_EQUAL = 0.06
 """Two scores closer than this, both good, are a genuine ambiguity (0 to 1)."""
 GOOD = 0.55
 """A match with at least this score fits (0 to 1)."""
+SHOWN = 0.5
+"""Likeness from which a picture of a table shows a thing (0 to 1)."""
+CLEARLY_LESS = 0.15
+"""A thing whose likeness is this much lower is another one (0 to 1)."""
 COLOURLESS = 0.6
 """From this degree of grey and plainness on, an example picture shows a shape and no looks (0 to 1)."""
+RIM_FILL, RIM_ASPECT = 0.4, 4.0
+"""A rim fills at most this share of the rectangle round it, which is at most so many times as long as wide."""
 WHOLE = frozenset(
     ("whole", "centre", "center", "middle", "body", "inside", "interior", "surface", "top", "all", "top surface")
 )
@@ -55,6 +63,8 @@ class Eyes:
             from wonderful_team.models.offline.answers.showing import place_shown
 
             return place_shown(description, self)
+        if description.way is not None:
+            return self.on_the_way(description.way, ())
         if description.like is not None and description.like not in self.examples:
             return []
         if is_free_area(description) and description.superlative is not None:
@@ -67,9 +77,19 @@ class Eyes:
             if not found and description.noun == "object" and description.shape is not None:
                 # "the blue square" may well be a flat one, such as a sheet of paper.
                 found = resolve(self.scene, replace(description, noun="thing"), self.examples)
+            if not found and description.shape == "frame":
+                # A frame may be open on one side: then it is a thin form that is no line.
+                loose = resolve(self.scene, replace(description, noun="thing", shape=None), self.examples)
+                found = [match for match in loose if match.thing is not None and _is_rim(match.thing)]
         except NotSeen:
             return []
         return found
+
+    def on_the_way(self, place: Way, plan: Sequence[str]) -> list[Match]:
+        """Where a pushed thing comes to rest, by the plan's lines."""
+        from wonderful_team.models.offline.answers.sweeping import find_place
+
+        return find_place(place, self.scene, self.number, plan)
 
     def _spots_at(self, description: Description) -> list[Match]:
         """Free spots towards a side or corner of the picture, best first."""
@@ -96,6 +116,28 @@ class Eyes:
         return next((thing for thing in self.scene.things if thing.number == number), None)
 
 
+def _is_rim(thing: Thing) -> bool:
+    outline = thing.look.outline
+    return outline.fill < RIM_FILL and outline.aspect < RIM_ASPECT
+
+
+def as_pictured(description: Description, matches: list[Match], eyes: Eyes) -> list[Match]:
+    """Of several things that fit, those that a picture of a table among the instruction's pictures shows; else all.
+
+    "the wooden object in {scene}" is the one of that form which the picture shows.
+    """
+    things = [match for match in matches if match.thing is not None]
+    if len(things) < 2 or description.like is not None or description.placed is not None:  # noqa: PLR2004
+        return matches
+    for picture in eyes.pictures.values():
+        shown = [match.thing for match in Eyes(see(picture), {}).find(description) if match.thing is not None]
+        rated = [max((likeness(match.thing, one) for one in shown), default=0.0) for match in things if match.thing]
+        best = max(rated)
+        if best >= SHOWN:
+            return [match for match, value in zip(things, rated, strict=True) if value > best - CLEARLY_LESS]
+    return matches
+
+
 def shape_alone(description: Description, examples: Mapping[str, Example]) -> Description:
     """The same description, its example counting for its shape only where the picture shows a plain grey thing."""
     example = examples.get(description.like or "")
@@ -110,7 +152,7 @@ def shape_alone(description: Description, examples: Mapping[str, Example]) -> De
 
 def is_free_area(description: Description) -> bool:
     """Whether free table is meant and not a thing or coloured region with looks of its own."""
-    if description.placed is not None:
+    if description.placed is not None or description.way is not None:
         return False
     looks = description.colours or description.pattern or description.material or description.shape or description.like
     return description.noun == "area" and not looks
@@ -137,7 +179,11 @@ def examples_of(slots: Iterable[ShownSlot]) -> dict[str, Example]:
 
 
 def eyes_of_task(task: ShownTask) -> Eyes:
-    return eyes_of(task.main, task.slots)
+    """Look at a task's main view; without depth, a second view tells how tall things are."""
+    eyes = eyes_of(task.main, task.slots)
+    if eyes.scene.has_depth or len(task.views) < 2:  # noqa: PLR2004  one more than the main view
+        return eyes
+    return replace(eyes, scene=with_heights(eyes.scene, task.views[1]))
 
 
 def one_of(description: Description) -> Description:
@@ -152,6 +198,11 @@ def target_description(target: Target) -> Description:
         NotUnderstoodError: The words hold something unknown and no picture shows it.
     """
     words = target.words
+    from wonderful_team.models.offline.answers.sweeping import read_place
+
+    on_the_way = read_place(words, target.where)
+    if on_the_way is not None:
+        return on_the_way
     if target.part and target.part.lower().strip() not in WHOLE:
         describe(target.part)  # refuses by name: parts are not told apart by eye
         words = f"{target.part} {target.words}" if try_describe(f"{target.part} {target.words}") else words
@@ -189,7 +240,8 @@ def unique_words(eyes: Eyes, thing: Thing, noun: str, name: str = "", shape: str
         tries.append(replace(base, colours=(colour,), shape=thing.look.shape))
     tries = [replace(item, colours=tuple(c for c in item.colours if c in COLOURS)) for item in tries]
     for description in tries:
-        matches = eyes.find(description)
+        # As it will be read: "the brown letter" is a letter, not an object shaped like one.
+        matches = eyes.find(try_describe(render(description)) or description)
         if _means(matches, thing):
             return _worded(description)
     return _by_place(eyes, thing, tries[0])

@@ -32,15 +32,17 @@ class Found:
         return self.match.thing
 
 
-def find_target(target: Target, eyes: Eyes) -> Found | None:
+def find_target(target: Target, eyes: Eyes, plan: Sequence[str] = ()) -> Found | None:
     """The best match of a target's words (and example), or None when it is not here."""
-    found = candidates(target, eyes)
+    found = candidates(target, eyes, plan)
     return found[0] if found else None
 
 
-def candidates(target: Target, eyes: Eyes) -> list[Found]:
-    """Everything that fits a target, best first."""
+def candidates(target: Target, eyes: Eyes, plan: Sequence[str] = ()) -> list[Found]:
+    """Everything that fits a target, best first; the plan's lines say what is pushed before it is."""
     description = target_description(target)
+    if description.way is not None:
+        return [Found(match, match.box, description) for match in eyes.on_the_way(description.way, plan)]
     return [Found(match, match.box, description) for match in eyes.find(description)]
 
 

@@ -26,6 +26,7 @@ from wonderful_team.models.offline.answers.finding import (
     Found,
     act_at,
     candidates,
+    is_free_area,
     push_goal,
     told,
     tried,
@@ -56,7 +57,7 @@ def point_px(point: Point, picture: Picture) -> PointPx:
 def answer_locate(question: LocatePoints, sample: int) -> Points:
     """Point at what fits, leaving out what was tried."""
     eyes = eyes_of(question.view, question.examples)
-    found = candidates(question.target, eyes)
+    found = candidates(question.target, eyes, question.plan)
     left = untried(found, tried(question.view))
     if not left:
         why = (
@@ -76,7 +77,7 @@ def answer_choose_mark(question: ChooseMark) -> MarkChoice:
     """The numbered point that is on the target, nearest to where it should be."""
     eyes = eyes_of(question.view, question.examples)
     points = question.candidates.points
-    found = candidates(question.target, eyes)
+    found = candidates(question.target, eyes, question.plan)
     for item in found:
         wanted = act_at(item, "pick" if question.purpose == "centre" else "place", eyes)
         on = [number for number, point in enumerate(points, start=1) if item.box.contains(point)]
@@ -93,7 +94,7 @@ def answer_choose_mark(question: ChooseMark) -> MarkChoice:
 def answer_give_box(question: GiveBox) -> BoxAnswer:
     """A box round what fits, the marked point deciding between several."""
     eyes = eyes_of(question.view, question.examples)
-    found = candidates(question.target, eyes)
+    found = candidates(question.target, eyes, question.plan)
     if not found:
         return BoxAnswer(reasoning=f"nothing in the picture fits {question.target.words!r}", box=None)
     marks = tried(question.view)
@@ -106,7 +107,8 @@ def answer_give_box(question: GiveBox) -> BoxAnswer:
 def answer_read_scene(question: ReadScene) -> SceneReading:
     """Every target at once; a target whose words fit nothing is not here."""
     eyes = eyes_of(question.view, question.examples)
-    chosen = _apart(question.targets, [candidates(target, eyes) for target in question.targets])
+    found_all = [candidates(target, eyes, question.plan) for target in question.targets]
+    chosen = _unclaimed(_apart(question.targets, found_all), found_all)
     items, reasons = [], []
     for target, found in zip(question.targets, chosen, strict=True):
         reasons.append(f"{target.id}: {told(found) if found is not None else 'nothing fits'}")
@@ -134,6 +136,25 @@ def _apart(targets: Sequence[Target], found: Sequence[list[Found]]) -> list[Foun
             if others and others[0].match.score >= YIELDS * found[loser][0].match.score:
                 chosen[loser] = others[0]
     return chosen
+
+
+def _unclaimed(chosen: Sequence[Found | None], found: Sequence[list[Found]]) -> list[Found | None]:
+    """Free areas keep off the places that other targets will need: what is put there would be in the way."""
+    places = [
+        item.box
+        for item in chosen
+        if item is not None and (item.description.placed is not None or item.description.way is not None)
+    ]
+
+    def clear(item: Found) -> bool:
+        return not any(item.box.intersection(place) for place in places)
+
+    return [
+        next((other for other in others if clear(other)), item)
+        if item is not None and is_free_area(item.description) and not clear(item)
+        else item
+        for item, others in zip(chosen, found, strict=True)
+    ]
 
 
 def _yields(found: Sequence[Found], chosen: Found) -> float:

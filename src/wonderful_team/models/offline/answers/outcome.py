@@ -7,10 +7,12 @@ import numpy as np
 from wonderful_team.contracts import Advice, JudgeOutcome, Outcome, Replan, VerdictDraft
 from wonderful_team.errors import NotUnderstoodError
 from wonderful_team.geometry import Box, Frame
-from wonderful_team.models.offline.answers.aims import already, derive
+from wonderful_team.models.offline.answers.aims import Aim, Named, already, derive
 from wonderful_team.models.offline.answers.eyes import Eyes, eyes_of, eyes_of_task
 from wonderful_team.models.offline.answers.instruction import read_task
 from wonderful_team.models.offline.answers.roles import Task, tasks_of
+from wonderful_team.models.offline.answers.sweeping import swept
+from wonderful_team.models.offline.answers.sweeps import sweep_by_numbers
 from wonderful_team.models.offline.answers.turning import turned_deg
 from wonderful_team.models.offline.description import Description
 from wonderful_team.models.offline.vision import Thing, strip_presence
@@ -56,12 +58,15 @@ class _Judge:
             for mark in question.task.main.marks
             if isinstance(mark, BoxMark) and mark.label
         }
+        self.claimed: set[int] = set()
 
     def task(self, task: Task) -> tuple[str, str]:
         """Status and evidence of one task."""
         thing = self._was(task.thing, task.aim.thing.number if task.aim is not None else None)
         if thing is None or task.thing is None:
             return "unclear", "the thing does not show in the picture before"
+        if task.aim is not None and "inside" in task.aim.legs:
+            return self._swept(task.aim, thing)
         now = self._now(thing)
         if now is None:
             return self._merged(task, thing)
@@ -72,6 +77,34 @@ class _Judge:
         if task.aim is not None and task.aim.how == "origin":
             return self._took_place(task, thing, now)
         return self._at_place(task, thing, now)
+
+    def _swept(self, aim: Aim, was: Thing) -> tuple[str, str]:
+        """Whether a thing lies wholly in the place it was pushed to; alike things in there count once each."""
+        name = aim.thing.words
+        parts = [
+            None if item is None else Named(item.description, self.after.number(item.description))
+            for item in (aim.to, aim.off, aim.limit)
+        ]
+        sweep = sweep_by_numbers(*parts)
+        if aim.to is None or sweep is None:
+            return "unclear", f"where the {name} was pushed to does not show"
+        like = [thing for thing in self.after.scene.things if _alike(was, thing)]
+        if any(self._moved(was, thing) < STAYED for thing in like):
+            return "not_done", f"the {name} has not moved"
+        stood = [thing.centre for thing in self.before.scene.things if thing.number != was.number]
+        new = [
+            thing
+            for thing in like
+            if thing.number not in self.claimed
+            and not any(np.hypot(x - thing.centre[0], y - thing.centre[1]) < STAYED * was.radius_px for x, y in stood)
+        ]
+        there = swept(self.after.scene, sweep, [thing.number for thing in new])
+        if there:
+            self.claimed.add(there[0])
+            return "done", f"the {name} lies wholly in the {aim.to.words} now"
+        nearest = min((self._moved(was, thing) for thing in new), default=None)
+        where = "does not show any more" if nearest is None else f"moved {nearest:.1f} of its radii"
+        return "not_done", f"the {name} does not lie wholly in the {aim.to.words}: it {where}"
 
     def cause(self, subgoal: str, evidence: str) -> str:
         """What the robot reported of it, else what the picture shows."""
@@ -95,10 +128,10 @@ class _Judge:
         best, most = None, 0.0
         radius = max(was.radius_px, 1.0)
         for thing in self.after.scene.things:
+            if not _alike(was, thing):
+                continue
             colours = float(was.look.histogram @ thing.look.histogram)
             size = min(was.area_px, thing.area_px) / max(was.area_px, thing.area_px)
-            if colours < ALIKE or size < 0.3:
-                continue
             distance = float(np.hypot(thing.centre[0] - was.centre[0], thing.centre[1] - was.centre[1]))
             rating = colours * (0.4 + 0.6 * size) - 0.01 * min(distance / radius, 10.0)
             if rating > most:
@@ -197,6 +230,12 @@ class _Judge:
         return "has not moved" if moved < STAYED else f"moved {moved:.1f} of its radii"
 
 
+def _alike(was: Thing, thing: Thing) -> bool:
+    """Whether a thing after may be the thing before, by its colours and size."""
+    size = min(was.area_px, thing.area_px) / max(was.area_px, thing.area_px)
+    return float(was.look.histogram @ thing.look.histogram) >= ALIKE and size >= 0.3
+
+
 def colours_in(picture: Picture, box: Box, thing: Thing) -> float:
     """Share of a box of a picture that shows a thing's colours, 0 to 1."""
     width, height = picture.size_px
@@ -237,5 +276,5 @@ def _nothing_left(question: Replan) -> bool:
     return not [
         aim
         for aim in derive(understood, eyes, strict=False).aims
-        if aim.kind != "rotate" and not (aim.to is not None and already(eyes, aim.thing, aim.to))
+        if aim.kind != "rotate" and not (aim.to is not None and not aim.legs and already(eyes, aim.thing, aim.to))
     ]

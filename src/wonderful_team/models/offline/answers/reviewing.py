@@ -69,8 +69,13 @@ def read_subgoal(subgoal: Subgoal, targets: Sequence[Target], eyes: Eyes) -> Rea
         # What lies where it should go already is still what the words ask for.
         aims = tuple(derive(understood, eyes, strict=False, literal=True).aims)
     by_id = {target.id: target for target in targets}
-    known = tuple((by_id[name], named(by_id[name], eyes)) for name in subgoal.targets if name in by_id)
-    return ReadSubgoal(subgoal, aims, known)
+    known = [(by_id[name], named(by_id[name], eyes)) for name in subgoal.targets if name in by_id]
+    for target, who in tuple(known):
+        if who is not None and who.description.way is not None:
+            # A place inside of something stands for that thing.
+            into = who.description.way.into
+            known.append((target, Named(into, eyes.number(into))))
+    return ReadSubgoal(subgoal, aims, tuple(known))
 
 
 def named(target: Target, eyes: Eyes) -> Named | None:
@@ -79,6 +84,8 @@ def named(target: Target, eyes: Eyes) -> Named | None:
         description = target_description(target)
     except NotUnderstoodError:
         return None
+    if description.way is not None:
+        return Named(description, None)
     return Named(description, eyes.number(description))
 
 

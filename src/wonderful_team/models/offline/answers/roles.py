@@ -23,6 +23,7 @@ class Task:
     Attributes:
         aim: What the words come to; None where they cannot be read.
         thing, place: Targets; place is None for turning, going back, and where no target fits.
+        stops: Areas where a pushed thing rests on its way to the place, in order.
     """
 
     subgoal: str
@@ -30,6 +31,7 @@ class Task:
     thing: Target | None
     place: Target | None
     rotate_deg: float = 0.0
+    stops: tuple[Target, ...] = ()
 
 
 def tasks_of(subgoal: Subgoal, targets: Sequence[Target], eyes: Eyes) -> list[Task]:
@@ -46,6 +48,10 @@ def tasks_of(subgoal: Subgoal, targets: Sequence[Target], eyes: Eyes) -> list[Ta
 
 def _task(subgoal: Subgoal, aim: Aim, known: Sequence[tuple[Target, Named | None]]) -> Task:
     thing = _player(aim.thing, known, TO_MOVE, None)
+    ways = dict.fromkeys(target for target, who in known if who is not None and who.description.way is not None)
+    if aim.kind == "push" and ways:
+        *stops, end = ways
+        return Task(subgoal.id, aim, thing, end, stops=tuple(stops))
     place = None
     if aim.kind != "rotate" and (aim.how != "origin" or aim.to is not None):
         if aim.how in ("side", "between") or aim.to is None:

@@ -17,13 +17,14 @@ from wonderful_team.models.offline.answers.aims import Aim, Aims, Named
 from wonderful_team.models.offline.answers.eyes import Eyes, unique_words
 from wonderful_team.models.offline.description import Description
 from wonderful_team.models.offline.language import Command, render
-from wonderful_team.models.offline.vision import Match, Thing, see
+from wonderful_team.models.offline.vision import Match, Thing, likeness, see
 from wonderful_team.models.offline.vision.colours import to_lab
-from wonderful_team.models.offline.vision.outlines import same_outline
 from wonderful_team.pictures import Picture, Point
 
 ALIKE = 0.35
 """Least likeness of looks at which two pictures may show the same thing (0 to 1)."""
+SURE = 0.55
+"""Likeness from which two pictures show the same thing beyond doubt (0 to 1)."""
 STAYED = 0.35
 """A thing that lies nearer to its place than this many of its radii is there."""
 IN_THE_WAY = 0.8
@@ -145,14 +146,6 @@ def _shifts(name: str, eyes: Eyes) -> list[Shift]:
     return sorted(shifts, key=lambda shift: shift.thing.centre)
 
 
-def likeness(one: Thing, other: Thing) -> float:
-    """How much two things in two pictures look like the same one, 0 to 1, at any place and turn."""
-    colours = float(one.look.histogram @ other.look.histogram)
-    outline = same_outline(one.look.outline, other.look.outline)
-    size = min(one.area_px, other.area_px) / max(one.area_px, other.area_px)
-    return colours * (0.4 + 0.6 * outline) * (0.5 + 0.5 * size)
-
-
 def _away(shift: Shift) -> float:
     return float(np.hypot(shift.to[0] - shift.thing.centre[0], shift.to[1] - shift.thing.centre[1]))
 
@@ -233,7 +226,48 @@ def _gap(one: Point, other: Point) -> float:
     return float(np.hypot(one[0] - other[0], one[1] - other[1]))
 
 
+def moved_between(before: Picture, after: Picture) -> tuple[Thing, Thing] | None:
+    """The thing that both pictures show, in two places, as each of them shows it; None when no one thing stands out.
+
+    What only came to light, since something was taken from above it, was nowhere to be seen before.
+    """
+    first, second = see(before).things, see(after).things
+
+    def apart(was: Thing, now: Thing) -> float:
+        there = before.frame.point_to_view(was.centre)
+        here = after.frame.point_to_view(now.centre)
+        return _gap(there, here) * after.frame.scale / now.radius_px
+
+    rated = [(likeness(was, now), apart(was, now), was, now) for was in first for now in second]
+    stayed = {now.number for alike, far, _, now in rated if far < STAYED and alike > SURE}
+    moved = [(alike, was, now) for alike, far, was, now in rated if far >= STAYED and now.number not in stayed]
+    remain = {was.number for alike, far, was, _ in rated if far < STAYED and alike > SURE}
+    moved = sorted((item for item in moved if item[1].number not in remain), key=lambda item: -item[0])
+    if not moved or moved[0][0] < SURE:
+        return None
+    return moved[0][1], moved[0][2]
+
+
 def _mover(before: Picture, after: Picture, eyes: Eyes, where: dict[int, Point], named: Thing | None) -> Thing | None:
+    """The thing of now that moved between two frames: it looks like that, and is where that was."""
+    pair = moved_between(before, after)
+    assert eyes.looked_at is not None  # set by eyes_of
+    if pair is None:
+        return _left_its_place(before, after, eyes, where, named)
+    place = eyes.looked_at.frame.point_to_picture(before.frame.point_to_view(pair[0].centre))
+
+    def fits(thing: Thing) -> float:
+        away = _gap(where.get(thing.number, thing.centre), place) / thing.radius_px
+        bonus = 0.1 if named is not None and thing.number == named.number else 0.0
+        return likeness(thing, pair[1]) * float(np.exp(-0.5 * away**2)) + bonus
+
+    best = max(eyes.scene.things, key=fits, default=None)
+    return best if best is not None and fits(best) > ALIKE else _left_its_place(before, after, eyes, where, named)
+
+
+def _left_its_place(
+    before: Picture, after: Picture, eyes: Eyes, where: dict[int, Point], named: Thing | None
+) -> Thing | None:
     """The thing of now whose place in the earlier frame shows table in the later one."""
     changed = difference(before, after)
     scene = see(after)
@@ -275,6 +309,9 @@ def difference(before: Picture, after: Picture) -> Array:
 
 def came_to(before: Picture, after: Picture) -> Box | None:
     """Where something stands in the later picture that was not there before [px of the later picture]; None when nothing is."""
+    pair = moved_between(before, after)
+    if pair is not None:
+        return pair[1].box
     changed = difference(before, after)
     scene = see(after)
     shown = cv2.resize(scene.occupied.astype(np.uint8), after.size_px, interpolation=cv2.INTER_NEAREST) > 0

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TypeAlias
 
 from wonderful_team.actions import (
@@ -45,7 +45,10 @@ class _Asked:
 def answer_review_steps(question: ReviewSteps) -> PlanReview:
     """Check every step against its subgoal, and the drawn arrows against the boxes."""
     eyes = eyes_of_task(question.task)
-    asked = {subgoal.id: _Asked(subgoal, tasks_of(subgoal, question.targets, eyes)) for subgoal in question.subgoals}
+    asked = {
+        subgoal.id: _Asked(subgoal, _one_by_one(tasks_of(subgoal, question.targets, eyes)))
+        for subgoal in question.subgoals
+    }
     problems = _step_problems(question.steps, asked, eyes)
     problems += _order_problems(question.steps, question.subgoals)
     problems += _drawn_problems(question.overview, question, eyes)
@@ -62,6 +65,11 @@ def answer_review_steps(question: ReviewSteps) -> PlanReview:
         approved=False,
         doubt=DoubtDraft(about=str(number), kind=kind, question=text),
     )
+
+
+def _one_by_one(tasks: Sequence[Task]) -> list[Task]:
+    """A task with stops on its way is one task for each of them, and then itself."""
+    return [part for task in tasks for part in (*(replace(task, place=stop, stops=()) for stop in task.stops), task)]
 
 
 def _step_problems(steps: Sequence[Step], asked: dict[str, _Asked], eyes: Eyes) -> list[Problem]:

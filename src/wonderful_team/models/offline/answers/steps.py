@@ -51,7 +51,7 @@ def _steps_of(task: Task, subgoal: Subgoal, kinds: Sequence[str], eyes: Eyes) ->
         raise NotUnderstoodError(f"subgoal {subgoal.id} names no target to move: {subgoal.text!r}")
     pushed = task.aim is not None and task.aim.kind == "push"
     if (pushed or "pick_place" not in kinds) and "push" in kinds:
-        return [_push(task, eyes)]
+        return _push(task, eyes)
     if "pick_place" in kinds:
         return [
             {
@@ -69,12 +69,14 @@ def _steps_of(task: Task, subgoal: Subgoal, kinds: Sequence[str], eyes: Eyes) ->
     )
 
 
-def _push(task: Task, eyes: Eyes) -> dict[str, object]:
+def _push(task: Task, eyes: Eyes) -> list[dict[str, object]]:
+    """One push, or one for every stop on the way."""
     if task.aim is not None and task.aim.kind == "rotate":
         raise UnsupportedQuestion(
             "offline", "WriteSteps", "a thing cannot be turned by an exact angle by pushing alone"
         )
-    return {"kind": "push", "subgoal": task.subgoal, "start": _at(task, "thing"), "end": place_of(task, eyes)}
+    ends = [{"target": stop.id, "how": "at", "side": None} for stop in task.stops] + [place_of(task, eyes)]
+    return [{"kind": "push", "subgoal": task.subgoal, "start": _at(task, "thing"), "end": end} for end in ends]
 
 
 def _at(task: Task, part: str) -> dict[str, object]:
@@ -89,6 +91,8 @@ def place_of(task: Task, eyes: Eyes) -> dict[str, object]:
     how = task.aim.how if task.aim is not None else ""
     if task.place is None:
         return {"target": task.thing.id, "how": "origin", "side": None}
+    if task.place.kind == "area" and how in ("in", "on"):
+        return {"target": task.place.id, "how": "at", "side": None}
     if how == "origin":
         return {"target": task.place.id, "how": "origin", "side": None}
     if how in SIDES:

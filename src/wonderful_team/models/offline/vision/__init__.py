@@ -1,6 +1,7 @@
 """Classical eyes: what a picture of a table shows, read from its pixels (and depth if given) and nothing else."""
 
-from wonderful_team.models.offline.vision.examples import alike, study_example
+from wonderful_team.models.offline.vision.examples import alike, likeness, study_example
+from wonderful_team.models.offline.vision.heights import with_heights
 from wonderful_team.models.offline.vision.measure import BoxFit, StripFit, fit_box, strip_presence
 from wonderful_team.models.offline.vision.resolve import resolve, suits
 from wonderful_team.models.offline.vision.scene import see
@@ -19,9 +20,11 @@ __all__ = [
     "alike",
     "fit_box",
     "free_spots",
+    "likeness",
     "resolve",
     "see",
     "strip_presence",
     "study_example",
     "suits",
+    "with_heights",
 ]

@@ -111,6 +111,8 @@ def container_score(thing: Thing) -> float:
 def kind_score(thing: Thing, description: Description) -> float:
     """How well the head noun fits, 0 to 1."""
     look = thing.look
+    if description.like is not None and description.noun in ("object", "thing"):
+        return 1.0  # the example says what kind it is, such as a line that lies flat
     match description.noun:
         case "area":
             if thing.height_m is not None:
@@ -122,7 +124,11 @@ def kind_score(thing: Thing, description: Description) -> float:
         case "fruit":
             return fruit_score(thing)
         case "letter":
-            return float(np.clip(look.shapes["letter"] / 0.55, 0, 1))
+            own = look.shapes["letter"]
+            # A flower or cross resembles some letter too, but itself more.
+            return float(
+                np.clip(own / 0.55, 0, 1) * np.clip((own / max(max(look.shapes.values()), 1e-6) - 0.6) / 0.3, 0, 1)
+            )
         case "ball":
             return float(np.clip(look.shapes["circle"] / 0.6, 0, 1))
         case "container":

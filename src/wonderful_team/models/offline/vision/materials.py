@@ -40,7 +40,14 @@ def _tile(look: Look) -> float:
     grid = float(np.clip((look.surface.two_way - 0.35) / 0.25, 0, 1))
     lines = float(np.clip((0.46 - look.surface.rare_share) / 0.08, 0, 1))
     warm = _enough(_share(look, "red", "brown", "orange"), 0.5)
-    return grid * (0.4 + 0.6 * lines) * _rough(look) * (1 - 0.5 * warm)
+    return max(grid * (0.4 + 0.6 * lines) * _rough(look) * (1 - 0.5 * warm), _mosaic(look))
+
+
+def _mosaic(look: Look) -> float:
+    """Small grey tiles with a few tinted ones among them."""
+    tinted = _enough(_share(look, "red", "green", "brown", "olive", "cyan"), 0.18)
+    plain_light = float(np.clip((_share(look, "white", "black") - 0.1) / 0.15, 0, 1))
+    return _enough(_share(look, "grey"), 0.5) * tinted * look.patterns["mottled"] * (1 - plain_light)
 
 
 def _wood(look: Look) -> float:

@@ -81,7 +81,7 @@ def pick_superlative(scene: Scene, matches: list[Match], superlative: str, ordin
     An `ordinal` beyond what fits gives [].
     """
     placed = [match for match in matches if match.thing is not None]
-    if superlative in ("tallest", "shortest") and any(m.thing is None or m.thing.height_m is None for m in placed):
+    if superlative in ("tallest", "shortest") and any(m.thing is None or _tall(m.thing) is None for m in placed):
         superlative = "largest" if superlative == "tallest" else "smallest"
     if len(placed) < ordinal:
         return []
@@ -122,11 +122,16 @@ def superlative_key(thing: Thing, superlative: str) -> float:
             light /= max(sum(colour.share for colour in thing.look.colours), 1e-6)
             return light if superlative == "darkest" else -light
         case "tallest":
-            return -(thing.height_m or 0.0)
+            return -(_tall(thing) or 0.0)
         case "shortest":
-            return thing.height_m or 0.0
+            return _tall(thing) or 0.0
         case _:
             raise ValueError(f"unknown superlative {superlative!r}")
+
+
+def _tall(thing: Thing) -> float | None:
+    """How tall a thing is, by its measured height or by what a second view shows of its side; None when neither is known."""
+    return thing.height_m if thing.height_m is not None else thing.tall_px
 
 
 def _middle(matches: list[Match]) -> list[Match]:

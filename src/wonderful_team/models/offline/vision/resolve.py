@@ -19,6 +19,9 @@ from wonderful_team.pictures import Point
 FITS = 0.4
 """Score from which a thing is taken to fit a description."""
 
+_SAME = 0.45
+"""Likeness from which two things have the same colour, texture or shape."""
+
 NEAR_BEST = 0.75
 """Share of the best score from which things like an example are compared with each other."""
 
@@ -76,7 +79,7 @@ def suits(
         parts["words: pattern"] = pattern_fit(thing.look, description.pattern)
         if not description.colours and description.pattern != "plain":
             # A pattern named without a colour is black and white where there is a choice.
-            parts["words: pattern"] *= 0.75 + 0.25 * _colourless(thing.look)
+            parts["words: pattern"] *= 0.6 + 0.4 * _colourless(thing.look)
         score *= parts["words: pattern"]
     if description.material is not None:
         parts["words: material"] = float(np.clip(material_score(thing.look, description.material) / 0.6, 0, 1))
@@ -122,11 +125,31 @@ _CONFUSED = ("swirled", "dotted", "mottled", "checkered")
 def pattern_fit(look: Look, pattern: str) -> float:
     """How well a pattern named in words fits, 0 to 1; thin things show too little of a pattern to be sure of it."""
     own = float(np.clip(look.patterns[pattern] / 0.45, 0, 1))
+    if pattern == "multicoloured":
+        return max(own, _rainbow(look))
     if pattern not in _CONFUSED:
         return own
     thin = look.outline.hole_share > 0.2 or look.outline.solidity < 0.7
     other = max(look.patterns[name] for name in _CONFUSED)
-    return max(own, (0.7 if thin else 0.5) * float(np.clip(other / 0.45, 0, 1)))
+    fit = max(own, (0.7 if thin else 0.5) * float(np.clip(other / 0.45, 0, 1)))
+    if pattern == "swirled":
+        return max(fit, _bands(look))
+    if pattern == "checkered" and look.surface.two_way > 0.4:
+        # A stroke of a letter shows one row of checks, which is a row of stripes.
+        fit = max(fit, 0.75 * float(np.clip(look.patterns["striped"] / 0.45, 0, 1)))
+    return fit
+
+
+def _bands(look: Look) -> float:
+    """How far broad bands of one colour run through white, as in a swirl of which a part shows, 0 to 1."""
+    white = float(np.clip((look.memberships["white"] - 0.25) / 0.08, 0, 1))
+    return 0.8 * white * float(np.clip((look.surface.two_tone - 0.88) / 0.06, 0, 1))
+
+
+def _rainbow(look: Look) -> float:
+    """How far a surface runs smoothly through several hues, 0 to 1."""
+    hues = sum(share > 0.08 for name, share in look.memberships.items() if name not in ("white", "grey", "black"))
+    return float(np.clip(hues - 2, 0, 1) * np.clip((14 - look.surface.contrast) / 2, 0, 1))
 
 
 def _colourless(look: Look) -> float:
@@ -218,7 +241,7 @@ def _related(
         if len(things) < len(anchors):
             continue
         fit = relation_score(relation, match.thing, things, scene)
-        if fit > 0.3:
+        if fit > (_SAME if relation.startswith("same_") else 0.3):
             out.append(replace(match, score=match.score * fit, why=f"{match.why}, {relation} {fit:.2f}"))
     return out
 

@@ -9,6 +9,8 @@ import numpy as np
 
 from wonderful_team.geometry.arrays import Array
 from wonderful_team.models.offline.vision.outlines import filled
+from wonderful_team.models.offline.vision.overlaid import part_overlaid
+from wonderful_team.models.offline.vision.pieces import joined_pieces
 from wonderful_team.models.offline.vision.splitting import components, kernel, placed, split_by_colour, window
 from wonderful_team.models.offline.vision.table import Table
 from wonderful_team.models.offline.vision.things import lab_histogram
@@ -22,10 +24,15 @@ _JUMP_M = 0.010
 
 @dataclass(frozen=True, eq=False)
 class Segment:
-    """One thing's pixels: a full working mask (H, W), bool, and whether it lies flat (None: unknown)."""
+    """One thing's pixels: a full working mask (H, W), bool, and whether it lies flat (None: unknown).
+
+    Attributes:
+        shows: Where table shows through its gaps, this is False, shape (H, W), bool; None when that is not known.
+    """
 
     mask: Array
     flat: bool | None
+    shows: Array | None = None
 
 
 def find_segments(lab: Array, valid: Array, table: Table) -> list[Segment]:
@@ -39,6 +46,13 @@ def find_segments(lab: Array, valid: Array, table: Table) -> list[Segment]:
     least = max(24.0, LEAST_SHARE * float(valid.sum()))
     if table.raised is not None:
         found = _with_height(lab, table, least)
+    elif table.clean:
+        found = []
+        for patch in joined_pieces(lab, table.stands_out, least):
+            found += [
+                Segment(part, None, table.stands_out)
+                for part in part_overlaid(lab, fill_specks(close_ring(patch)), least)
+            ]
     else:
         found = []
         for patch in _patches(table.stands_out, least):
@@ -69,6 +83,16 @@ def fill_specks(mask: Array) -> Array:
         small |= middling
     keep = np.concatenate([[False], small])
     return placed(mask[view] | keep[labels], view, mask.shape)
+
+
+def close_ring(mask: Array) -> Array:
+    """A frame whose bars do not quite meet, closed; any other mask as it is."""
+    view = window(mask, margin=6)
+    inside = mask[view]
+    closed = cv2.morphologyEx(inside.astype(np.uint8), cv2.MORPH_CLOSE, kernel(5)) > 0
+    if filled(closed).sum() < 1.3 * filled(inside).sum():
+        return mask
+    return placed(closed, view, mask.shape)
 
 
 def _beyond_table(mask: Array, valid: Array) -> bool:

@@ -8,6 +8,7 @@ import cv2
 import numpy as np
 
 from wonderful_team.geometry.arrays import Array
+from wonderful_team.models.offline.vision.room import room_distance
 
 _FLOOR = np.array([1.7, 1.3, 1.3])
 """Least standard deviation assumed for the table in L, a, b: sensor noise and rounding."""
@@ -17,6 +18,9 @@ _CEILING = np.array([7.0, 5.0, 5.0])
 
 _LEAST_TABLE = 0.12
 """Share of the picture that must lie on one smooth surface; with less there is no table and nothing stands out."""
+
+_CLEAN = 1.05
+"""A table that spreads no more than this share of the floor is computed, without noise."""
 
 _NO_TABLE = 1000.0
 """Spread that is given when the picture has no table."""
@@ -42,6 +46,7 @@ class Table:
         stands_out: Pixels that differ in colour, shape (H, W), bool.
         height_m: Height above the table plane, shape (H, W) [m]; None without depth.
         raised: Pixels above RAISED_M, shape (H, W), bool; None without depth.
+        clean: Computed, without noise: its colours are exact.
     """
 
     surface: Array
@@ -50,6 +55,7 @@ class Table:
     stands_out: Array
     height_m: Array | None
     raised: Array | None
+    clean: bool = False
 
 
 def find_table(lab: Array, valid: Array, depth_m: Array | None = None) -> Table:
@@ -64,8 +70,15 @@ def find_table(lab: Array, valid: Array, depth_m: Array | None = None) -> Table:
     surface, spread = _fit_surface(lab, valid, height_m)
     residual = lab - surface
     distance = np.sqrt(((residual / spread) ** 2).sum(axis=-1) / 1.5)
+    if height_m is None and (spread < _NO_TABLE).all():
+        room = room_distance(lab, valid, surface, spread)
+        distance = distance if room is None else np.minimum(distance, room)
     distance[~valid] = 0.0
-    smooth = cv2.GaussianBlur(distance.astype(np.float32), (0, 0), 0.8)
+    # Without noise every pixel says for itself what it shows.
+    smooth = distance.astype(np.float32)
+    clean = bool((spread < _CLEAN * _FLOOR).all())
+    if not clean:
+        smooth = cv2.GaussianBlur(smooth, (0, 0), 0.8)
     stands_out = _hysteresis(smooth, _GROW, _SEED) & valid
     raised = None
     if height_m is not None:
@@ -75,7 +88,7 @@ def find_table(lab: Array, valid: Array, depth_m: Array | None = None) -> Table:
         if (spread >= _NO_TABLE).all():  # noise over a depth of something else: nothing is seen
             known = np.zeros_like(known)
         raised = known & valid & (np.nan_to_num(height_m) > max(RAISED_M, 4.0 * float(noise)))
-    return Table(surface, spread, distance, stands_out, height_m, raised)
+    return Table(surface, spread, distance, stands_out, height_m, raised, clean)
 
 
 def _hysteresis(values: Array, low: float, high: float) -> Array:

@@ -74,6 +74,7 @@ class Thing:
         flat: A thin area such as a paper: measured with depth, judged from its plain look without.
         cut: It reaches the edge of what the picture shows.
         on: Number of the thing it lies on or in, or None.
+        tall_px: How much of its side a second, slanted view shows [px of that view]; None without one.
     """
 
     number: int
@@ -88,6 +89,7 @@ class Thing:
     flat: bool = False
     cut: bool = False
     on: int | None = None
+    tall_px: float | None = None
 
     def holds(self, point: Point) -> bool:
         """Whether a point [picture px] lies on what shows of it."""
@@ -167,6 +169,7 @@ class Example:
         box: Tight round it [px of that picture].
         area_view_px: Its filled area [px squared of the view], for comparing sizes in like views.
         pale: White parts may have vanished into the white background.
+        gapless: Its look if the gaps in it are white parts that have vanished; None where `look` says so already.
         open_outline: Its outline if the gaps that were taken for vanished texture are holes instead; None without any.
     """
 
@@ -176,6 +179,7 @@ class Example:
     area_view_px: float
     pale: bool = False
     open_outline: Outline | None = None
+    gapless: Look | None = None
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,0 +1,32 @@
+"""A look after every action whose outcome is not certain: only the first part of a plan runs, then it is planned anew.
+
+Where a push leaves a thing is decided by friction; what a plan believes of the second push is worth less than a new picture.
+A thing that was picked lies where it was put, so plans of picking and placing run whole.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from wonderful_team.actions import PushStep
+from wonderful_team.agents import step_words
+from wonderful_team.types import Plan
+
+
+def is_uncertain(plan: Plan) -> bool:
+    """Whether every step pushes: then a look after each of them is worth its questions."""
+    return bool(plan.steps) and all(isinstance(step, PushStep) for step in plan.steps)
+
+
+def first_part(plan: Plan) -> Plan:
+    """The plan up to its first action: what runs before the next look. Subgoals and targets stay, to be read."""
+    return replace(plan, steps=plan.steps[:1], actions=plan.actions[:1])
+
+
+def looking_lines(plan: Plan) -> tuple[str, ...]:
+    """What the Supervisor is told for the plan after a look."""
+    subgoals = {subgoal.id: subgoal.text for subgoal in plan.subgoals}
+    done = "; ".join(f"{step_words(step)} (for '{subgoals.get(step.subgoal, step.subgoal)}')" for step in plan.steps)
+    return (
+        f"This was done, and the picture is new: {done}. Plan only what is left to do now; nothing if all is reached.",
+    )

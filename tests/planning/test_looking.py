@@ -1,0 +1,69 @@
+"""The team looks again after every push, and only then; the offline model sweeps what it is asked to."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from wonderful_team.actions import At, PickPlaceStep, PushStep
+from wonderful_team.interfaces import Act
+from wonderful_team.models.offline import OfflineModel
+from wonderful_team.planning import Team
+from wonderful_team.planning.looking import first_part, is_uncertain, looking_lines
+from wonderful_team.runtime import rollout
+from wonderful_team.sims.tabletop import make_world
+from wonderful_team.types import Instruction, Plan, Subgoal
+
+PUSHES = (PushStep("G1", At("T1"), At("T2")), PushStep("G1", At("T1"), At("T3")))
+PLAN = Plan(Instruction("sweep"), "planned", (Subgoal("G1", "push the block into the frame"),), steps=PUSHES)
+
+
+def test_only_plans_of_pushes_are_cut() -> None:
+    assert is_uncertain(PLAN)
+    assert not is_uncertain(replace(PLAN, steps=(*PUSHES, PickPlaceStep("G1", "T1", At("T2")))))
+    assert not is_uncertain(replace(PLAN, steps=()))
+    first = first_part(PLAN)
+    assert first.steps == PUSHES[:1]
+    assert first.id != PLAN.id
+    (line,) = looking_lines(first)
+    assert "push the block into the frame" in line
+
+
+class Watched(Team):
+    """Keeps what the team decided."""
+
+    def __init__(self) -> None:
+        super().__init__(OfflineModel())
+        self.acts: list[Act] = []
+
+    async def decide(self, situation):  # type: ignore[no-untyped-def]
+        decision = await super().decide(situation)
+        if isinstance(decision, Act):
+            self.acts.append(decision)
+        return decision
+
+
+def run(task: str, seed: int, looks: int) -> tuple[Watched, str]:
+    world, team = make_world(task, seed=seed), Watched()
+    try:
+        trial = rollout(team, world, looks=looks, scorer=world.privileged)
+    finally:
+        world.close()
+    return team, trial.outcome
+
+
+def test_every_push_is_followed_by_a_look() -> None:
+    team, outcome = run("sweep_without_touching", 504, looks=12)
+    assert outcome == "success"
+    assert all(act.look and len(act.actions) == 1 for act in team.acts)
+
+
+def test_open_loop_sweeps_in_one_plan() -> None:
+    team, outcome = run("sweep_without_exceeding", 505, looks=0)
+    assert outcome == "success"
+    assert [act.look for act in team.acts] == [False]
+
+
+def test_picking_and_placing_runs_whole() -> None:
+    team, outcome = run("visual_manipulation", 505, looks=5)
+    assert outcome == "success"
+    assert [act.look for act in team.acts] == [False]

@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, Self
 
 from wonderful_team import registry
-from wonderful_team.interfaces import Model, Policy, Subscriber
+from wonderful_team.errors import ConfigError
+from wonderful_team.interfaces import Model, Policy, Subscriber, World
 from wonderful_team.models.budget import Budget, Caps
 from wonderful_team.models.cache import CacheMode, cached_models
 from wonderful_team.models.cache_key import model_identity
@@ -16,6 +17,7 @@ from wonderful_team.models.door import Door
 from wonderful_team.models.providers import check_prices, model_options
 from wonderful_team.planning import Team as Planner
 from wonderful_team.planning import TeamConfig
+from wonderful_team.simulated_models import waiting
 
 ModelChoice = str | Model | Mapping[str, str | Model]
 POINTING_ROLES = ("manager", "supervisor")
@@ -45,6 +47,7 @@ class Method:
         subscribers: Told of every event as it happens.
         command: The command line that reproduces the run, for the page.
         parent: Which run this one branches off, and at which stage.
+        world: Whose truth a `simulated:` model answers from; `wt.rollout(method, world)` hands it over by itself.
 
     Raises:
         ConfigError: An unknown name or a value out of range; before anything is sent.
@@ -70,11 +73,12 @@ class Method:
     price: str | Mapping[str, str] | None = None
     allow_unpriced: bool = False
     local_only: bool = False
+    world: World | None = None
 
     def __post_init__(self) -> None:
         self._config = team_config(self.method, self.prompts, self.strict)
         options = model_options(self.thinking, self.price, self.local_only, role_names())
-        made = registry.make_models(self.model, role_names(), options)
+        made = registry.make_models(self.model, role_names(), options, self.world)
         if self._config is not None and any(getattr(made[role], "weak_pointing", False) for role in POINTING_ROLES):
             self._config = replace(self._config, axes=True)
         self._models, self._store = cached_models(made, self.cache, self.cache_file, repeat=self.repeat)
@@ -98,6 +102,23 @@ class Method:
     def model_name(self) -> str:
         """What records call the model."""
         return self._label
+
+    def in_world(self, world: World) -> Self:
+        """The same method, with the world's truth for a simulated model that still waits for one.
+
+        Raises:
+            ConfigError: The world has no truth, or its instruction was replaced.
+        """
+        return self if waiting(self._models) is None else replace(self, world=world)
+
+    def check_ready(self) -> None:
+        """Raises ConfigError when a simulated model has no world to answer from."""
+        name = waiting(self._models)
+        if name is not None:
+            raise ConfigError(
+                f"model {name!r} answers from a simulator's truth, and a picture alone has none: hand the world over, as in "
+                f"wt.Team(model={name!r}, world=world), or run it with wt.rollout(team, world)"
+            )
 
     def door(self, *subscribers: Subscriber) -> Door:
         """A door to the model for one run: capped, and told to subscribers."""

@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Any
 
-from wonderful_team.errors import ConfigError
-from wonderful_team.evals.photos import Located, read_photos, score_photo
+from wonderful_team.errors import BudgetReached, ConfigError, ModelUnavailableError, WonderfulTeamError
+from wonderful_team.evals.photos import Located, PhotoScene, read_photos, score_photo
 from wonderful_team.evals.trials import RunSettings, TrialResult, TrialSpec
 from wonderful_team.finding import find
 from wonderful_team.geometry import Box
 from wonderful_team.methods import Method, team_config
+from wonderful_team.models.door import Door
 from wonderful_team.observe import Observation
+from wonderful_team.planning import TeamConfig
+from wonderful_team.role_models import choice_of
 from wonderful_team.runtime.loop import Caller
 from wonderful_team.trial_runs import Counting, fingerprint, prepared
 from wonderful_team.types import GroundedTarget, Instruction, Target, Usage
@@ -29,19 +32,19 @@ def run_photo(spec: TrialSpec, settings: RunSettings) -> TrialResult:
     scene = read_photos(spec.task)[spec.seed]
     words = [asked.words for asked in scene.asked]
     seen, count = Observation.from_files(scene.picture), Counting()
-    method = prepared(spec, settings, spec.condition.model)
+    method = prepared(spec, settings, choice_of(spec.condition.model))
     config = team_config(spec.condition.method, settings.prompts)
+    by_role = count.by_role
     with Caller() as caller:
         if config is None:
-            found = _by_own(caller, method, count, seen, words)
+            result = _judged(scene, lambda: _by_own(caller, method, count, seen, words))
         else:
-            targets = [Target(f"T{number}", "object", text) for number, text in enumerate(words, start=1)]
-            asked = Instruction("Find: " + "; ".join(words))
-            plan = caller.wait_for(find(method.door(count), config, seen, asked, targets))
-            found = [_of_team(plan.grounded.get(target.id)) for target in targets]
-    usage = sum(count.by_role.values(), Usage())
+            door = method.door(count)
+            result = _judged(scene, lambda: _by_team(caller, door, config, seen, words))
+            by_role = door.budget.by_role
+    usage = sum(by_role.values(), Usage())
     return replace(
-        score_photo(scene, found),
+        result,
         calls=usage.calls,
         tokens=usage.tokens,
         pictures=usage.pictures,
@@ -52,6 +55,30 @@ def run_photo(spec: TrialSpec, settings: RunSettings) -> TrialResult:
         instruction="; ".join(words),
         versions=fingerprint(spec),
     )
+
+
+def _judged(scene: PhotoScene, ask: Callable[[], list[Located]]) -> TrialResult:
+    """Where things were said to be, scored; what ends a method without an answer is its failure, at the stage it names.
+
+    Raises:
+        ConfigError: Wrong use.
+        ModelUnavailableError: The provider did not answer: an error, not the method's failure.
+    """
+    try:
+        return score_photo(scene, ask())
+    except (ConfigError, ModelUnavailableError):
+        raise
+    except WonderfulTeamError as error:
+        return TrialResult("failure", error.stage or "grounding", str(error))
+
+
+def _by_team(caller: Caller, door: Door, config: TeamConfig, seen: Observation, words: Sequence[str]) -> list[Located]:
+    targets = [Target(f"T{number}", "object", text) for number, text in enumerate(words, start=1)]
+    asked = Instruction("Find: " + "; ".join(words))
+    plan = caller.wait_for(find(door, config, seen, asked, targets))
+    if plan.status == "budget":
+        raise BudgetReached(plan.message)
+    return [_of_team(plan.grounded.get(target.id)) for target in targets]
 
 
 def _of_team(item: GroundedTarget | None) -> Located:

@@ -1,12 +1,13 @@
 """Names to things: models, methods, worlds and tasks. The only place where a string picks an implementation.
 
-Every kind also takes `FILE.py:Name`. Truth leaves a simulator only through `privileged`, and only for scorers.
+Every kind also takes `FILE.py:Name`. Truth leaves a simulator only through `privileged`, and only for scorers and simulated
+models.
 """
 
 from __future__ import annotations
 
 import importlib
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Literal, cast
 
@@ -14,13 +15,17 @@ from wonderful_team.actions import Action, Vocabulary
 from wonderful_team.errors import ConfigError, UnknownNameError
 from wonderful_team.interfaces import Model, Policy, Privileged, World
 from wonderful_team.loading import build, is_file_name, load_from_file
+from wonderful_team.simulated_models import SIMULATED, simulated_model
 from wonderful_team.types import Instruction, KeepOut, Limits, Observation, StepReport
 
 if TYPE_CHECKING:
     from wonderful_team.models.door import Door
     from wonderful_team.models.providers import ModelOptions
 
-MODELS: dict[str, str] = {"offline": "classical vision and a grammar: no key, no weights, no network; not a VLM"}
+MODELS: dict[str, str] = {
+    "offline": "classical vision and a grammar: no key, no weights, no network; not a VLM",
+    "simulated:perfect": "a simulator's truth, as it is seen through the pictures shown: tests everything but the model",
+}
 MODEL_FORMS: dict[str, str] = {
     "openai:NAME": "OpenAI (Responses); openai-chat:NAME for Chat Completions; key in OPENAI_API_KEY",
     "anthropic:NAME": "Anthropic; key in ANTHROPIC_API_KEY",
@@ -28,6 +33,7 @@ MODEL_FORMS: dict[str, str] = {
     "openrouter:NAME": "OpenRouter; key in OPENROUTER_API_KEY",
     "VENDOR:NAME@URL": "the same interface at another address",
     "http://HOST:8000/v1[#NAME]": "any OpenAI-compatible server; without #NAME it is asked which model it has",
+    "simulated:PROFILE": "a simulator's truth with stated errors: coarse, hasty, or a profile that probe --full measured",
     "FILE.py:NAME": "your own: anything with answer(request)",
 }
 SETTINGS = tuple(f"s{number}" for number in range(1, 9))
@@ -37,29 +43,42 @@ METHODS: dict[str, str] = {
     **{f"team:{name}": f"the lean team in the paper's ablation setting {name[1:]}" for name in SETTINGS},
     **{f"team:paper:{name}": f"the published algorithms in ablation setting {name[1:]}" for name in SETTINGS},
 }
-WORLDS: dict[str, str] = {"tabletop": "MuJoCo table, 1.0 x 0.5 m, suction, top and front cameras with depth"}
+WORLDS: dict[str, str] = {
+    "tabletop": "MuJoCo table, 1.0 x 0.5 m, suction, top and front cameras with depth",
+    "vimabench": "VIMA-Bench itself: your own copy, in a process and a Python environment of its own; 256 x 128 px, no depth",
+}
+_SIMULATORS: dict[str, str] = {
+    "tabletop": "wonderful_team.sims.tabletop",
+    "vimabench": "wonderful_team.sims.vimabench",
+}
 DEFAULT_ROLE = "*"
 
 
 # -- models --------------------------------------------------------------------------------------------------------
 
 
-def make_model(model: str | Model, options: ModelOptions | None = None, role: str = DEFAULT_ROLE) -> Model:
+def make_model(
+    model: str | Model, options: ModelOptions | None = None, role: str = DEFAULT_ROLE, world: World | None = None
+) -> Model:
     """The model that a name means; an object with `answer(request)` is a model already.
 
     Args:
         model: `offline`, a name saved by `probe --save`, one of MODEL_FORMS, or an object.
         options: Thinking, prices and where models may be.
         role: Whose options count.
+        world: Whose truth a simulated model answers from; without it, such a model waits for one and answers nothing.
 
     Raises:
-        ConfigError: The name means nothing that exists, its file has no such model, or a key is missing.
+        ConfigError: The name means nothing that exists, its file has no such model, a key is missing, or a world gives no
+            truth to a simulated model.
         ModelUnavailableError: A server that was to be asked for its models does not answer.
     """
     if not isinstance(model, str):
         if not callable(getattr(model, "answer", None)):
             raise ConfigError(f"a model needs a method answer(request); {type(model).__name__} has none")
         return model
+    if model.startswith(SIMULATED):
+        return simulated_model(model, world)
     if is_file_name(model):
         made = build(load_from_file(model, "model"), {}, f"model {model!r}")
         return make_model(made)
@@ -74,14 +93,17 @@ def make_model(model: str | Model, options: ModelOptions | None = None, role: st
         made = make_provider(spec, profile=profile, thinking=thinking, price=price, local_only=asked.local_only)
         return cast(Model, made)
     if profile is not None:
-        return make_model(spec, options, role)
+        return make_model(spec, options, role, world)
     if model not in MODELS:
         raise UnknownNameError("model", model, [*MODELS, *profile_names(), *MODEL_FORMS])
     return cast(Model, importlib.import_module("wonderful_team.models.offline").OfflineModel())
 
 
 def make_models(
-    model: str | Model | Mapping[str, str | Model], roles: Sequence[str], options: ModelOptions | None = None
+    model: str | Model | Mapping[str, str | Model],
+    roles: Sequence[str],
+    options: ModelOptions | None = None,
+    world: World | None = None,
 ) -> dict[str, Model]:
     """One model for every role.
 
@@ -89,6 +111,7 @@ def make_models(
         model: One model for all roles, or a model for each role; key "*" is for the roles not named.
         roles: All roles there are.
         options: Thinking and prices by role, and where models may be.
+        world: Whose truth simulated models answer from.
 
     Raises:
         UnknownNameError: A role that does not exist.
@@ -112,7 +135,7 @@ def make_models(
         how = () if options is None else (options.thinking_of(role), options.price_of(role))
         key = (named if isinstance(named, str) else id(named), *how)
         if key not in made:
-            made[key] = make_model(named, options, role)
+            made[key] = make_model(named, options, role, world)
         models[role] = made[key]
     return models
 
@@ -215,17 +238,44 @@ class OwnWorld:
 
 def task_names() -> dict[str, str]:
     """Every task of every world, as WORLD/TASK, with a line of help."""
-    return {f"tabletop/{name}": words for name, words in _tabletop().task_names().items()}
+    return {f"{world}/{name}": words for world in _SIMULATORS for name, words in _simulator(world).task_names().items()}
 
 
 def task_partitions() -> dict[str, tuple[str, ...]]:
     """The generalisation levels of every task, as WORLD/TASK: a world is then made as WORLD/TASK@LEVEL."""
-    registering = importlib.import_module("wonderful_team.sims.tabletop.registering")
-    return {f"tabletop/{name}": tuple(registering.find_task(name).partitions) for name in _tabletop().task_names()}
+    return {
+        f"{world}/{name}": tuple(_simulator(world).partitions(name))
+        for world in _SIMULATORS
+        for name in _simulator(world).task_names()
+    }
+
+
+def check_ready(names: Iterable[str]) -> None:
+    """Whether the simulators behind these tasks can be started, before many are; each is asked once.
+
+    Raises:
+        ConfigError: One is not installed; says how to get it.
+    """
+    for world in dict.fromkeys(name.partition("/")[0] for name in names if not is_file_name(name)):
+        ready = getattr(_simulator(world), "check_ready", None) if world in _SIMULATORS else None
+        if ready is not None:
+            ready()
+
+
+def own_tiers(name: str) -> tuple[str, ...]:
+    """Kinds of harder tier that a world makes itself, in its simulator; () where only its pictures can be changed."""
+    ours = name.partition("/")[0] == "tabletop"
+    if is_file_name(name):
+        ours = task_made_of(load_from_file(name, "world")) is not None
+    return tuple(importlib.import_module("wonderful_team.sims.tabletop.options").TIERS) if ours else ()
 
 
 def make_world(
-    name: str | Any, seed: int = 0, instruction: str | Instruction | None = None, keep_out: Sequence[KeepOut] = ()
+    name: str | Any,
+    seed: int = 0,
+    instruction: str | Instruction | None = None,
+    keep_out: Sequence[KeepOut] = (),
+    tiers: Mapping[str, int] | None = None,
 ) -> World:
     """A world with one scene set up in it.
 
@@ -235,6 +285,7 @@ def make_world(
         seed: Of the scene. Seeds below 1000 are for development; suites start at 1000.
         instruction: Instead of the world's own; the scorer, which judges the world's own, is then dropped.
         keep_out: Regions nothing may enter, beside the world's own.
+        tiers: How much harder than usual, 0 to 3, by kind; of `own_tiers(name)`.
 
     Raises:
         UnknownNameError: No such world or task; lists those that exist.
@@ -245,7 +296,11 @@ def make_world(
     if not isinstance(name, str):
         world, name = _whole(name, f"world {type(name).__name__}"), type(name).__name__
     else:
-        world = _world_from_file(name, seed) if is_file_name(name) else _named_world(name, seed)
+        wrong = [kind for kind in tiers or {} if kind not in own_tiers(name)]
+        if wrong:
+            raise ConfigError(f"world {name!r} makes no tiers of {', '.join(wrong)}; our tabletop does")
+        harder = dict(tiers or {})
+        world = _world_from_file(name, seed, harder) if is_file_name(name) else _named_world(name, seed, harder)
     own = getattr(world, "instruction", None)
     wanted = _worded(instruction, own) if instruction is not None else own
     if wanted is None:
@@ -275,25 +330,28 @@ def _worded(instruction: str | Instruction, own: Instruction | None) -> Instruct
     return Instruction(instruction, {key: slot for key, slot in slots.items() if f"{{{key}}}" in instruction})
 
 
-def _named_world(name: str, seed: int) -> World:
+def _named_world(name: str, seed: int, harder: Mapping[str, int]) -> World:
     world, _, task = name.partition("/")
     if world not in WORLDS:
         known = [*WORLDS, "FILE.py:NAME"]
-        if name in _tabletop().task_names():
-            raise ConfigError(f"unknown world {name!r}: it is a task; say tabletop/{name}")
+        worlds = [one for one in _SIMULATORS if name.partition("@")[0] in _simulator(one).task_names()]
+        if worlds:
+            raise ConfigError(
+                f"unknown world {name!r}: it is a task; say {' or '.join(f'{one}/{name}' for one in worlds)}"
+            )
         raise UnknownNameError("world", world, known)
     if not task:
         raise ConfigError(f"world {name!r}: say which task, one of: {', '.join(task_names())}")
-    if task.partition("@")[0] not in _tabletop().task_names():
+    if task.partition("@")[0] not in _simulator(world).task_names():
         raise UnknownNameError("task", name, task_names())
-    return cast(World, _tabletop().make_world(task, seed=seed))
+    return cast(World, _simulator(world).make_world(task, seed=seed, **harder))
 
 
-def _world_from_file(name: str, seed: int) -> Any:
+def _world_from_file(name: str, seed: int, harder: Mapping[str, int]) -> Any:
     thing = load_from_file(name, "world")
     task = task_made_of(thing)
     if task is not None:
-        return _tabletop().make_world(task, seed=seed)
+        return _tabletop().make_world(task, seed=seed, **harder)
     return _whole(build(thing, {"seed": seed}, f"world {name!r}"), f"world {name!r}")
 
 
@@ -315,7 +373,12 @@ def task_made_of(thing: Any) -> str | None:
 
 
 def _tabletop() -> Any:
-    return importlib.import_module("wonderful_team.sims.tabletop")
+    return _simulator("tabletop")
+
+
+def _simulator(world: str) -> Any:
+    """The package of a simulated world: `make_world`, `task_names` and `partitions`; imported when it is first used."""
+    return importlib.import_module(_SIMULATORS[world])
 
 
 __all__ = [
@@ -326,11 +389,13 @@ __all__ = [
     "WORLDS",
     "OwnWorld",
     "TeamWay",
+    "check_ready",
     "load_method",
     "make_model",
     "make_models",
     "make_world",
     "model_label",
+    "own_tiers",
     "privileged",
     "scene_name",
     "task_made_of",

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+import tempfile
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Literal
 
@@ -12,9 +13,9 @@ from wonderful_team import registry
 from wonderful_team.errors import ConfigError, UnknownNameError
 from wonderful_team.evals.controls import CONTROLS
 from wonderful_team.evals.estimate import Estimate, estimate
-from wonderful_team.evals.perturb import check_perturbation
+from wonderful_team.evals.perturb import IN_PICTURE, read_tier, read_tiers
 from wonderful_team.evals.photos import count_photos
-from wonderful_team.evals.plan import OFFLINE, StudyPlan, read_shard, split_names
+from wonderful_team.evals.plan import OFFLINE, WHOLE, StudyPlan, of_photos, read_shard, split_names
 from wonderful_team.evals.store import Store
 from wonderful_team.evals.study import Finish, Report, run_study
 from wonderful_team.evals.suites import PARTITIONS, Suite, all_suites, read_seeds, resolve
@@ -22,12 +23,16 @@ from wonderful_team.evals.summary import Summary, summarise
 from wonderful_team.evals.trials import Condition, RunSettings, SpendingCaps, TrialResult, TrialSpec
 from wonderful_team.evals.workers import run_safely
 from wonderful_team.loading import is_file_name
+from wonderful_team.models.cache import CacheMode
+from wonderful_team.role_models import choice_of, read_choices, text_of
 from wonderful_team.runs import runs_folder
 from wonderful_team.trial_runs import check_isolation, check_names, run_trial
 
 ALL_CONTROLS = (*CONTROLS, OFFLINE)
+PILOT = 6
+"""Pilot trials of a condition that costs nothing."""
 FREE = ("-", OFFLINE)
-"""Models whose pilot trials cost no money."""
+"""Models whose pilot trials cost no money; simulated ones beside them."""
 
 
 @dataclass
@@ -36,12 +41,16 @@ class Study:
 
     Args:
         suite: A suite, a task, FILE.py:TASK, PHOTOS.json, or several.
-        methods, models: Names; objects cannot be sent to worker processes.
+        methods, models: Names; objects cannot be sent to worker processes. A model may be a mapping from role to name,
+            with "*" for the rest.
         seeds: For every task; None for the suite's own, from 1000 on.
         store: File that keeps what ended; the same study on the same file resumes.
-        repeats, replans, isolate, perturb, shard: As `bench` has them.
+        repeats, replans, shard: As `bench` has them.
+        isolate: whole, planning, grounding: one or several. perturb: KIND=LEVEL: one or several; "" is the scene as it is.
+        thinking, price, allow_unpriced, local_only, cache, cache_file, prompts: As `Method` takes them.
         controls: Those that run beside the methods; () refuses them all.
         caps: Of the whole study. trial_caps: of each trial.
+        concurrency: Most model calls at once, over all workers.
         pages: Which trials get a page of their own.
 
     Raises:
@@ -50,13 +59,13 @@ class Study:
 
     suite: str | Sequence[str]
     methods: Sequence[str] = ("team",)
-    models: Sequence[str] = (OFFLINE,)
+    models: Sequence[str | Mapping[str, str]] = (OFFLINE,)
     seeds: Iterable[int] | None = None
     store: str | Path = "study.db"
     repeats: int = 1
     replans: int | None = None
-    isolate: str = ""
-    perturb: str = ""
+    isolate: str | Sequence[str] = ""
+    perturb: str | Sequence[str] = ""
     shard: tuple[int, int] = (1, 1)
     controls: Sequence[str] = ALL_CONTROLS
     caps: SpendingCaps = SpendingCaps()
@@ -65,6 +74,12 @@ class Study:
     pages: Literal["all", "failures", "none"] = "failures"
     out: str | Path | None = None
     prompts: str | Path | None = None
+    thinking: str | Mapping[str, str] | None = None
+    price: str | Mapping[str, str] | None = None
+    allow_unpriced: bool = False
+    local_only: bool = False
+    cache: CacheMode | None = None
+    cache_file: str | Path | None = None
     jobs: int | None = None
     at_once: int = 1
     ray: str | None = None
@@ -72,32 +87,35 @@ class Study:
     command: str = ""
 
     def __post_init__(self) -> None:
-        for name in (*self.methods, *self.models):
+        models = [text_of(one) if isinstance(one, Mapping) else one for one in self.models]
+        for name in (*self.methods, *models):
             if not isinstance(name, str):
                 raise ConfigError(f"a study takes names, as in FILE.py:NAME; got a {type(name).__name__}")
         unknown = [name for name in self.controls if name not in ALL_CONTROLS]
         if unknown:
             raise ConfigError(f"control {unknown[0]!r}: valid are {', '.join(ALL_CONTROLS)}")
-        check_perturbation(self.perturb)
-        words = [self.suite] if isinstance(self.suite, str) else list(self.suite)
+        tiers = read_tiers(_listed(self.perturb))
+        words = _listed(self.suite)
         suites = resolve(words, list(registry.task_names()), known_suites(), is_file_name)
         _check_levels(suites)
-        for task in (task for suite in suites for task in suite.tasks if is_file_name(task)):
-            registry.make_world(task).close()
-        check_names(self.methods, self.models)
-        if self.isolate:
-            check_isolation(self.isolate)
+        _check_scenes(suites, tiers)
+        check_names(self.methods, models, self._asked(), self.trial_caps.tokens or self.caps.tokens)
+        parts = tuple("" if name == WHOLE else name for name in split_names(_listed(self.isolate))) or ("",)
+        for part in parts:
+            if part:
+                check_isolation(part)
         self.plan = StudyPlan(
             suites,
             tuple(self.methods),
-            tuple(self.models),
+            tuple(models),
             None if self.seeds is None else tuple(self.seeds),
             self.repeats,
             tuple(self.controls),
-            self.isolate,
-            self.perturb,
+            tuple(dict.fromkeys(parts)),
+            tiers,
             self.replans,
             self.shard,
+            self._how(),
             {"command": self.command, **_photo_counts(suites)},
         )
         self.store = sharded(Path(self.store), self.shard)
@@ -105,6 +123,8 @@ class Study:
     @classmethod
     def from_options(cls, **options: Any) -> Study:
         """A study from the options of `bench`."""
+        from wonderful_team.cli.options import read_roles
+
         refused = split_names(options["refused"])
         wrong = [name for name in refused if name not in (*ALL_CONTROLS, "all")]
         if wrong:
@@ -112,21 +132,24 @@ class Study:
         return cls(
             options["suites"],
             split_names(options["methods"]) or ("team",),
-            split_names(options["models"]) or (OFFLINE,),
+            read_choices(options["models"], OFFLINE),
             None if options["seeds"] is None else read_seeds(options["seeds"]),
             options["store"],
             repeats=options["repeats"],
             replans=options["replans"],
-            isolate=options["isolate"] or "",
-            perturb=options["perturb"] or "",
+            isolate=options["isolate"],
+            perturb=options["perturb"],
             shard=(1, 1) if options["shard"] is None else read_shard(options["shard"]),
             controls=() if "all" in refused else tuple(name for name in ALL_CONTROLS if name not in refused),
             caps=SpendingCaps(options["max_calls"], options["max_tokens"], options["max_seconds"], options["max_usd"]),
-            trial_caps=SpendingCaps(options["trial_max_calls"], None, None, options["trial_max_usd"]),
+            trial_caps=SpendingCaps(*(options[f"trial_max_{name}"] for name in ("calls", "tokens", "seconds", "usd"))),
             concurrency=options["concurrency"],
             pages=options["pages"],
             out=options["out"],
             prompts=options["prompts"],
+            thinking=read_roles(options["thinking"], "--thinking", "LEVEL"),
+            price=read_roles(options["price"], "--price", "IN,OUT"),
+            **{name: options[name] for name in ("allow_unpriced", "local_only", "cache", "cache_file")},
             jobs=options["jobs"],
             at_once=options["at_once"],
             ray=options["ray"],
@@ -142,7 +165,32 @@ class Study:
     def _settings(self) -> RunSettings:
         prompts = None if self.prompts is None else Path(self.prompts)
         out = runs_folder(self.out).absolute()
-        return RunSettings(self.trial_caps, self.concurrency or 8, self.pages, out, prompts)
+        return RunSettings(self.trial_caps, self.concurrency or 8, self.pages, out, prompts, extra=self._asked())
+
+    def _asked(self) -> dict[str, Any]:
+        """Options of the models, as `Method` takes them."""
+        return {
+            "thinking": self.thinking or None,
+            "price": self.price or None,
+            "allow_unpriced": self.allow_unpriced,
+            "local_only": self.local_only,
+            "cache": self.cache,
+            "cache_file": self.cache_file,
+        }
+
+    def _how(self) -> str:
+        """What of the options makes a trial another one, in words: it is part of what the store knows a trial by."""
+        levels = {"*": self.thinking} if isinstance(self.thinking, str) else dict(self.thinking or {})
+        said = [
+            f"thinking {level}" if role == "*" else f"{role} thinking {level}" for role, level in sorted(levels.items())
+        ]
+        if self.prompts is not None:
+            from wonderful_team.agents import Prompts
+
+            said.append(f"own words {Prompts.load(Path(self.prompts)).hash[:8]}")
+        units = {"calls": "calls", "tokens": "tokens", "seconds": "s", "usd": "USD"}
+        said += [f"at most {value:g} {units[name]}" for name, value in self.trial_caps.given.items()]
+        return ", ".join(said)
 
     def run(self, report: Report = lambda text, standing: None) -> Finish:
         """Run what is missing; `report` is told how it goes.
@@ -164,11 +212,11 @@ class Study:
             report=report,
         )
 
-    def estimate(self, pilot: int = 2, paid_pilot: bool = False) -> Estimate:
+    def estimate(self, pilot: int = PILOT, paid_pilot: bool = False) -> Estimate:
         """What it would take, from what the store holds and a few pilot trials on development seeds.
 
         Args:
-            pilot: Pilot trials for each condition of which nothing is recorded.
+            pilot: Pilot trials for each condition of which nothing is recorded, spread over the tasks of a suite.
             paid_pilot: Run them also for models that may cost money.
         """
         path = Path(self.store)
@@ -178,16 +226,27 @@ class Study:
                 rows = store.rows()
         known = {row.spec.condition for row in rows if row.result is not None}
         pilots: dict[Condition, list[TrialResult]] = {}
-        settings = RunSettings(self.trial_caps, pages="none")
+        with tempfile.TemporaryDirectory() as scratch:
+            self._run_pilots(pilots, known, pilot, paid_pilot, replace(self._settings(), out=Path(scratch)))
+        return estimate(self.plan, rows, pilots, (self.jobs or os.cpu_count() or 1) * self.at_once)
+
+    def _run_pilots(
+        self,
+        pilots: dict[Condition, list[TrialResult]],
+        known: set[Condition],
+        pilot: int,
+        paid_pilot: bool,
+        settings: RunSettings,
+    ) -> None:
         for suite in self.plan.suites:
             for condition in self.plan.conditions(suite):
-                if condition in known or condition in pilots or (condition.model not in FREE and not paid_pilot):
+                if condition in known or condition in pilots or not (paid_pilot or _is_free(condition.model)):
                     continue
                 # Photos have numbers instead of seeds: there is no development set of them.
-                last = len(self.plan.seeds_of(suite)) if suite.name.endswith(".json") else pilot
-                specs = [TrialSpec(suite.tasks[k % len(suite.tasks)], k % last, condition) for k in range(pilot)]
-                pilots[condition] = [run_safely(run_trial, spec, settings) for spec in specs]
-        return estimate(self.plan, rows, pilots, (self.jobs or os.cpu_count() or 1) * self.at_once)
+                last = len(self.plan.seeds_of(suite)) if of_photos(suite) else pilot
+                tasks = [suite.tasks[k * len(suite.tasks) // pilot] for k in range(pilot)]
+                specs = [TrialSpec(task, k % last, condition) for k, task in enumerate(tasks)]
+                pilots[condition] = [run_safely(run_trial, spec, settings) for spec in dict.fromkeys(specs)]
 
     def summary(self) -> Summary:
         """The figures so far, of this study's trials alone."""
@@ -236,6 +295,35 @@ class Study:
         }
 
 
+def _listed(words: str | Sequence[str]) -> list[str]:
+    return [words] if isinstance(words, str) else list(words)
+
+
+def _is_free(text: str) -> bool:
+    chosen = choice_of(text)
+    names = [chosen] if isinstance(chosen, str) else list(chosen.values())
+    return all(name in FREE or name.startswith("simulated:") for name in names)
+
+
+def _check_scenes(suites: Sequence[Suite], tiers: Sequence[str]) -> None:
+    """Every own world loads, and every tier can be made."""
+    registry.check_ready(task for suite in suites for task in suite.tasks)
+    kinds = dict.fromkeys(read_tier(tier)[0] for tier in tiers if tier)
+    for task in dict.fromkeys(task for suite in suites for task in suite.tasks):
+        if task.endswith(".json"):
+            if kinds:
+                raise ConfigError(f"--perturb: {task} is photos, and no tier is made of photos")
+            continue
+        if is_file_name(task):
+            registry.make_world(task).close()
+        missing = [kind for kind in kinds if kind in ("clutter",) and kind not in registry.own_tiers(task)]
+        if missing:
+            raise ConfigError(
+                f"--perturb {missing[0]}: {task} cannot put more things on its table; our tabletop can. "
+                f"Valid for any world: {', '.join((*IN_PICTURE, 'paraphrase'))}"
+            )
+
+
 def _check_levels(suites: Sequence[Suite]) -> None:
     known = registry.task_partitions()
     for task, at, level in (name.partition("@") for suite in suites for name in suite.tasks):
@@ -244,7 +332,7 @@ def _check_levels(suites: Sequence[Suite]) -> None:
 
 
 def _photo_counts(suites: Sequence[Suite]) -> dict[str, int]:
-    return {f"photos:{one.name}": count_photos(one.name) for one in suites if one.name.endswith(".json")}
+    return {f"photos:{one.name}": count_photos(one.name) for one in suites if of_photos(one)}
 
 
 def known_suites() -> dict[str, Suite]:

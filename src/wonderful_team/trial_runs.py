@@ -9,9 +9,10 @@ import asyncio
 import contextlib
 import hashlib
 import inspect
+import shlex
 import shutil
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import lru_cache
 from pathlib import Path
@@ -24,11 +25,13 @@ from wonderful_team.actions import Action
 from wonderful_team.api import rollout
 from wonderful_team.errors import ConfigError
 from wonderful_team.evals.controls import CONTROLS, make_control
-from wonderful_team.evals.trials import Limiter, RunSettings, TrialResult, TrialSpec
+from wonderful_team.evals.trials import Condition, Limiter, RunSettings, TrialResult, TrialSpec
 from wonderful_team.interfaces import Event, Model, Policy, World
 from wonderful_team.jsonable import to_jsonable
 from wonderful_team.loading import is_file_name
-from wonderful_team.methods import Method
+from wonderful_team.methods import Method, role_names
+from wonderful_team.models.providers import model_options
+from wonderful_team.role_models import REST, choice_of
 from wonderful_team.runtime import rollout as roll_out
 from wonderful_team.runtime.versions import versions
 from wonderful_team.types import Instruction, Observation, Request, StepReport, Trial, Usage, View
@@ -137,13 +140,16 @@ class Unseen:
 
 
 def make_scene(spec: TrialSpec) -> World:
-    """The world of a trial, perturbed where the condition says so."""
-    world = registry.make_world(spec.task, spec.seed)
-    if spec.condition.perturb:
-        from wonderful_team.evals.perturb import perturbed
+    """The world of a trial, in the harder tier that the condition says: made by its simulator where that can."""
+    tier = spec.condition.perturb
+    if not tier:
+        return registry.make_world(spec.task, spec.seed)
+    from wonderful_team.evals.perturb import perturbed, read_tier
 
-        return perturbed(world, spec.condition.perturb, spec.seed)
-    return world
+    kind, level = read_tier(tier)
+    if kind in registry.own_tiers(spec.task):
+        return registry.make_world(spec.task, spec.seed, tiers={kind: level})
+    return perturbed(registry.make_world(spec.task, spec.seed), tier, spec.seed)
 
 
 def _run(spec: TrialSpec, settings: RunSettings, world: World, count: Counting) -> tuple[Trial, str]:
@@ -155,7 +161,7 @@ def _run(spec: TrialSpec, settings: RunSettings, world: World, count: Counting) 
         blind = Unseen(world)
         trial = roll_out(control, blind, scorer=truth, seed=spec.seed, scene=spec.scene, max_age_s=None)
         return trial, ""
-    method = prepared(spec, settings, model_of(condition.model, condition.isolate, world))
+    method = prepared(spec, settings, models_of(condition, world), world)
     if settings.pages == "none":
         policy: Policy = method.policy(count)
         trial = roll_out(
@@ -173,13 +179,26 @@ def _run(spec: TrialSpec, settings: RunSettings, world: World, count: Counting) 
     return recorded, str(recorded.page)
 
 
-def prepared(spec: TrialSpec, settings: RunSettings, model: Any) -> Method:
+def models_of(condition: Condition, world: World) -> Any:
+    """One model, or models by role, as a condition names them; truth in the place of what is isolated away."""
+    chosen = choice_of(condition.model)
+    if isinstance(chosen, str) or not condition.isolate:
+        return model_of(chosen, condition.isolate, world) if isinstance(chosen, str) else chosen
+    looked_at = condition.isolate == "grounding"
+    own = {role: name for role, name in chosen.items() if role != REST and (role in GROUNDING_ROLES) == looked_at}
+    return {**model_of(chosen[REST], condition.isolate, world), **own}
+
+
+def prepared(spec: TrialSpec, settings: RunSettings, model: Any, world: World | None = None) -> Method:
     """The method of a trial with its model, capped, and limited together with all other workers."""
-    caps = settings.caps
+    caps, asked = settings.caps, dict(settings.extra)
     if settings.limiter is not None:
-        parts = model if isinstance(model, dict) else {"*": model}
-        model = {role: Limited(registry.make_model(one), settings.limiter) for role, one in parts.items()}
+        options = model_options(asked.get("thinking"), asked.get("price"), bool(asked.get("local_only")), role_names())
+        made = registry.make_models(model, role_names(), options, world)
+        behind = {id(one): Limited(one, settings.limiter) for one in made.values()}
+        model = {role: behind[id(one)] for role, one in made.items()}
     return Method(
+        **asked,
         model=model,
         method=spec.condition.method,
         max_calls=caps.calls,
@@ -190,7 +209,8 @@ def prepared(spec: TrialSpec, settings: RunSettings, model: Any) -> Method:
         repeat=spec.repeat,
         prompts=settings.prompts,
         out=settings.out,
-        command=reproduce(spec),
+        command=reproduce(spec, asked),
+        world=world,
     )
 
 
@@ -202,43 +222,56 @@ def model_of(model: str, isolate: str, world: World) -> Any:
     """The model of a condition; `isolate` lets truth answer for the roles that are not looked at.
 
     Raises:
-        ConfigError: Truth cannot answer in this version or for this world.
+        ConfigError: Truth cannot answer for this world.
     """
     if not isolate:
         return model
-    truth = registry.make_model(TRUTH_MODEL)
+    truth = registry.make_model(TRUTH_MODEL, world=world)
     if isolate == "planning":
         return {**dict.fromkeys(GROUNDING_ROLES, truth), "*": model}
     return {**dict.fromkeys(GROUNDING_ROLES, model), "*": truth}
 
 
 def check_isolation(isolate: str) -> None:
-    """Whether truth can answer in this version.
+    """Whether this part can be isolated.
 
     Raises:
-        ConfigError: No model answers from truth.
+        ConfigError: Another word.
     """
-    try:
-        registry.make_model(TRUTH_MODEL)
-    except ConfigError as error:
-        raise ConfigError(
-            f"--isolate {isolate} lets truth answer for the other part: it needs the model {TRUTH_MODEL}, "
-            "which this version does not have"
-        ) from error
+    if isolate not in ("planning", "grounding"):
+        raise ConfigError(f"--isolate {isolate!r}: valid are planning (truth grounds), grounding (truth plans)")
 
 
-def reproduce(spec: TrialSpec) -> str:
-    """The command that runs this trial again by itself."""
+def reproduce(spec: TrialSpec, asked: Mapping[str, Any] | None = None) -> str:
+    """The command that runs this trial again by itself; `asked` holds the options of its models."""
     condition = spec.condition
-    words = ["wonderful-team run", spec.task, f"--seed {spec.seed}", f"--replans {condition.replans}"]
-    if condition.method in CONTROLS:
-        return f"wonderful-team bench {spec.task} --method {condition.method} --seeds {spec.seed}"
-    return " ".join([*words, f"--method {condition.method}", f"--model {condition.model}"])
+    chosen = choice_of(condition.model)
+    named = {REST: chosen} if isinstance(chosen, str) else chosen
+    by_role = [_of_role(role, name) for role, name in named.items()]
+    levels = (asked or {}).get("thinking") or {}
+    levels = {REST: levels} if isinstance(levels, str) else levels
+    thinking = [word for role, level in levels.items() for word in ("--thinking", _of_role(role, level))]
+    if condition.method in CONTROLS or condition.isolate or condition.perturb:
+        words = ["bench", spec.task, "--seeds", str(spec.seed), "--no-control", "all", "--pages", "all"]
+        words += ["--isolate", condition.isolate] if condition.isolate else []
+        words += ["--perturb", condition.perturb] if condition.perturb else []
+        models = [] if condition.method in CONTROLS else ["--model", ",".join(by_role), *thinking]
+    else:
+        words = ["run", spec.task, "--seed", str(spec.seed)]
+        models = [*(word for name in by_role for word in ("--model", name)), *thinking]
+    replans = ["--replans", str(condition.replans)]
+    return shlex.join(["wonderful-team", *words, *replans, "--method", condition.method, *models])
+
+
+def _of_role(role: str, value: str) -> str:
+    return value if role == REST else f"{role}={value}"
 
 
 def fingerprint(spec: TrialSpec) -> dict[str, str]:
     """What produced a result: package, commit, and hashes of the user's own files."""
-    own = [name for name in (spec.task, spec.condition.method, spec.condition.model) if is_file_name(name)]
+    chosen = choice_of(spec.condition.model)
+    models = [chosen] if isinstance(chosen, str) else list(chosen.values())
+    own = [name for name in (spec.task, spec.condition.method, *models) if is_file_name(name)]
     return {**_versions(), **{name: _file_hash(name) for name in own}}
 
 
@@ -256,8 +289,16 @@ def _file_hash(name: str) -> str:
     return hashlib.sha256(path.read_bytes()).hexdigest()[:12] if path.is_file() else "missing"
 
 
-def check_names(methods: Sequence[str], models: Sequence[str]) -> None:
+def check_names(
+    methods: Sequence[str], models: Sequence[str], asked: Mapping[str, Any], max_tokens: int | None = None
+) -> None:
     """Every name means something, before anything is run.
+
+    Args:
+        methods: Names.
+        models: Names, or texts of several by role.
+        asked: Options of the models, as `Method` takes them.
+        max_tokens: The cap that bounds what models of unknown price may cost.
 
     Raises:
         ConfigError: A name that does not.
@@ -266,7 +307,4 @@ def check_names(methods: Sequence[str], models: Sequence[str]) -> None:
         if method in CONTROLS:
             continue
         for model in models:
-            if "=" in model.partition(":")[0]:
-                raise ConfigError(f"model {model!r}: a study compares one model for all roles at a time")
-            made: Callable[[], Policy] = Method(model=model, method=method).policy
-            made()
+            Method(**asked, model=choice_of(model), method=method, max_tokens=max_tokens).policy()

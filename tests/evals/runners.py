@@ -44,6 +44,18 @@ def slow(spec: TrialSpec, settings: RunSettings) -> TrialResult:
     return quick(spec, settings)
 
 
+def capped_slow(spec: TrialSpec, settings: RunSettings) -> TrialResult:
+    """Spends ten calls as `capped` does, and takes a moment."""
+    slow(spec, settings)
+    return capped(spec, settings)
+
+
+def free_slow(spec: TrialSpec, settings: RunSettings) -> TrialResult:
+    """Asks a model that costs nothing, and takes a moment."""
+    slow(spec, settings)
+    return TrialResult("success", calls=5, usd=0.0)
+
+
 def breaking(spec: TrialSpec, settings: RunSettings) -> TrialResult:
     """Raises on some seeds, as long as the file named by TOY_BROKEN exists."""
     if spec.seed % 5 == 0 and os.path.exists(os.environ.get("TOY_BROKEN", "")):

@@ -8,6 +8,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import wonderful_team as wt
@@ -16,9 +17,12 @@ from wonderful_team.cli.app import run
 from wonderful_team.errors import ConfigError
 from wonderful_team.evals.perturb import perturbed
 from wonderful_team.evals.store import Store
+from wonderful_team.evals.trials import Condition, RunSettings, SpendingCaps, TrialSpec
+from wonderful_team.evals.workers import run_safely
 from wonderful_team.images import to_png
+from wonderful_team.interfaces import World
 from wonderful_team.studies import known_suites
-from wonderful_team.trial_runs import model_of
+from wonderful_team.trial_runs import make_scene, model_of, reproduce, run_trial
 
 METHOD = """
 import wonderful_team as wt
@@ -179,8 +183,69 @@ def test_grounding_on_photos_needs_no_simulator(tmp_path: Path, capsys: pytest.C
     assert won == {"team": 1, "Corner": 0}
 
 
+def test_a_photo_that_meets_a_cap_or_an_own_method_that_gives_up_is_a_failure_with_its_stage(tmp_path: Path) -> None:
+    (tmp_path / "a.png").write_bytes(to_png(np.full((120, 160, 3), 200, np.uint8)))
+    coco = {
+        "images": [{"id": 7, "file_name": "a.png"}],
+        "annotations": [{"image_id": 7, "bbox": [1, 1, 9, 9], "instruction": "the red block"}],
+    }
+    (tmp_path / "photos.json").write_text(json.dumps(coco), encoding="utf-8")
+    (tmp_path / "mine.py").write_text(
+        "from wonderful_team.errors import NotFoundError\n"
+        "class Lost:\n    name = 'lost'\n    def decide(self, situation): ...\n"
+        "    def locate(self, observation, words):\n        raise NotFoundError('nowhere')\n",
+        encoding="utf-8",
+    )
+    photos = str(tmp_path / "photos.json")
+    capped = RunSettings(SpendingCaps(calls=1))
+    trial = run_trial(TrialSpec(photos, 0, Condition("team:paper", "offline")), capped)
+    assert (trial.outcome, trial.stage, trial.calls) == ("failure", "budget", 1)
+    assert "the cap of 1 calls is reached" in trial.reason
+    own = run_trial(TrialSpec(photos, 0, Condition(f"{tmp_path / 'mine.py'}:Lost", "offline")), RunSettings())
+    assert (own.outcome, own.stage, own.reason) == ("failure", "grounding", "nowhere")
+
+
+def test_controls_draw_no_picture_and_a_world_that_breaks_is_an_error(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from wonderful_team.sims.tabletop.table import Table
+
+    def drawn(*_: object) -> None:
+        raise AssertionError("something was drawn")
+
+    with monkeypatch.context() as patched:
+        patched.setattr(Table, "draw", drawn)
+        outcomes = [
+            run_trial(TrialSpec("tabletop/rotate", 7, Condition(name, "-")), RunSettings()).outcome
+            for name in ("oracle", "no-op", "random")
+        ]
+        assert outcomes == ["success", "failure", "failure"]
+    (tmp_path / "far.py").write_text(
+        "from wonderful_team.errors import WorldUnavailableError\n"
+        "def far():\n    raise WorldUnavailableError('the simulator hangs')\n",
+        encoding="utf-8",
+    )
+    spec = TrialSpec(f"{tmp_path / 'far.py'}:far", 7, Condition("team", "offline"))
+    broken = run_safely(run_trial, spec, RunSettings())
+    assert (broken.outcome, broken.stage) == ("error", "world")
+    assert "the simulator hangs" in broken.reason
+
+
 def test_an_estimate_runs_no_trial_of_the_study(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert _bench("rotate", "--estimate", "--model", "offline", "--no-control", "random", store=tmp_path / "s.db") == 0
+    assert (
+        _bench(
+            "rotate",
+            "--estimate",
+            "--pilot",
+            "1",
+            "--model",
+            "simulated:perfect",
+            "--no-control",
+            "offline",
+            store=tmp_path / "s.db",
+        )
+        == 0
+    )
     told = json.loads(capsys.readouterr().out)["result"]
     assert told["pairs"] == 10
     assert told["total"]["calls"] > 0
@@ -190,8 +255,11 @@ def test_an_estimate_runs_no_trial_of_the_study(tmp_path: Path, capsys: pytest.C
 @pytest.mark.parametrize(
     "words",
     [
-        ("rotate", "--isolate", "planning"),
+        ("rotate", "--isolate", "memory"),
         ("rotate", "--perturb", "fog=1"),
+        ("rotate", "--model", "offline,chequer=offline"),
+        ("rotate", "--thinking", "loud"),
+        ("rotate", "--local-only", "--model", "http://8.8.8.8/v1#big"),
         ("rotate", "--method", "nobody"),
         ("rotate", "--model", "nobody"),
         ("rotate", "--seeds", "5:5"),
@@ -209,7 +277,7 @@ def test_wrong_use_is_told_before_anything_runs(tmp_path: Path, words: tuple[str
 
 def test_isolation_gives_the_other_roles_to_truth(monkeypatch: pytest.MonkeyPatch) -> None:
     truth = object()
-    monkeypatch.setattr(registry, "make_model", lambda name: truth)
+    monkeypatch.setattr(registry, "make_model", lambda name, **more: truth)
     planning = model_of("mine", "planning", object())  # type: ignore[arg-type]
     assert planning["*"] == "mine"
     assert {role for role, model in planning.items() if model is truth} == {"manager", "checker", "mover"}
@@ -226,9 +294,105 @@ def test_generalisation_levels_are_suites(tmp_path: Path) -> None:
     assert study.run().standing.outcomes == {"failure": 1}
 
 
+@pytest.mark.parametrize(
+    ("condition", "command"),
+    [
+        (
+            Condition("team", "big, checker=small", replans=3),
+            "wonderful-team run tabletop/rotate --seed 5 --replans 3 --method team --model big --model checker=small --thinking low",
+        ),
+        (
+            Condition("team", "big, checker=small", "planning", "clutter=2"),
+            "wonderful-team bench tabletop/rotate --seeds 5 --no-control all --pages all --isolate planning --perturb clutter=2 "
+            "--replans 0 --method team --model big,checker=small --thinking low",
+        ),
+        (
+            Condition("oracle", "-", perturb="camera=1"),
+            "wonderful-team bench tabletop/rotate --seeds 5 --no-control all --pages all --perturb camera=1 --replans 0 "
+            "--method oracle",
+        ),
+    ],
+)
+def test_a_trial_says_the_command_that_runs_it_again(condition: Condition, command: str) -> None:
+    assert reproduce(TrialSpec("tabletop/rotate", 5, condition), {"thinking": {"*": "low"}}) == command
+
+
 def test_a_study_takes_names_only(tmp_path: Path) -> None:
     with pytest.raises(ConfigError, match="a study takes names"):
         wt.Study("rotate", models=[object()], store=tmp_path / "s.db")  # type: ignore[list-item]
+
+
+BY_ROLE = """
+from pathlib import Path
+import wonderful_team as wt
+
+class Big:
+    name = "big"
+    def __init__(self):
+        self.inner = wt.make_model("offline")
+    def answer(self, request):
+        with Path(__file__).with_name("heard").open("a") as file:
+            file.write(f"{self.name} {request.role}\\n")
+        return self.inner.answer(request)
+
+class Small(Big):
+    name = "small"
+"""
+
+
+def test_models_by_role_answer_for_their_roles_and_stand_in_the_label(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "mine.py").write_text(BY_ROLE, encoding="utf-8")
+    file = tmp_path / "mine.py"
+    words = ("rotate", "--seeds", "1000", "--no-control", "all", "--pages", "none", "--thinking", "checker=low")
+    models = f"{file}:Big,checker={file}:Small"
+    assert _bench(*words, "--model", models, "--concurrency", "2", store=tmp_path / "s.db") == 0
+    told = json.loads(capsys.readouterr().out)["result"]["conditions"]
+    assert [(one["model"], one["how"]) for one in told] == [
+        (f"{file}:Big, checker={file}:Small", "checker thinking low")
+    ]
+    heard = {tuple(line.split()) for line in (tmp_path / "heard").read_text(encoding="utf-8").splitlines()}
+    assert ("small", "checker") in heard
+    assert ("big", "supervisor") in heard
+    assert {role for name, role in heard if name == "small"} == {"checker"}
+    # Another level of thinking is another trial, not the same one resumed.
+    keys = [
+        {spec.key for spec in wt.Study("rotate", thinking=level, store=tmp_path / "s.db").plan.trials()}
+        for level in (None, "low", "high")
+    ]
+    asked = [{key for key in one if '"team"' in key} for one in keys]
+    assert not asked[0] & asked[1]
+    assert not asked[1] & asked[2]
+    assert keys[0] & keys[1], "controls ask no model: they are the same"
+
+
+def test_our_tabletop_makes_harder_scenes_and_other_worlds_change_their_pictures(tmp_path: Path) -> None:
+    def scene(tier: str, task: str = "tabletop/rotate") -> World:
+        return make_scene(TrialSpec(task, 7, Condition("team", "offline", perturb=tier)))
+
+    (tmp_path / "desk.py").write_text(LENIENT, encoding="utf-8")
+    own = f"{tmp_path / 'desk.py'}:Desk"
+    plain = scene("")
+    try:
+        before = plain.observe().main
+        for tier, physical in (("clutter=2", True), ("camera=2", True), ("lighting=3", True), ("paraphrase=1", False)):
+            harder = scene(tier)
+            try:
+                after = harder.observe().main
+                assert (after.rgb != before.rgb).any() == physical
+                things = len(harder.privileged.truth()["things"])  # type: ignore[attr-defined]
+                assert (things > len(plain.privileged.truth()["things"])) == tier.startswith("clutter")  # type: ignore[attr-defined]
+                if tier.startswith("camera"):
+                    spot = [(0.5, 0.1, 0.0)]
+                    assert abs(after.camera.project(spot) - before.camera.project(spot)).max() > 1.0  # type: ignore[union-attr]
+            finally:
+                harder.close()
+    finally:
+        plain.close()
+    assert (scene("lighting=2", own).observe().main.rgb != scene("", own).observe().main.rgb).any()
+    with pytest.raises(ConfigError, match="cannot put more things on its table; our tabletop can"):
+        wt.Study(own, perturb="clutter=1", store=tmp_path / "s.db")
 
 
 @pytest.mark.parametrize("words", ["lighting=2", "camera=3", "texture=2", "paraphrase=1"])

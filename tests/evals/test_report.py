@@ -5,20 +5,25 @@ from __future__ import annotations
 import csv
 import re
 import sqlite3
+from dataclasses import replace
 from math import comb
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from tests.evals import runners
 from tests.evals.runners import toy_plan
 from wonderful_team.errors import ConfigError
+from wonderful_team.evals.claims import Owner
 from wonderful_team.evals.paper import paper_figure
+from wonderful_team.evals.report import latex_tables
 from wonderful_team.evals.report.page import read_stores, write_all
 from wonderful_team.evals.store import Store
 from wonderful_team.evals.study import run_study
 from wonderful_team.evals.summary import Cell, summarise
 from wonderful_team.evals.trials import Condition, Row, TrialResult, TrialSpec
+from wonderful_team.images import to_png
 
 
 @pytest.fixture
@@ -49,7 +54,10 @@ def test_figures_recomputed_by_hand_from_the_store(store: Path) -> None:
     by_hand = min(1.0, 2 * sum(comb(discordant, k) for k in range(fewer + 1)) / 2**discordant)
     assert pair.p == pytest.approx(by_hand)
     html = made.page.read_text(encoding="utf-8")
-    assert f"{100 * won['good'] / 30:.1f} %" in html
+    # Wilson's interval as his paper has it: the roots of (share - p)^2 = z^2 p (1 - p) / n.
+    z, n, share = 1.959964, 30, won["good"] / 30
+    roots = np.roots([1 + z * z / n, -(2 * share + z * z / n), share * share])
+    assert f"<td>{100 * won['good'] / 30:.1f} %</td><td>{100 * min(roots):.1f} to {100 * max(roots):.1f}</td>" in html
     assert f"n = 30 pairs, exact p = {by_hand:.3g}" in html
     with made.csv.open(encoding="utf-8") as file:
         lines = list(csv.DictReader(file))
@@ -76,6 +84,32 @@ def test_the_page_has_its_parts_in_order_and_loads_nothing_from_elsewhere(store:
     assert (store.with_name("tex") / "conditions.tex").read_text(encoding="utf-8").count(r"\toprule") == 1
 
 
+def test_latex_tables_hold_the_same_figures_and_escape_what_latex_reads(store: Path) -> None:
+    made = write_all([store], store.with_name("page.html"), latex=store.with_name("tex"))
+    texts = {path.stem: path.read_text(encoding="utf-8") for path in made.latex}
+    assert set(texts) == {"conditions", "tasks", "pairs"}
+    good = made.summary.cell(made.summary.compared[0])
+    assert good.condition.method == "good"
+    assert rf"good $\cdot$ m & {100 * good.rate.successes / 30:.1f} & " in texts["conditions"]
+    assert texts["pairs"].count(r"\\") >= 2
+    for text in texts.values():
+        assert text.count("{") == text.count("}")
+        assert not re.search(r"(?<!\\)[#_]|(?<!\\)%(?! needs)", text)
+    rows = [_row("a_b", 1000, "success", task="tabletop/rotate"), _row("/x/y.py:C", 1000, "failure", "50%")]
+    tables = latex_tables(summarise(rows, []))
+    assert r"a\_b" in tables["conditions"]
+    assert r"y.py:C $\cdot$ 50\%" in tables["conditions"]
+
+
+def test_the_table_of_trials_has_a_line_for_each_with_its_condition(store: Path) -> None:
+    made = write_all([store], store.with_name("page.html"))
+    with made.csv.open(encoding="utf-8") as file:
+        lines = list(csv.DictReader(file))
+    assert len(lines) == 60
+    columns = "task seed repeat method model isolate perturb replans how outcome stage reason calls tokens pictures usd"
+    assert list(lines[0])[:16] == columns.split()
+
+
 def test_shards_merge_to_the_whole(store: Path, tmp_path: Path) -> None:
     parts = []
     for part in (1, 2, 3):
@@ -97,8 +131,9 @@ def test_a_trial_that_ended_differently_in_two_stores_is_told(store: Path, tmp_p
     assert "the first is kept" in conflicts[0]
 
 
-def _row(method: str, seed: int, outcome: str, model: str = "m", task: str = "toy/a") -> Row:
-    return Row(TrialSpec(task, seed, Condition(method, model)), TrialResult(outcome, calls=1))  # type: ignore[arg-type]
+def _row(method: str, seed: int, outcome: str, model: str = "m", task: str = "toy/a", perturb: str = "") -> Row:
+    condition = Condition(method, model, perturb=perturb)
+    return Row(TrialSpec(task, seed, condition), TrialResult(outcome, calls=1))  # type: ignore[arg-type]
 
 
 def test_errors_are_not_failures_and_more_than_two_percent_of_them_warn() -> None:
@@ -107,7 +142,7 @@ def test_errors_are_not_failures_and_more_than_two_percent_of_them_warn() -> Non
     quiet = summarise([*rows, _row("a", 1050, "error")], asked)
     assert not any("errors" in text for text in quiet.warnings())  # 1 of 51 is 1.96 %
     loud = summarise([*rows, _row("a", 1050, "error"), _row("a", 1051, "error")], asked)
-    assert any("2 of 52 trials are errors" in text for text in loud.warnings())
+    assert any("errors in toy/a 2 of 52: not scored" in text for text in loud.warnings())
     cell = loud.cell(Condition("a", "m"))
     assert (cell.rate.successes, cell.rate.n) == (50, 50)
 
@@ -133,6 +168,62 @@ def test_controls_accuse_a_wrong_scorer() -> None:
     assert any("doing nothing succeeds in 3 of 3" in text for text in wrong.warnings())
     missed = summarise([*rows, _row("oracle", 1010, "failure", "-")], asked)
     assert any("the oracle fails 1 of 11" in text for text in missed.warnings())
+
+
+def test_controls_are_judged_tier_by_tier() -> None:
+    rows = [_row("oracle", seed, "success", "-", perturb="clutter=1") for seed in range(1000, 1010)]
+    rows += [_row("oracle", seed, "failure", "-", perturb="clutter=3") for seed in range(1000, 1003)]
+    found = summarise(rows, [{"methods": ["a"], "models": ["m"]}]).warnings()
+    assert [text for text in found if "oracle" in text] == [
+        "toy/a: clutter=3: the oracle fails 3 of 3: its solution or the scorer is wrong, or the scene is unsolvable"
+    ]
+
+
+def test_parts_and_tiers_stand_apart_and_are_paired_with_the_whole(tmp_path: Path) -> None:
+    path = tmp_path / "s.db"
+    run_study(toy_plan(15, isolate=("", "planning"), perturb=("", "lighting=3")), path, runners.quick, jobs=1)
+    made = write_all([path], tmp_path / "page.html")
+    assert {one.label for one in made.summary.main} == {"good · m", "bad · m"}
+    assert [(one.first.label, one.second.label) for one in made.summary.pairs()][0] == ("good · m", "bad · m")
+    assert all(
+        (one.first.isolate, one.first.perturb) == (one.second.isolate, one.second.perturb)
+        for one in made.summary.pairs()
+    )
+    base = sqlite3.connect(path)
+    lost, gained = base.execute(
+        "SELECT SUM(a.outcome='success' AND b.outcome='failure'), SUM(a.outcome='failure' AND b.outcome='success') "
+        "FROM trials a JOIN trials b USING(task, seed, repeat, method) WHERE a.method='good' AND a.isolate='' AND "
+        "b.isolate='' AND a.perturb='' AND b.perturb='lighting=3'"
+    ).fetchone()
+    base.close()
+    ((whole, members), _) = made.summary.variants()
+    assert whole.label == "good · m"
+    (tier,) = [against for one, against in members if one.perturb == "lighting=3" and not one.isolate]
+    assert tier is not None
+    assert (tier.only_second, tier.only_first) == (lost, gained)
+    html = made.page.read_text(encoding="utf-8")
+    assert "<td>planning alone · lighting=3</td>" in html
+    assert f"<td>{100 * (gained - lost) / 30:+.1f}</td>" in html
+
+
+def test_the_page_shows_the_plan_of_trials_and_stands_alone(tmp_path: Path) -> None:
+    runs = tmp_path / "runs"
+    for name in ("a", "b"):
+        (runs / name).mkdir(parents=True)
+        (runs / name / "final.png").write_bytes(to_png(np.full((40, 80, 3), 90, np.uint8)))
+        (runs / name / "page.html").write_text("a page", encoding="utf-8")
+    rows = [_row("a", 1000, "success"), _row("a", 1001, "failure")]
+    with Store(tmp_path / "s.db") as store:
+        plan = toy_plan(1)
+        store.want(plan.name, plan.trials(), plan.request())
+        owner = Owner.this_process()
+        for name in ("a", "b"):
+            claim = store.claim(plan.name, owner)
+            assert claim is not None
+            store.finish(claim.trial, owner, replace(rows[0].result, page=str(runs / name / "page.html")))  # type: ignore[type-var]
+    html = write_all([tmp_path / "s.db"], tmp_path / "out" / "p.html").page.read_text(encoding="utf-8")
+    assert html.count('<img src="data:image/jpeg;base64,') == 2
+    assert 'href="../runs/a/page.html"' in html
 
 
 def test_development_seeds_and_offline_rows_are_told() -> None:

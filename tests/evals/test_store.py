@@ -19,6 +19,7 @@ from tests.evals.runners import toy_plan
 from wonderful_team.errors import ConfigError
 from wonderful_team.evals.claims import Owner, is_free
 from wonderful_team.evals.places import network_file_system
+from wonderful_team.evals.spending import CapReached, Likely, Spending, WaitForCost, allow
 from wonderful_team.evals.store import Store
 from wonderful_team.evals.study import run_study
 from wonderful_team.evals.trials import SpendingCaps, TrialResult
@@ -123,6 +124,52 @@ def test_a_cap_stops_a_study_cleanly_and_is_never_passed(tmp_path: Path, cap: in
     assert whole.standing.done == 20
 
 
+def test_trials_run_side_by_side_under_a_cap_and_never_pass_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("TOY_LOG", str(tmp_path / "log"))
+    ended = run_study(
+        toy_plan(10), tmp_path / "s.db", runners.capped_slow, jobs=1, at_once=4, caps=SpendingCaps(calls=305)
+    )
+    assert "cap of 305 calls" in ended.why
+    assert ended.standing.spent.calls == 300, "whatever fits is run, and nothing is cut that fits"
+    assert ended.standing.outcomes == {"success": 30}
+    assert _most_in_flight(tmp_path / "log") >= 3
+
+
+def test_a_cap_in_money_does_not_slow_models_that_cost_none(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("TOY_LOG", str(tmp_path / "log"))
+    plan = toy_plan(4, models=("offline",))
+    ended = run_study(plan, tmp_path / "s.db", runners.free_slow, jobs=1, at_once=4, caps=SpendingCaps(usd=0.01))
+    assert ended.why == ""
+    assert _most_in_flight(tmp_path / "log") >= 3
+
+
+def test_a_trial_dearer_than_its_allowance_is_cut_run_again_with_more_and_booked() -> None:
+    caps = SpendingCaps(calls=100)
+    known = allow(caps, Spending(calls=20), Likely((10, 0, 0), (10, 0, 0)))
+    assert (known.caps.calls, known.held[0]) == (20, 20)
+    cut = allow(caps, Spending(calls=40), Likely((20, 0, 0), (20, 0, 0)))
+    assert cut.caps.calls == 40, "what a cut trial took counts as known"
+    assert allow(caps, Spending(calls=20, held=(70, 0, 0)), Likely((10, 0, 0))).caps.calls == 10
+    with pytest.raises(WaitForCost):
+        allow(caps, Spending(calls=20, held=(75, 0, 0)), Likely((10, 0, 0)))
+    with pytest.raises(CapReached, match="95 spent, a trial like the next one took up to 10"):
+        allow(caps, Spending(calls=95), Likely((10, 0, 0)))
+    assert allow(caps, Spending(), Likely()).held[0] == 100, "nothing is known yet: one trial at a time"
+
+
+def test_a_store_of_the_first_release_opens_and_goes_on(tmp_path: Path) -> None:
+    path = tmp_path / "s.db"
+    run_study(toy_plan(2), path, runners.quick, jobs=1)
+    base = sqlite3.connect(path)
+    for column in ("how", "held_calls", "held_tokens", "held_usd"):
+        base.execute(f"ALTER TABLE trials DROP COLUMN {column}")
+    base.execute("UPDATE meta SET value='1'")
+    base.commit()
+    base.close()
+    again = run_study(toy_plan(3), path, runners.quick, jobs=1)
+    assert (again.standing.here, again.standing.done) == (4, 12)
+
+
 def test_a_trial_that_kills_its_worker_becomes_an_error_and_the_sweep_goes_on(tmp_path: Path) -> None:
     said: list[str] = []
     ended = run_study(toy_plan(3), tmp_path / "s.db", runners.dying, jobs=2, report=lambda text, _: said.append(text))
@@ -151,12 +198,15 @@ def test_several_trials_wait_at_the_same_time_in_one_process(tmp_path: Path, mon
     ended = run_study(toy_plan(10), tmp_path / "s.db", runners.slow, jobs=1, at_once=8)
     assert ended.standing.done == 40
     # One after another they sleep 0.8 s; the bound leaves room for a busy machine.
-    lines = _lines(log)
+    assert _most_in_flight(log) > 1, time.monotonic() - started
+
+
+def _most_in_flight(log: Path) -> int:
     in_flight = most = 0
-    for line in lines:
+    for line in _lines(log):
         in_flight += 1 if line.startswith("begin") else -1
         most = max(most, in_flight)
-    assert most > 1, time.monotonic() - started
+    return most
 
 
 SWEEP = """

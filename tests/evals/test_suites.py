@@ -11,12 +11,13 @@ import pytest
 
 from wonderful_team.errors import ConfigError, UnknownNameError
 from wonderful_team.evals.estimate import estimate
-from wonderful_team.evals.perturb import check_perturbation, moved
+from wonderful_team.evals.perturb import moved, read_tiers
 from wonderful_team.evals.photos import Located, overlap, read_photos, score_photo
 from wonderful_team.evals.plan import StudyPlan, read_shard
 from wonderful_team.evals.suites import VIMA_TASKS, all_suites, default_seeds, read_seeds, resolve
 from wonderful_team.evals.trials import Condition, Row, SpendingCaps, TrialResult, TrialSpec
 from wonderful_team.geometry import AffineCamera, Box, PinholeCamera, Pose
+from wonderful_team.role_models import choice_of, read_choices, text_of
 
 KNOWN = [
     "tabletop/rotate",
@@ -95,7 +96,14 @@ def test_an_estimate_multiplies_means_and_says_which_gaps_show() -> None:
     assert found.hours == pytest.approx(49 * 36 / 2 / 3600)
     assert found.pairs == 50
     assert "with 50 scenes per method you can see gaps of about" in found.text()
+    dearer = Row(
+        TrialSpec("tabletop/rotate", 1001, condition), TrialResult("failure", calls=20, tokens=3000, seconds=36.0)
+    )
+    both = estimate(plan, [ended, dearer], {}, workers=2)
+    assert (both.total("calls"), both.bounds("calls")) == (48 * 14, (48 * 8, 48 * 20))
+    assert "672 calls (384 to 960), 96,000 tokens (48,000 to 144,000)" in both.text()
     blind = estimate(plan, [], {}, workers=2)
+    assert blind.bounds("calls") is None
     assert blind.total("usd") is None
     assert "unknown USD" in blind.text()
 
@@ -142,10 +150,52 @@ def test_bad_photo_files_are_told(tmp_path: Path) -> None:
             read_photos(str(bad))
 
 
-@pytest.mark.parametrize("words", ["fog=1", "lighting", "lighting=4", "lighting=x"])
+@pytest.mark.parametrize("words", ["fog=1", "lighting", "lighting=4", "lighting=x", "lighting=0..7"])
 def test_unknown_perturbations_are_refused(words: str) -> None:
     with pytest.raises(ConfigError, match="KIND=0..3"):
-        check_perturbation(words)
+        read_tiers([words])
+
+
+def test_tiers_and_isolated_parts_are_conditions_of_their_own() -> None:
+    assert read_tiers(["clutter=0..2,paraphrase=3"]) == ("", "clutter=1", "clutter=2", "paraphrase=3")
+    assert read_tiers([]) == read_tiers(["texture=0"]) == ("",)
+    suites = resolve(["rotate"], KNOWN, all_suites(KNOWN), _is_own)
+    plan = StudyPlan(
+        suites,
+        ("team",),
+        ("m",),
+        controls=("oracle",),
+        isolate=("", "planning"),
+        perturb=("", "clutter=2"),
+        how="thinking low",
+    )
+    labels = [one.label for one in plan.conditions(suites[0])]
+    assert labels == [
+        "team · m · thinking low",
+        "team · m · planning alone · thinking low",
+        "team · m · clutter=2 · thinking low",
+        "team · m · planning alone · clutter=2 · thinking low",
+        "oracle",
+        "oracle · clutter=2",
+    ]
+    assert len({spec.key for spec in plan.trials()}) == 6 * 10
+    with pytest.raises(ConfigError, match="valid are whole, planning, grounding"):
+        StudyPlan(suites, isolate=("memory",))
+
+
+def test_models_by_role_have_one_text_that_says_who_answers_what() -> None:
+    assert read_choices(["a,b", "checker=c"], "offline") == ("a, checker=c", "b, checker=c")
+    assert read_choices(["a", "a,checker=c,mover=d"], "offline") == ("a", "a, checker=c, mover=d")
+    assert read_choices(["mover=d", "checker=c"], "offline") == ("offline, checker=c, mover=d",)
+    assert read_choices(["http://h:1/v1#x"], "offline") == ("http://h:1/v1#x",)
+    text = text_of({"mover": "d", "*": "a", "checker": "c", "memory": "a"})
+    assert text == "a, checker=c, mover=d", "roles in their own order; a role that names the rest's model says nothing"
+    assert choice_of(text) == {"*": "a", "checker": "c", "mover": "d"}
+    assert choice_of("a") == "a"
+    with pytest.raises(UnknownNameError, match="checker"):
+        read_choices(["chequer=c"], "offline")
+    with pytest.raises(ConfigError, match="two models for checker"):
+        read_choices(["a,checker=c", "checker=d"], "offline")
 
 
 def test_a_moved_camera_sees_points_where_the_picture_shows_them() -> None:

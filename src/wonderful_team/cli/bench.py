@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import shlex
+import shutil
 import sys
 import time
 from pathlib import Path
@@ -29,12 +30,42 @@ QUIET_S = 10.0
 )
 @click.argument("suites", nargs=-1, metavar="SUITE|TASK|FILE.py:TASK|PHOTOS.json ...")
 @click.option("--method", "methods", multiple=True, metavar="A,B", help="Methods; default team.")
-@click.option("--model", "models", multiple=True, metavar="M,N", help="Models; default offline.")
+@click.option(
+    "--model",
+    "models",
+    multiple=True,
+    metavar="M,N|ROLE=M",
+    help="Models; default offline. M,ROLE=X: M with X for one role; ROLE=X alone: for all of them.",
+)
+@click.option(
+    "--thinking", multiple=True, metavar="LEVEL|ROLE=LEVEL", help="off, low, medium or high. [default: the model's own]"
+)
+@click.option(
+    "--price", multiple=True, metavar="IN,OUT|ROLE=IN,OUT", help="USD per million tokens, where none is known."
+)
+@click.option("--allow-unpriced", is_flag=True, help="Accept models of unknown price without a cap on tokens.")
+@click.option("--local-only", is_flag=True, help="Refuse models outside this machine and private networks.")
+@click.option(
+    "--cache",
+    type=click.Choice(["on", "off", "only"]),
+    help="Keep answers; only: never call a model. [default: on for vendors and servers, else off]",
+)
+@click.option("--cache-file", type=PATH, metavar="FILE", help="Where answers are kept. [default: user's cache]")
 @click.option("--seeds", metavar="FIRST:END", help="For every task; default the suite's own, from 1000 on.")
 @click.option("--repeats", type=click.IntRange(1), default=1, show_default=True, help="How often each scene is run.")
 @click.option("--replans", type=click.IntRange(0), help="Plans after the first; default the suite's protocol.")
-@click.option("--isolate", type=click.Choice(["planning", "grounding"]), help="Truth answers for the other part.")
-@click.option("--perturb", metavar="KIND=0..3", help="A harder tier: lighting, camera, texture or paraphrase.")
+@click.option(
+    "--isolate",
+    multiple=True,
+    metavar="whole|planning|grounding",
+    help="Truth answers for the other part; several with commas.",
+)
+@click.option(
+    "--perturb",
+    multiple=True,
+    metavar="KIND=0..3",
+    help="Harder tiers: clutter, lighting, camera, texture or paraphrase; one (lighting=2) or several (lighting=0..3).",
+)
 @click.option(
     "--no-control", "refused", multiple=True, metavar="NAME|all", help="Leave a control out; may be repeated."
 )
@@ -55,18 +86,22 @@ QUIET_S = 10.0
 @click.option("--max-usd", type=click.FloatRange(0, min_open=True), help="Of the whole study, where prices are known.")
 @click.option("--max-seconds", type=click.FloatRange(0, min_open=True), help="Of this command.")
 @click.option("--trial-max-calls", type=click.IntRange(1), help="Of one trial: it then fails at stage budget.")
+@click.option("--trial-max-tokens", type=click.IntRange(1), help="Of one trial.")
+@click.option("--trial-max-seconds", type=click.FloatRange(0, min_open=True), help="Of one trial.")
 @click.option("--trial-max-usd", type=click.FloatRange(0, min_open=True), help="Of one trial.")
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON document instead of text.")
+@click.option("--open", "open_page", is_flag=True, help="Write the report beside the store and open it when done.")
 def command(**options: Any) -> int:
     """Run methods and models over suites with controls; what ended stays in the store, and the same command resumes."""
-    from wonderful_team.studies import Study
+    from wonderful_team.studies import PILOT, Study
 
     words = shlex.join(["wonderful-team", *(click.get_current_context().obj or ())])
     study = Study.from_options(**options, command=words)
     for note in study.notes:
         click.echo(f"note: {note}", err=True)
     if options["estimate"]:
-        estimate = study.estimate(options["pilot"] or 2, paid_pilot=options["pilot"] is not None)
+        click.echo("a few pilot trials are run where nothing is recorded, on development seeds", err=True)
+        estimate = study.estimate(options["pilot"] or PILOT, paid_pilot=options["pilot"] is not None)
         return finish("bench", text=estimate.text(), result=estimate.to_json(), as_json=options["as_json"], code=0)
     ended = study.run(report=Teller())
     code = 0 if not ended.why else BUDGET if "cap" in ended.why else INTERRUPTED
@@ -74,6 +109,8 @@ def command(**options: Any) -> int:
     if ended.why:
         lines.append(f"stopped: {ended.why}")
     lines.append(f"report: wonderful-team report {study.store}")
+    if options["open_page"]:
+        click.launch(study.report(Path(study.store).with_suffix(".html")).resolve().as_uri())
     return finish("bench", text="\n".join(lines), result=study.to_json(ended), as_json=options["as_json"], code=code)
 
 
@@ -91,6 +128,8 @@ class Teller:
         line = standing.line()
         whole = standing.done == standing.total
         if self._terminal:
+            # A line longer than the terminal would not be overwritten by the next.
+            line = line[: shutil.get_terminal_size().columns - 1]
             click.echo(f"\r{line:<{len(self._last)}}", nl=whole, err=True)
         elif line != self._last and (whole or time.monotonic() - self._last_s >= QUIET_S):
             click.echo(line, err=True)

@@ -27,7 +27,10 @@ def command(name: str, seeds: int | None, sheet: Path | None, as_json: bool) -> 
     from wonderful_team.checks import check
 
     file, _, attribute = name.rpartition(":")
-    picture = sheet or Path(file or name).with_name(f"{Path(file or name).stem}_{attribute or 'sheet'}.png")
+    beside = (
+        Path(file).with_name(f"{Path(file).stem}_{attribute}.png") if file else Path(f"{name.replace('/', '_')}.png")
+    )
+    picture = sheet or beside
     findings = check(name, picture, seeds)
     lines = findings.lines()
     lines.append("checked: nothing wrong" if not findings.bad else f"checked: {len(findings.bad)} things are wrong")

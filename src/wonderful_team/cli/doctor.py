@@ -14,7 +14,7 @@ import click
 from wonderful_team.cli.options import PATH
 from wonderful_team.cli.output import finish
 from wonderful_team.cli.report import program
-from wonderful_team.errors import ConfigError
+from wonderful_team.errors import ConfigError, WonderfulTeamError
 
 KEYS = ("ANTHROPIC_API_KEY", "GEMINI_API_KEY", "GOOGLE_API_KEY", "OPENAI_API_KEY", "OPENROUTER_API_KEY")
 LEAST_FREE_MB = 200
@@ -44,6 +44,7 @@ def command(out: Path | None, as_json: bool) -> int:
         _sandbox,
         lambda: _disk(out),
         _cache,
+        _vimabench,
         _keys,
     )
     findings = [_guarded(check) for check in checks]
@@ -157,6 +158,31 @@ def _cache() -> Finding:
     except ConfigError as error:
         return Finding("cache", False, str(error), f"mv {file} {file}.old")
     return Finding("cache", True, "; ".join([text, *store.warnings]), "use --cache-file" if store.warnings else "")
+
+
+def _vimabench() -> Finding:
+    """Optional: only a copy that is named and does not work is a fault."""
+    from wonderful_team.registry import make_world
+    from wonderful_team.sims.vimabench.finding import PATH_VARIABLE, PYTHON_VARIABLE, find_installation
+
+    named = any(os.environ.get(name) for name in (PYTHON_VARIABLE, PATH_VARIABLE))
+    started = time.monotonic()
+    try:
+        find_installation()
+        world = make_world("vimabench/rotate", seed=1)
+    except WonderfulTeamError as error:
+        told, _, steps = str(error).partition("\n")
+        if named:
+            return Finding("vimabench", False, told, steps)
+        return Finding("vimabench", True, "not set up (optional); `run vimabench/rotate` says how to get it")
+    try:
+        size = world.observe().main.size_px
+        versions = getattr(world, "versions", {})
+    finally:
+        world.close()
+    known = ", ".join(f"{name} {version}" for name, version in versions.items())
+    text = f"a scene of {size[0]} x {size[1]} px in {time.monotonic() - started:.1f} s ({known})"
+    return Finding("vimabench", True, text)
 
 
 def _keys() -> Finding:

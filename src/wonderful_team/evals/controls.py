@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 
 from wonderful_team.actions import (
@@ -24,16 +22,9 @@ from wonderful_team.actions import (
     Step,
 )
 from wonderful_team.errors import ConfigError
+from wonderful_team.evals.names import CONTROLS, NO_MODEL, NO_OP, ORACLE, RANDOM
 from wonderful_team.interfaces import Act, Decision, Done, Policy, Privileged, Situation
 from wonderful_team.types import Limits, PlannedAction
-
-ORACLE, NO_OP, RANDOM = "oracle", "no-op", "random"
-CONTROLS: dict[str, str] = {
-    ORACLE: "control: the simulator's own solution; must succeed",
-    NO_OP: "control: does nothing; must fail",
-    RANDOM: "control: one random action for each of the oracle's; must fail nearly always",
-}
-NO_MODEL = "-"
 
 
 class OracleControl:
@@ -153,6 +144,4 @@ def control_faults(successes: dict[str, tuple[int, int]]) -> list[str]:
     return faults
 
 
-def control_names(refused: Sequence[str] = ()) -> tuple[str, ...]:
-    """The controls that run, less those refused."""
-    return tuple(name for name in CONTROLS if name not in refused)
+__all__ = ["CONTROLS", "NO_MODEL", "NO_OP", "ORACLE", "RANDOM", "control_faults", "make_control", "planned"]

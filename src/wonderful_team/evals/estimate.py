@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from wonderful_team.evals.controls import CONTROLS
+from wonderful_team.evals.names import CONTROLS
 from wonderful_team.evals.pairing import visible_gap
 from wonderful_team.evals.plan import StudyPlan
 from wonderful_team.evals.trials import Condition, Row, TrialResult
@@ -22,6 +22,7 @@ class Line:
     Attributes:
         measured: On how many trials the means rest.
         source: Where they come from, in words.
+        least, most: Calls and tokens of the cheapest and of the dearest of these trials; None where nothing was measured.
     """
 
     condition: Condition
@@ -32,6 +33,8 @@ class Line:
     tokens: float | None
     usd: float | None
     seconds: float | None
+    least: tuple[int, int] | None = None
+    most: tuple[int, int] | None = None
 
     def total(self, name: str) -> float | None:
         mean = getattr(self, name)
@@ -56,6 +59,15 @@ class Estimate:
         """Sum over all conditions; None when any is unknown."""
         totals = [line.total(name) for line in self.lines if line.trials]
         return None if any(one is None for one in totals) else sum(one for one in totals if one is not None)
+
+    def bounds(self, name: str) -> tuple[int, int] | None:
+        """What calls or tokens come to if every trial were as cheap, or as dear, as the cheapest or dearest seen."""
+        place = ("calls", "tokens").index(name)
+        wanted = [line for line in self.lines if line.trials]
+        if not all(line.least and line.most for line in wanted):
+            return None
+        low = sum(line.least[place] * line.trials for line in wanted if line.least)
+        return low, sum(line.most[place] * line.trials for line in wanted if line.most)
 
     @property
     def hours(self) -> float | None:
@@ -86,11 +98,16 @@ class Estimate:
         )
         rows.append(
             f"in all: {sum(line.trials for line in self.lines)} trials ({self.ended} have ended), "
-            f"{_number(self.total('calls'), 0)} calls, {_number(self.total('tokens'), 0)} tokens, "
+            f"{self._with_bounds('calls')}, {self._with_bounds('tokens')}, "
             f"{_number(self.total('usd'), 2)} USD, {hours} with {self.workers} at a time"
         )
         rows.append(self.sentence())
         return "\n".join(rows)
+
+    def _with_bounds(self, name: str) -> str:
+        bounds = self.bounds(name)
+        wide = "" if bounds is None or bounds[0] == bounds[1] else f" ({bounds[0]:,} to {bounds[1]:,})"
+        return f"{_number(self.total(name), 0)} {name}{wide}"
 
     def sentence(self) -> str:
         """What this number of trials can show."""
@@ -114,7 +131,15 @@ class Estimate:
             for line in self.lines
         ]
         totals = {name: self.total(name) for name in ("calls", "tokens", "usd", "seconds")}
-        return {"conditions": lines, "total": totals, "hours": self.hours, "pairs": self.pairs, "visible_gap": self.gap}
+        bounds = {name: self.bounds(name) for name in ("calls", "tokens")}
+        return {
+            "conditions": lines,
+            "total": totals,
+            "bounds": bounds,
+            "hours": self.hours,
+            "pairs": self.pairs,
+            "visible_gap": self.gap,
+        }
 
 
 def estimate(
@@ -142,20 +167,22 @@ def estimate(
 def _line(condition: Condition, trials: int, rows: Sequence[Row], pilots: Sequence[TrialResult]) -> Line:
     own = [row.result for row in rows if row.result is not None and row.spec.condition == condition]
     results, source = [*own, *pilots], f"{len(own)} recorded and {len(pilots)} pilot trials"
-    calls = tokens = usd = seconds = None
+    calls = tokens = usd = seconds = least = most = None
     if results:
         n = len(results)
         calls, tokens = sum(r.calls for r in results) / n, sum(r.tokens for r in results) / n
         seconds = sum(r.seconds for r in results) / n
         priced = [r.usd for r in results if r.usd is not None]
         usd = sum(priced) / n if len(priced) == n else None
+        least = (min(r.calls for r in results), min(r.tokens for r in results))
+        most = (max(r.calls for r in results), max(r.tokens for r in results))
     else:
         alike = [r.result for r in rows if r.result is not None and r.spec.condition.method == condition.method]
         source = "nothing recorded: --pilot N runs some (it may cost money)"
         if alike:
             calls = sum(r.calls for r in alike) / len(alike)
             source = f"calls from {len(alike)} trials of the same method with another model; the rest unknown"
-    return Line(condition, trials, len(results), source, calls, tokens, usd, seconds)
+    return Line(condition, trials, len(results), source, calls, tokens, usd, seconds, least, most)
 
 
 def _number(value: float | None, digits: int) -> str:

@@ -95,7 +95,7 @@ def run_on_ray(work: Work, store: Store, watch: Watch, address: str, jobs: int, 
         where = {"num_cpus": jobs, "include_dashboard": False} if address == LOCAL else {"address": address}
         try:
             ray.init(log_to_driver=False, **where)
-        except (ConnectionError, RuntimeError, ValueError) as error:
+        except Exception as error:  # ray raises bare Exceptions when a node does not start in time
             raise ConfigError(f"--ray {address}: no cluster answers: {error}") from error
     try:
         places = ray.remote(num_cpus=0, max_concurrency=1000)(Places).remote(calls_at_once) if calls_at_once else None

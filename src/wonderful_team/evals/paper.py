@@ -10,6 +10,7 @@ from typing import Any
 
 from wonderful_team.evals.statistics import wilson_interval
 from wonderful_team.evals.suites import FRUIT_FOLDER
+from wonderful_team.evals.trials import Condition
 
 COLUMNS = {
     "trajectory": "tg",
@@ -71,6 +72,11 @@ def paper_figure(task: str, method: str) -> PaperFigure | None:
     own = column == "ours" or table == "settings"
     n = int(part.get("n_own", published()["n_own"])) if own else None
     return PaperFigure(float(percent), n, str(part["table"]))
+
+
+def paper_beside(task: str, condition: Condition) -> PaperFigure | None:
+    """What of the paper may stand beside a condition: nothing beside an isolated part or a harder tier."""
+    return None if condition.isolate or condition.perturb else paper_figure(task, condition.method)
 
 
 def _column(method: str) -> str | None:

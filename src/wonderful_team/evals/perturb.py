@@ -1,8 +1,12 @@
-"""Harder tiers of any world with pictures, scored separately: what the cameras see changes, the task does not."""
+"""Harder tiers of any world with pictures, scored separately: what is seen or said changes, the task does not.
+
+Our tabletop makes them itself, in its simulator; what stands here serves worlds that cannot.
+"""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
 
 import cv2
@@ -16,7 +20,9 @@ from wonderful_team.geometry.cameras import Camera
 from wonderful_team.interfaces import World
 from wonderful_team.types import Instruction, Observation, StepReport, View
 
-KINDS = ("lighting", "camera", "texture", "paraphrase")
+IN_PICTURE = ("lighting", "camera", "texture")
+"""Kinds that work on the pictures of any world; `clutter` needs a world that can put things on its table."""
+KINDS = ("clutter", *IN_PICTURE, "paraphrase")
 LEVELS = (0, 1, 2, 3)
 PHRASES = {
     1: "Please do this: {text}",
@@ -25,24 +31,45 @@ PHRASES = {
 }
 
 
-def check_perturbation(words: str) -> None:
-    """Whether "KIND=LEVEL" (or "") is valid.
+def read_tiers(words: Sequence[str]) -> tuple[str, ...]:
+    """Tiers from "KIND=LEVEL", "KIND=FIRST..LAST" or several with commas; level 0 is the scene as it is, "".
 
     Raises:
         ConfigError: Another kind or level.
     """
-    if not words:
-        return
-    kind, _, level = words.partition("=")
-    if kind not in KINDS or level not in map(str, LEVELS):
-        raise ConfigError(f"perturbation {words!r}: valid is KIND=0..3 with KIND one of {', '.join(KINDS)}")
+    found: list[str] = []
+    for word in (part.strip() for one in words for part in one.split(",")):
+        kind, _, levels = word.partition("=")
+        first, _, last = levels.partition("..")
+        if not word:
+            found.append("")
+        elif kind not in KINDS or first not in map(str, LEVELS) or (last or first) not in map(str, LEVELS):
+            raise ConfigError(
+                f"perturbation {word!r}: valid is KIND=0..3, as in lighting=2 or lighting=0..3, with KIND one of {', '.join(KINDS)}"
+            )
+        else:
+            found += [f"{kind}={level}" if level else "" for level in range(int(first), int(last or first) + 1)]
+    return tuple(dict.fromkeys(found)) or ("",)
 
 
-def perturbed(world: World, words: str, seed: int) -> World:
-    """The world as a harder tier shows it; level 0 leaves it alone."""
-    check_perturbation(words)
-    kind, _, level = words.partition("=")
-    return world if level == "0" else PerturbedWorld(world, kind, int(level), seed)
+def read_tier(tier: str) -> tuple[str, int]:
+    """Kind and level of "KIND=LEVEL"."""
+    kind, _, level = tier.partition("=")
+    return kind, int(level)
+
+
+def perturbed(world: World, tier: str, seed: int) -> World:
+    """The world as a harder tier shows or says it, by changing its pictures or its words.
+
+    Raises:
+        ConfigError: Clutter, which no picture can be given.
+    """
+    kind, level = read_tier(tier)
+    if not level:
+        return world
+    if kind == "clutter":
+        raise ConfigError("perturbation clutter: this world cannot put more things on its table; our tabletop can")
+    return PerturbedWorld(world, kind, level, seed)
 
 
 class PerturbedWorld:

@@ -9,12 +9,14 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from wonderful_team.errors import ConfigError
-from wonderful_team.evals.controls import CONTROLS, NO_MODEL
+from wonderful_team.evals.names import CONTROLS, NO_MODEL
 from wonderful_team.evals.suites import Suite, default_seeds
 from wonderful_team.evals.trials import Condition, TrialSpec
 
 OFFLINE = "offline"
 ISOLATES = ("planning", "grounding")
+WHOLE = "whole"
+"""What a user calls a study that isolates nothing."""
 
 
 @dataclass(frozen=True)
@@ -27,9 +29,10 @@ class StudyPlan:
         seeds: For every task; None for each suite's own.
         repeats: How often each scene is run.
         controls: Names of the controls that run too, `offline` among them.
-        isolate: "" | planning | grounding.
-        perturb: "" or KIND=LEVEL.
+        isolate: "" (whole), planning, grounding: one or several.
+        perturb: "" (as it is) or KIND=LEVEL: one or several, each a condition of its own.
         replans: None for each suite's own protocol.
+        how: What else was asked for of models, words and caps: part of every condition that asks a model.
         shard: (I, N): only the I-th of N parts, counted from 1; a scene's trials stay together.
 
     Raises:
@@ -42,17 +45,19 @@ class StudyPlan:
     seeds: tuple[int, ...] | None = None
     repeats: int = 1
     controls: tuple[str, ...] = (*CONTROLS, OFFLINE)
-    isolate: str = ""
-    perturb: str = ""
+    isolate: tuple[str, ...] = ("",)
+    perturb: tuple[str, ...] = ("",)
     replans: int | None = None
     shard: tuple[int, int] = (1, 1)
+    how: str = ""
     note: Mapping[str, Any] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         if self.repeats < 1:
             raise ConfigError(f"repeats must be at least 1, got {self.repeats}")
-        if self.isolate and self.isolate not in ISOLATES:
-            raise ConfigError(f"isolate {self.isolate!r}: valid are {', '.join(ISOLATES)}")
+        for isolate in self.isolate:
+            if isolate and isolate not in ISOLATES:
+                raise ConfigError(f"isolate {isolate!r}: valid are {', '.join((WHOLE, *ISOLATES))}")
         part, parts = self.shard
         if not 1 <= part <= parts:
             raise ConfigError(f"shard {part}/{parts}: valid is I/N with I from 1 to N")
@@ -63,17 +68,23 @@ class StudyPlan:
     def conditions(self, suite: Suite) -> tuple[Condition, ...]:
         """What is compared on a suite; controls last."""
         replans = suite.protocol.replans if self.replans is None else self.replans
-        asked = [
-            Condition(method, NO_MODEL if method in CONTROLS else model, self.isolate, self.perturb, replans)
-            for method in self.methods
-            for model in self.models
-        ]
-        photos = suite.name.endswith(".json")
-        bounds = [] if photos else [name for name in self.controls if name in CONTROLS]
-        asked += [Condition(name, NO_MODEL, "", self.perturb, 0) for name in bounds]
-        if OFFLINE in self.controls:
-            asked.append(Condition("team", OFFLINE, "", self.perturb, replans))
+        bounds = [] if of_photos(suite) else [name for name in self.controls if name in CONTROLS]
+        asked = []
+        for perturb in self.perturb:
+            asked += [self._condition(*names, perturb, replans) for names in self._named()]
+        for perturb in self.perturb:
+            asked += [Condition(name, NO_MODEL, "", perturb, 0) for name in bounds]
+            if OFFLINE in self.controls:
+                asked.append(Condition("team", OFFLINE, "", perturb, replans, self.how))
         return tuple(dict.fromkeys(asked))
+
+    def _named(self) -> list[tuple[str, str, str]]:
+        return [(method, model, part) for method in self.methods for model in self.models for part in self.isolate]
+
+    def _condition(self, method: str, model: str, isolate: str, perturb: str, replans: int) -> Condition:
+        if method in CONTROLS:
+            return Condition(method, NO_MODEL, "", perturb, 0)
+        return Condition(method, model, isolate, perturb, replans, self.how)
 
     def trials(self) -> Iterator[TrialSpec]:
         """Every trial of this shard, seed by seed, so that a study cut short is balanced."""
@@ -93,7 +104,7 @@ class StudyPlan:
                             yield spec
 
     def seeds_of(self, suite: Suite) -> tuple[int, ...]:
-        if suite.name.endswith(".json"):
+        if of_photos(suite):
             # A photo is one scene: its number takes the place of a seed.
             return tuple(range(int(self.note.get(f"photos:{suite.name}", 1))))
         return self.seeds if self.seeds is not None else default_seeds(suite.protocol)
@@ -120,11 +131,17 @@ class StudyPlan:
             "seeds": None if self.seeds is None else list(self.seeds),
             "repeats": self.repeats,
             "controls": list(self.controls),
-            "isolate": self.isolate,
-            "perturb": self.perturb,
+            "isolate": list(self.isolate),
+            "perturb": list(self.perturb),
+            "how": self.how,
             "shard": list(self.shard),
             **{key: value for key, value in self.note.items() if not key.startswith("photos:")},
         }
+
+
+def of_photos(suite: Suite) -> bool:
+    """Whether a suite is photos with boxes: scenes without a simulator."""
+    return suite.name.endswith(".json")
 
 
 def _is_repeatable(condition: Condition) -> bool:

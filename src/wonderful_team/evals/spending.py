@@ -1,11 +1,24 @@
-"""Caps of a whole study: what was spent, what is in flight, and what is left for the next trial."""
+"""Caps of a whole study: what was spent, what trials in flight may spend, and what is left for the next one.
+
+A trial in flight holds what it may spend at most, so trials run side by side and a cap is never passed.
+"""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TypeAlias
 
 from wonderful_team.errors import BudgetReached
 from wonderful_team.evals.trials import SpendingCaps
+
+UNITS = ("calls", "tokens", "usd")
+ROOM = 2.0
+"""A trial holds so many times what the dearest one of its condition took; one that wants more is cut and run again."""
+ROOM_OF_OTHERS = 3.0
+"""The same where only other conditions are known."""
+LEAST_USD = 1e-9
+Costs: TypeAlias = tuple[float | None, float | None, float | None]
+"""Calls, tokens, USD; None where it is not known."""
 
 
 class CapReached(BudgetReached):
@@ -13,7 +26,7 @@ class CapReached(BudgetReached):
 
 
 class WaitForCost(Exception):  # noqa: N818  a signal between a store and its workers
-    """A cap is set and nobody knows yet what a trial costs; try again when the one in flight has ended."""
+    """The trials in flight hold what is left; try again when one of them has ended."""
 
 
 @dataclass(frozen=True)
@@ -21,42 +34,79 @@ class Spending:
     """What a study cost so far.
 
     Attributes:
-        dearest: Most calls, tokens and USD that one trial took; a trial in flight is reckoned as that.
+        held: Calls, tokens and USD that trials in flight may still spend.
         unpriced: Trials whose cost in money is unknown (no price for their model).
     """
 
     calls: int = 0
     tokens: int = 0
     usd: float = 0.0
-    dearest: tuple[int, int, float] = (0, 0, 0.0)
     unpriced: int = 0
     in_flight: int = 0
+    held: tuple[float, float, float] = (0, 0, 0.0)
 
 
-def remaining(caps: SpendingCaps, spent: Spending) -> SpendingCaps:
-    """What the next trial may spend at most.
+@dataclass(frozen=True)
+class Likely:
+    """What is known of the cost of a trial before it runs.
+
+    Attributes:
+        own: The dearest trial of the same condition, cut ones included; 0 for what costs nothing; None: none has run yet.
+        others: The dearest trial of any condition; None: no trial has cost anything yet.
+    """
+
+    own: Costs = (None, None, None)
+    others: Costs = (None, None, None)
+
+
+@dataclass(frozen=True)
+class Allowance:
+    """What a trial may spend at most, and what of that it holds."""
+
+    caps: SpendingCaps
+    held: tuple[float, float, float]
+
+
+def allow(caps: SpendingCaps, spent: Spending, likely: Likely) -> Allowance:
+    """What the next trial may spend.
 
     Raises:
-        WaitForCost: Nothing says yet what a trial costs, and one is in flight.
-        CapReached: A trial as dear as the dearest so far would pass a cap; names the cap and what was spent.
+        WaitForCost: It does not fit beside those in flight.
+        CapReached: It does not fit at all; names the cap and what was spent.
     """
-    left: dict[str, float | None] = {"calls": None, "tokens": None, "usd": None}
-    for place, name in enumerate(("calls", "tokens", "usd")):
+    left: dict[str, float | None] = {}
+    held = []
+    for place, name in enumerate(UNITS):
         cap = getattr(caps, name)
         if cap is None:
+            left[name] = None
+            held.append(0.0)
             continue
-        dearest = spent.dearest[place]
-        if dearest == 0 and spent.in_flight:
-            raise WaitForCost(f"what a trial costs in {name} is not known yet: one at a time until one has ended")
-        booked = getattr(spent, name) + spent.in_flight * dearest
-        if booked + dearest > cap or booked >= cap:
-            unit = "USD" if name == "usd" else name
-            raise CapReached(
-                f"the study's cap of {cap:g} {unit} is reached: {getattr(spent, name):g} spent, "
-                f"{spent.in_flight} trials in flight, a trial took up to {dearest:g}"
-            )
-        left[name] = cap - booked
-    calls, tokens = left["calls"], left["tokens"]
-    return SpendingCaps(
-        None if calls is None else int(calls), None if tokens is None else int(tokens), None, left["usd"]
+        free = cap - getattr(spent, name) - spent.held[place]
+        own, others = likely.own[place], likely.others[place]
+        if own == 0:
+            left[name] = free
+            held.append(0.0)
+            continue
+        need = own if own is not None else 0.0
+        if free <= 0 or need > free:
+            if spent.held[place] > 0:
+                raise WaitForCost(f"what is left of {name} is held by trials in flight")
+            raise CapReached(_reached(name, cap, getattr(spent, name), need))
+        wanted = ROOM * own if own is not None else ROOM_OF_OTHERS * others if others else free
+        left[name] = min(free, wanted)
+        held.append(min(free, wanted))
+    calls, tokens, usd = left["calls"], left["tokens"], left["usd"]
+    whole = SpendingCaps(
+        None if calls is None else max(1, int(calls)),
+        None if tokens is None else max(1, int(tokens)),
+        None,
+        None if usd is None else max(LEAST_USD, usd),
     )
+    return Allowance(whole, (held[0], held[1], held[2]))
+
+
+def _reached(name: str, cap: float, spent: float, need: float) -> str:
+    unit = "USD" if name == "usd" else name
+    took = f", a trial like the next one took up to {need:g}" if need else ""
+    return f"the study's cap of {cap:g} {unit} is reached: {spent:g} spent{took}"

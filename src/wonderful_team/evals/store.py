@@ -10,41 +10,20 @@ import json
 import sqlite3
 import time
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
-from dataclasses import asdict
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
 from wonderful_team.errors import ConfigError
 from wonderful_team.evals.claims import LEASE_S, Owner, is_free
+from wonderful_team.evals.names import NO_MODEL
 from wonderful_team.evals.places import network_file_system
-from wonderful_team.evals.spending import Spending, WaitForCost, remaining
-from wonderful_team.evals.trials import Condition, Row, SpendingCaps, TrialResult, TrialSpec
+from wonderful_team.evals.schema import JSON, RESULT, SCHEMA_VERSION, SPEC, make_tables
+from wonderful_team.evals.spending import UNITS, Allowance, Costs, Likely, Spending, WaitForCost, allow
+from wonderful_team.evals.trials import CONDITION, Condition, Row, SpendingCaps, TrialResult, TrialSpec
 
-SCHEMA_VERSION = 1
 MAX_CRASHES = 3
 """A trial whose worker process died so often is written as an error, ours, and not tried again."""
-_SPEC = ("task", "seed", "repeat", "method", "model", "isolate", "perturb", "replans")
-_RESULT = (
-    *("outcome", "stage", "reason", "calls", "tokens", "pictures", "usd", "seconds", "rounds"),
-    *("provenance", "by_role", "page", "instruction", "versions", "facts"),
-)
-_JSON = ("provenance", "by_role", "versions", "facts")
-_TABLES = f"""
-CREATE TABLE IF NOT EXISTS meta(name TEXT PRIMARY KEY, value TEXT NOT NULL);
-CREATE TABLE IF NOT EXISTS trials(
-    id INTEGER PRIMARY KEY, key TEXT NOT NULL UNIQUE,
-    task TEXT NOT NULL, seed INTEGER NOT NULL, repeat INTEGER NOT NULL, method TEXT NOT NULL, model TEXT NOT NULL,
-    isolate TEXT NOT NULL, perturb TEXT NOT NULL, replans INTEGER NOT NULL,
-    state TEXT NOT NULL DEFAULT 'pending' CHECK(state IN ('pending', 'claimed', 'done')),
-    owner TEXT NOT NULL DEFAULT '', lease_until_s REAL NOT NULL DEFAULT 0, crashes INTEGER NOT NULL DEFAULT 0,
-    ended TEXT, {", ".join(_RESULT)});
-CREATE INDEX IF NOT EXISTS trials_by_state ON trials(state, id);
-CREATE TABLE IF NOT EXISTS studies(name TEXT PRIMARY KEY, request TEXT NOT NULL, started TEXT NOT NULL);
-CREATE TABLE IF NOT EXISTS wanted(study TEXT NOT NULL, trial INTEGER NOT NULL, PRIMARY KEY(study, trial)) WITHOUT ROWID;
-CREATE TABLE IF NOT EXISTS discarded(
-    trial INTEGER NOT NULL, why TEXT NOT NULL, calls INTEGER, tokens INTEGER, usd REAL, reason TEXT, at TEXT NOT NULL);
-"""
 
 
 class Store:
@@ -79,23 +58,20 @@ class Store:
             )
         # Write-ahead logging needs shared memory, which network file systems lack.
         self._base.execute(f"PRAGMA journal_mode={'DELETE' if network else 'WAL'}")
-        self._base.execute("PRAGMA synchronous=FULL")
         tables = {row[0] for row in self._base.execute("SELECT name FROM sqlite_master WHERE type='table'")}
         if tables and "trials" not in tables:
             raise ConfigError(f"store {str(self.path)!r} is another program's database; choose another file")
-        with self._writing():
-            for statement in _TABLES.split(";"):
-                if statement.strip():
-                    self._base.execute(statement)
-            self._base.execute("INSERT OR IGNORE INTO meta VALUES('schema_version', ?)", (str(SCHEMA_VERSION),))
-        version = self._base.execute("SELECT value FROM meta WHERE name='schema_version'").fetchone()[0]
+        with self._writing() as base:
+            version = make_tables(base)
         if version != str(SCHEMA_VERSION):
             raise ConfigError(
                 f"store {str(self.path)!r}: schema version {version}; this release reads {SCHEMA_VERSION}"
             )
 
     @contextmanager
-    def _writing(self) -> Iterator[sqlite3.Connection]:
+    def _writing(self, *, durable: bool = True) -> Iterator[sqlite3.Connection]:
+        """A transaction. One that is not durable survives the death of its process, but not a loss of power."""
+        self._base.execute(f"PRAGMA synchronous={'FULL' if durable else 'NORMAL'}")
         self._base.execute("BEGIN IMMEDIATE")
         try:
             yield self._base
@@ -117,8 +93,8 @@ class Store:
 
     def want(self, study: str, specs: Iterable[TrialSpec], request: Mapping[str, Any]) -> int:
         """Enter the trials of a study; those that are there already are left as they are. Returns how many are new."""
-        columns = ", ".join(("key", *_SPEC))
-        marks = ", ".join("?" * (1 + len(_SPEC)))
+        columns = ", ".join(("key", *SPEC))
+        marks = ", ".join("?" * (1 + len(SPEC)))
         with self._writing() as base:
             before = base.execute("SELECT COUNT(*) FROM trials").fetchone()[0]
             listed = list(specs)
@@ -144,19 +120,53 @@ class Store:
         Raises:
             CapReached: Another trial could pass a cap of the study.
         """
-        with self._writing() as base:
+        # A claim that a loss of power undoes is only a trial that is run again.
+        with self._writing(durable=False) as base:
             row = self._next(base, study)
             if row is None:
                 return None
             try:
-                left = remaining(caps or SpendingCaps(), self.spending(study))
+                allowance = self._allowance(study, row, caps)
             except WaitForCost:
                 return None
             base.execute(
-                "UPDATE trials SET state='claimed', owner=?, lease_until_s=? WHERE id=?",
-                (str(owner), time.time() + LEASE_S, row["id"]),
+                "UPDATE trials SET state='claimed', owner=?, lease_until_s=?, held_calls=?, held_tokens=?, held_usd=? "
+                "WHERE id=?",
+                (str(owner), time.time() + LEASE_S, *allowance.held, row["id"]),
             )
-        return Claim(int(row["id"]), _spec(row), left)
+        return Claim(int(row["id"]), _spec(row), allowance.caps)
+
+    def check_caps(self, study: str, caps: SpendingCaps) -> None:
+        """Whether the next trial may be begun, once nothing is in flight.
+
+        Raises:
+            CapReached: It may not.
+        """
+        row = self._next(self._base, study)
+        if row is not None:
+            with suppress(WaitForCost):
+                self._allowance(study, row, caps)
+
+    def _allowance(self, study: str, row: sqlite3.Row, caps: SpendingCaps | None) -> Allowance:
+        if caps is None or not set(caps.given) & set(UNITS):
+            return Allowance(SpendingCaps(), (0, 0, 0.0))
+        return allow(caps, self.spending(study), self._likely(row))
+
+    def _likely(self, row: sqlite3.Row) -> Likely:
+        """What the trials of the same condition took, and those of any; trials that broke before a call tell nothing."""
+        taken = (
+            "SELECT COUNT(*), MAX(calls), MAX(tokens), MAX(COALESCE(usd, 0)) FROM ("
+            "SELECT id, calls, tokens, usd FROM trials WHERE state='done' AND (calls > 0 OR outcome IN ('success', 'failure')) "
+            "UNION ALL SELECT trial, calls, tokens, usd FROM discarded WHERE calls > 0)"
+        )
+        if row["model"] == NO_MODEL:
+            return Likely((0, 0, 0))
+        alike = " AND ".join(f"{name} IS ?" for name in CONDITION)
+        own = self._base.execute(
+            f"{taken} WHERE id IN (SELECT id FROM trials WHERE {alike})", [row[name] for name in CONDITION]
+        ).fetchone()
+        others = self._base.execute(taken).fetchone()
+        return Likely(_costs(own), _costs(others))
 
     def _next(self, base: sqlite3.Connection, study: str) -> sqlite3.Row | None:
         mine = "SELECT t.* FROM trials t JOIN wanted w ON w.trial = t.id AND w.study = ?"
@@ -168,7 +178,7 @@ class Store:
 
     def renew(self, trial: int, owner: Owner) -> bool:
         """Extend a lease; False when the claim was lost to somebody else."""
-        with self._writing() as base:
+        with self._writing(durable=False) as base:
             until = time.time() + LEASE_S
             done = base.execute(
                 "UPDATE trials SET lease_until_s=? WHERE id=? AND owner=? AND state='claimed'",
@@ -178,9 +188,9 @@ class Store:
 
     def finish(self, trial: int, owner: Owner, result: TrialResult) -> bool:
         """Write a result; False (and nothing is written) when the claim was lost and another process has the trial."""
-        values = asdict(result)
-        texts = [json.dumps(values[name]) if name in _JSON else values[name] for name in _RESULT]
-        sets = ", ".join(f"{name}=?" for name in _RESULT)
+        values = ((name, getattr(result, name)) for name in RESULT)
+        texts = [json.dumps(value, default=dict) if name in JSON else value for name, value in values]
+        sets = ", ".join(f"{name}=?" for name in RESULT)
         with self._writing() as base:
             done = base.execute(
                 f"UPDATE trials SET state='done', owner='', ended=?, {sets} WHERE id=? AND owner=? AND state='claimed'",
@@ -231,7 +241,7 @@ class Store:
                 f"FROM trials WHERE {chosen}",
                 (_now(), study),
             )
-            blank = ", ".join(f"{name}=NULL" for name in _RESULT)
+            blank = ", ".join(f"{name}=NULL" for name in RESULT)
             changed = base.execute(
                 f"UPDATE trials SET state='pending', crashes=0, ended=NULL, {blank} WHERE {chosen}", (study,)
             )
@@ -240,24 +250,28 @@ class Store:
     # -- reading -----------------------------------------------------------------------------------------------------
 
     def spending(self, study: str) -> Spending:
-        """What the trials of a study cost so far, those retried or cut short included, and how many are in flight."""
+        """What the trials of a study cost so far, those retried or cut short included, and what is in flight."""
         of_study = "JOIN wanted w ON w.trial = {id} AND w.study = ?"
         cost = "COALESCE(SUM(calls), 0), COALESCE(SUM(tokens), 0), COALESCE(SUM(usd), 0)"
         done = self._base.execute(
-            f"SELECT {cost}, MAX(calls), MAX(tokens), MAX(usd), COUNT(*) - COUNT(usd), COUNT(*) "
-            f"FROM trials {of_study.format(id='trials.id')} WHERE state='done'",
+            f"SELECT {cost}, COUNT(*) - COUNT(usd) FROM trials {of_study.format(id='trials.id')} WHERE state='done'",
             (study,),
         ).fetchone()
         lost = self._base.execute(
             f"SELECT {cost} FROM discarded {of_study.format(id='discarded.trial')}", (study,)
         ).fetchone()
+        flying = self._base.execute(
+            "SELECT COUNT(*), COALESCE(SUM(held_calls), 0), COALESCE(SUM(held_tokens), 0), COALESCE(SUM(held_usd), 0) "
+            f"FROM trials {of_study.format(id='trials.id')} WHERE state='claimed'",
+            (study,),
+        ).fetchone()
         return Spending(
             calls=done[0] + lost[0],
             tokens=done[1] + lost[1],
             usd=done[2] + lost[2],
-            dearest=(done[3] or 0, done[4] or 0, done[5] or 0.0),
-            unpriced=done[6],
-            in_flight=self.count(study, "claimed"),
+            unpriced=done[3],
+            in_flight=flying[0],
+            held=tuple(flying)[1:],
         )
 
     def count(self, study: str, state: str) -> int:
@@ -299,17 +313,22 @@ class Claim:
         self.trial, self.spec, self.left = trial, spec, left
 
 
+def _costs(taken: sqlite3.Row) -> Costs:
+    """The dearest of each unit; unknown where nothing was taken yet."""
+    return (taken[1], taken[2], taken[3]) if taken[0] else (None, None, None)
+
+
 def _spec_values(spec: TrialSpec) -> tuple[Any, ...]:
-    return (spec.key, spec.task, spec.seed, spec.repeat, *asdict(spec.condition).values())
+    return (spec.key, spec.task, spec.seed, spec.repeat, *spec.condition.values)
 
 
 def _spec(row: sqlite3.Row) -> TrialSpec:
-    condition = Condition(row["method"], row["model"], row["isolate"], row["perturb"], row["replans"])
+    condition = Condition(**{name: row[name] for name in CONDITION})
     return TrialSpec(row["task"], row["seed"], condition, row["repeat"])
 
 
 def _result(row: sqlite3.Row) -> TrialResult:
-    values = {name: json.loads(row[name]) if name in _JSON else row[name] for name in _RESULT}
+    values = {name: json.loads(row[name]) if name in JSON else row[name] for name in RESULT}
     return TrialResult(**{**values, "provenance": tuple(values["provenance"])})
 
 

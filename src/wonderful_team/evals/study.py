@@ -16,7 +16,7 @@ from typing import Any
 from wonderful_team.errors import ConfigError
 from wonderful_team.evals.limits import ProcessLimiter
 from wonderful_team.evals.plan import StudyPlan
-from wonderful_team.evals.spending import CapReached, Spending, WaitForCost, remaining
+from wonderful_team.evals.spending import CapReached, Spending
 from wonderful_team.evals.store import Store
 from wonderful_team.evals.trials import RunSettings, SpendingCaps, TrialRunner
 from wonderful_team.evals.workers import POLL_S, Work, work_until_done, worker_main
@@ -171,11 +171,9 @@ class Watch:
         if not self.missing:
             return ""
         try:
-            remaining(caps, self.store.spending(self.study))
+            self.store.check_caps(self.study, caps)
         except CapReached as error:
             return str(error)
-        except WaitForCost:
-            pass
         if deadline_s is not None and time.time() >= deadline_s:
             return f"the study's cap of {caps.seconds:g} seconds is reached"
         return f"{self.missing} trials have not ended; the same command goes on with them"

@@ -67,14 +67,30 @@ def all_suites(known_tasks: Sequence[str], partitions: Mapping[str, Sequence[str
         first = tuple(task for task in vima if task.rpartition("/")[2] in VIMA_TASKS[:3])
         suites["vima3"] = Suite("vima3", first, OPEN_LOOP, "its three tasks of simple object manipulation")
         for level in PARTITIONS:
-            tasks = tuple((partitions or {}).get(level, ()))
+            tasks = tuple(task for task in (partitions or {}).get(level, ()) if task.startswith("tabletop/"))
             if tasks:
                 suites[f"vima17/{level}"] = Suite(f"vima17/{level}", tasks, OPEN_LOOP, f"generalisation level {level}")
+    suites.update(_real_vima(known_tasks, partitions or {}))
     fruit = tuple(name for name in known_tasks if name.startswith(f"tabletop/{FRUIT_FOLDER}"))
     if fruit:
         suites["fruit"] = Suite(
             "fruit", fruit, IMPLICIT_GOAL, "sort fruits by colour: the paper's implicit goal, 4 variations"
         )
+    return suites
+
+
+def _real_vima(known_tasks: Sequence[str], partitions: Mapping[str, Sequence[str]]) -> dict[str, Suite]:
+    """The benchmark's own simulator, where a world of that name is registered: whole, and by level."""
+    tasks = tuple(f"vimabench/{name}" for name in VIMA_TASKS if f"vimabench/{name}" in known_tasks)
+    if not tasks:
+        return {}
+    words = "the tasks of VIMA-Bench in your own copy of its simulator"
+    suites = {"vimabench": Suite("vimabench", tasks, OPEN_LOOP, words)}
+    for level in PARTITIONS:
+        found = tuple(task for task in partitions.get(level, ()) if task.startswith("vimabench/"))
+        if found:
+            name = f"vimabench/{level}"
+            suites[name] = Suite(name, found, OPEN_LOOP, f"{words}, generalisation level {level}")
     return suites
 
 

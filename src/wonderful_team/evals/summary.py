@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
 
 from wonderful_team.evals.controls import CONTROLS, ORACLE, control_faults
 from wonderful_team.evals.pairing import Pair, pair
@@ -12,8 +13,11 @@ from wonderful_team.evals.plan import OFFLINE
 from wonderful_team.evals.statistics import Rate
 from wonderful_team.evals.trials import DEVELOPMENT_BELOW, Condition, Row, TrialResult
 
+SENTENCES = 3
 TOO_MANY_ERRORS = 0.02
 """Share of errors in a cell from which its rate deserves a warning."""
+NO_VLM = ("offline", "simulated", "scripted", "injected")
+"""Where answers come from that no vision-language model gave."""
 
 
 @dataclass(frozen=True)
@@ -45,17 +49,15 @@ class Cell:
 
     @property
     def usd(self) -> float | None:
-        """Money of all trials; None where any price is unknown."""
-        total = 0.0
-        for result in self.results:
-            if result.usd is None:
-                return None
-            total += result.usd
-        return total
+        """Money of all trials whose cost is known; None where one that did not end as an error has no known price."""
+        if any(result.usd is None and result.outcome != "error" for result in self.results):
+            return None
+        return sum(result.usd for result in self.results if result.usd is not None)
 
     @property
     def usd_per_trial(self) -> float | None:
-        return self.usd / len(self.results) if self.results and self.usd is not None else None
+        priced = sum(result.usd is not None for result in self.results)
+        return self.usd / priced if priced and self.usd is not None else None
 
     @property
     def usd_per_success(self) -> float | None:
@@ -75,10 +77,13 @@ class Cell:
     def badges(self) -> tuple[str, ...]:
         """What a reader must know of where the answers came from."""
         seen = {word for result in self.results for word in result.provenance}
-        model = self.condition.model
-        names = {"offline", "simulated", "cached", "injected", "replayed", "scripted"} & seen
-        names |= {"offline"} if model == OFFLINE and any(result.calls for result in self.results) else set()
-        names |= {"simulated"} if model.startswith("simulated:") or self.condition.isolate else set()
+        # Models by role stand as "M, ROLE=N".
+        models = [part.rpartition("=")[2] for part in self.condition.model.split(", ")]
+        names = {*NO_VLM, "cached", "replayed"} & seen
+        names |= {"offline"} if OFFLINE in models and any(result.calls for result in self.results) else set()
+        names |= (
+            {"simulated"} if any(name.startswith("simulated:") for name in models) or self.condition.isolate else set()
+        )
         return tuple(sorted(name.upper() for name in names))
 
     @property
@@ -95,9 +100,8 @@ class Cell:
         )
 
 
-def cell(condition: Condition, rows: Iterable[Row]) -> Cell:
-    """The cell of a condition over some rows."""
-    mine = [row for row in rows if row.spec.condition == condition]
+def cell(condition: Condition, mine: Sequence[Row]) -> Cell:
+    """The cell of a condition over some of its rows."""
     ended = [row for row in mine if row.result is not None]
     return Cell(
         condition,
@@ -122,46 +126,91 @@ class Summary:
     compared: tuple[Condition, ...]
     bounds: tuple[Condition, ...]
 
-    @property
+    @cached_property
     def tasks(self) -> tuple[str, ...]:
         return tuple(dict.fromkeys(row.spec.task for row in self.rows))
 
     def cell(self, condition: Condition, task: str | None = None) -> Cell:
-        return cell(condition, self.rows_of(task))
+        """The trials of a condition, of one task or of all."""
+        mine = self.by_condition.get(condition, [])
+        return cell(condition, mine if task is None else [row for row in mine if row.spec.task == task])
 
-    def rows_of(self, task: str | None) -> tuple[Row, ...]:
-        return self.rows if task is None else tuple(row for row in self.rows if row.spec.task == task)
+    @cached_property
+    def by_condition(self) -> Mapping[Condition, list[Row]]:
+        """Rows by condition, in their order."""
+        found: dict[Condition, list[Row]] = {}
+        for row in self.rows:
+            found.setdefault(row.spec.condition, []).append(row)
+        return found
+
+    def compare(self, first: Condition, second: Condition) -> Pair:
+        """Two conditions on the scenes that both have scored."""
+        return pair(first, second, [*self.by_condition.get(first, []), *self.by_condition.get(second, [])])
+
+    @property
+    def main(self) -> tuple[Condition, ...]:
+        """What was compared on scenes as they are, nothing isolated; everything, where only such was run."""
+        plain = tuple(one for one in self.compared if not (one.isolate or one.perturb))
+        return plain or self.compared
+
+    @property
+    def main_bounds(self) -> tuple[Condition, ...]:
+        """The controls that belong to `main`."""
+        tiers = {one.perturb for one in self.main} or {one.perturb for one in self.bounds}
+        return tuple(one for one in self.bounds if one.perturb in tiers)
+
+    def variants(self) -> list[tuple[Condition, list[tuple[Condition, Pair | None]]]]:
+        """What was isolated or perturbed, by the whole and plain condition it belongs to, and paired with that if it ran."""
+        families: dict[Condition, list[Condition]] = {}
+        conditions = (*self.compared, *self.bounds)
+        for one in conditions:
+            families.setdefault(replace(one, isolate="", perturb=""), []).append(one)
+        found = []
+        for whole, members in families.items():
+            if members != [whole]:
+                known = whole in members
+                rest = [(one, self.compare(one, whole) if known else None) for one in members if one != whole]
+                found.append((whole, [*([(whole, None)] if known else []), *rest]))
+        return found
 
     def pairs(self, baseline: str | None = None) -> tuple[Pair, ...]:
-        """Every two compared conditions of the same tier, or each against those of one method."""
+        """Every two compared conditions of the same tier and part, or each against those of one method."""
         found = []
         for place, first in enumerate(self.compared):
             for second in self.compared[place + 1 :]:
-                if first.perturb != second.perturb:
+                if (first.perturb, first.isolate) != (second.perturb, second.isolate):
                     continue
                 if baseline is None:
-                    found.append(pair(first, second, self.rows))
+                    found.append(self.compare(first, second))
                 elif second.method == baseline and first.method != baseline:
-                    found.append(pair(first, second, self.rows))
+                    found.append(self.compare(first, second))
                 elif first.method == baseline and second.method != baseline:
-                    found.append(pair(second, first, self.rows))
+                    found.append(self.compare(second, first))
         return tuple(found)
 
     def stages(self, condition: Condition) -> Counter[str]:
         """Failures of a condition by stage."""
         return Counter(
             row.result.stage or "unknown"
-            for row in self.rows
-            if row.spec.condition == condition and row.result is not None and row.result.outcome == "failure"
+            for row in self.by_condition.get(condition, [])
+            if row.result is not None and row.result.outcome == "failure"
         )
 
     def headline(self, baseline: str | None = None) -> list[str]:
         """The answer, one sentence per comparison that was asked for."""
-        pairs = [one for one in self.pairs(baseline) if not (one.first.isolate or one.second.isolate)]
+        main = set(self.main)
+        pairs = [one for one in self.pairs(baseline) if one.first in main]
+        if len(pairs) > SENTENCES and baseline is None:
+            best = max(self.main, key=lambda one: self.cell(one).rate.share or 0.0)
+            as_good = sum(self.cell(one).rate.share == self.cell(best).rate.share for one in self.main) - 1
+            others = f", and {as_good} others succeed as often" if as_good else ""
+            lead = f"Of {len(self.main)} compared, {best.label} succeeds most often: {self.cell(best).rate}{others}."
+            against = [one.sentence() for one in pairs if best in (one.first, one.second)]
+            return [lead, *against[:SENTENCES]]
         if pairs:
-            return [one.sentence() for one in pairs[:3]]
+            return [one.sentence() for one in pairs[:SENTENCES]]
         if self.compared:
-            return [f"{one.label}: {self.cell(one).rate}." for one in self.compared[:3]]
+            return [f"{one.label}: {self.cell(one).rate}." for one in self.main[:SENTENCES]]
         return [
             "Only controls were run: no method is compared." if self.bounds else "No data: the store holds no trial."
         ]
@@ -170,20 +219,11 @@ class Summary:
         """What a reader must know before any figure."""
         found: list[str] = []
         for condition in (*self.compared, *self.bounds):
-            for task in self.tasks:
-                one = self.cell(condition, task)
-                if one.error_share > TOO_MANY_ERRORS:
-                    found.append(
-                        f"{condition.label}, {task}: {one.count('error')} of {len(one.results)} trials are errors "
-                        f"({100 * one.error_share:.0f} %, more than {100 * TOO_MANY_ERRORS:.0f} %): not scored; --retry-errors runs them again"
-                    )
+            found += self._errors(condition)
             whole = self.cell(condition)
             if whole.missing:
                 found.append(f"{condition.label}: {whole.missing} trials have not ended")
-            if whole.badges and condition in self.compared:
-                found.append(
-                    f"{condition.label}: {', '.join(whole.badges)}: says nothing about a vision-language model"
-                )
+        found += _origins([self.cell(one) for one in self.compared])
         development = sorted(
             {
                 row.spec.seed
@@ -205,13 +245,26 @@ class Summary:
             found.append("controls were refused: nothing here shows that the scorers can tell success from failure")
         return found
 
+    def _errors(self, condition: Condition) -> list[str]:
+        """One line for all tasks of a condition whose trials were errors too often."""
+        cells = ((task, self.cell(condition, task)) for task in self.tasks)
+        many = [(task, one) for task, one in cells if one.error_share > TOO_MANY_ERRORS]
+        if not many:
+            return []
+        listed = ", ".join(f"{task} {one.count('error')} of {len(one.results)}" for task, one in many)
+        return [
+            f"{condition.label}: more than {100 * TOO_MANY_ERRORS:.0f} % of the trials are errors in {listed}: "
+            "not scored; --retry-errors runs them again"
+        ]
+
     def _control_faults(self, task: str) -> list[str]:
-        counts = {}
-        for condition in {*self.bounds, *self.compared}:
+        """What the controls say against a task, tier by tier: a tier may make a scene that nobody can solve."""
+        counts: dict[str, dict[str, tuple[int, int]]] = {}
+        for condition in self.bounds:
             if condition.method in CONTROLS:
                 rate = self.cell(condition, task).rate
-                counts[condition.method] = (rate.successes, rate.n)
-        return control_faults(counts)
+                counts.setdefault(condition.perturb, {})[condition.method] = (rate.successes, rate.n)
+        return [f"{tier}: {text}" if tier else text for tier, mine in counts.items() for text in control_faults(mine)]
 
     def _mixed_versions(self) -> list[str]:
         found = []
@@ -224,6 +277,27 @@ class Summary:
                     f"{condition.label}: its trials were made by {len(versions)} different versions of the code"
                 )
         return found
+
+
+_SAYS = {
+    "CACHED": "some answers were kept from earlier runs; their seconds and cost are not new",
+    "REPLAYED": "some answers were read from records",
+}
+
+
+def _origins(cells: Sequence[Cell]) -> list[str]:
+    """What a reader must know of where the answers of compared conditions came from, a line for each kind."""
+    found: dict[str, list[str]] = {}
+    for whole in cells:
+        stand_ins = [badge for badge in whole.badges if badge.lower() in NO_VLM]
+        if stand_ins:
+            part = "some of the" if ", " in whole.condition.model or whole.condition.isolate else "the"
+            text = f"{', '.join(stand_ins)}: {part} answers say nothing about a vision-language model"
+            found.setdefault(text, []).append(whole.condition.label)
+        for badge in whole.badges:
+            if badge in _SAYS:
+                found.setdefault(f"{badge}: {_SAYS[badge]}", []).append(whole.condition.label)
+    return [f"{text} ({'; '.join(labels)})" for text, labels in found.items()]
 
 
 def summarise(rows: Sequence[Row], requests: Sequence[Mapping[str, object]]) -> Summary:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Mapping
-from dataclasses import asdict, dataclass, field, fields
+from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import Any, Literal, Protocol, TypeAlias
 
@@ -25,6 +25,7 @@ class Condition:
         isolate: "" | planning (grounding from truth) | grounding (plan from the oracle).
         perturb: "" or KIND=LEVEL: a harder tier, scored separately.
         replans: How often it may plan again after its first attempt.
+        how: What else was asked for of models, words and caps, such as "thinking high"; "" for nothing.
     """
 
     method: str
@@ -32,6 +33,12 @@ class Condition:
     isolate: str = ""
     perturb: str = ""
     replans: int = 0
+    how: str = ""
+
+    @property
+    def values(self) -> tuple[Any, ...]:
+        """Its fields, in their order."""
+        return tuple(getattr(self, name) for name in CONDITION)
 
     @property
     def label(self) -> str:
@@ -40,7 +47,12 @@ class Condition:
         words += [f"{self.isolate} alone"] if self.isolate else []
         words += [self.perturb] if self.perturb else []
         words += [f"{self.replans} replans"] if self.replans else []
+        words += [self.how] if self.how else []
         return " · ".join(words)
+
+
+CONDITION = tuple(item.name for item in fields(Condition))
+"""Names of the fields of a condition, in their order."""
 
 
 @dataclass(frozen=True)
@@ -54,8 +66,9 @@ class TrialSpec:
 
     @property
     def key(self) -> str:
-        """Identity in the store."""
-        return json.dumps([self.task, self.seed, self.repeat, *asdict(self.condition).values()])
+        """Identity in the store; stores made before `how` existed keep theirs."""
+        *values, how = self.condition.values
+        return json.dumps([self.task, self.seed, self.repeat, *values, *([how] if how else [])])
 
     @property
     def scene(self) -> str:

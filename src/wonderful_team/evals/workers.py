@@ -143,7 +143,8 @@ def run_safely(runner: TrialRunner, spec: TrialSpec, settings: RunSettings) -> T
     except Exception as error:  # noqa: BLE001  a sweep goes on; the trial says what happened and where
         where = traceback.extract_tb(error.__traceback__)[-1]
         reason = f"{type(error).__name__}: {error} ({Path(where.filename).name}:{where.lineno})"
-        return TrialResult("error", "crash", reason, usd=None, seconds=time.monotonic() - started)
+        stage = getattr(error, "stage", None) or "crash"
+        return TrialResult("error", stage, reason, usd=None, seconds=time.monotonic() - started)
 
 
 @contextlib.asynccontextmanager

@@ -3,22 +3,25 @@
 from __future__ import annotations
 
 import io
-import re
 import warnings
 from typing import Any
 
 from wonderful_team.errors import MissingExtraError
+from wonderful_team.evals.names import short_names
+from wonderful_team.evals.paper import paper_beside
 from wonderful_team.evals.statistics import wilson_interval
 from wonderful_team.evals.summary import Summary
 from wonderful_team.evals.trials import Condition
 
 _MARKS = "osD^vP*X<>"
+MOST_PER_TASK = 5
+"""Conditions side by side that a plot per task can still show."""
 _BLUE, _GREY = "#2b5c8a", "#8a8f98"
 
 
 def rate_plot(summary: Summary) -> str:
     """Success of every condition with its 95 % interval; controls in grey."""
-    conditions = [one for one in (*summary.compared, *summary.bounds) if summary.cell(one).rate.n]
+    conditions = [one for one in (*summary.main, *summary.main_bounds) if summary.cell(one).rate.n]
     figure, axes = _figure(7.2, 0.9 + 0.42 * max(1, len(conditions)))
     for place, one in enumerate(reversed(conditions)):
         rate = summary.cell(one).rate
@@ -34,18 +37,20 @@ def rate_plot(summary: Summary) -> str:
 
 
 def cost_plot(summary: Summary) -> str:
-    """Success against cost per trial: money where all prices are known, else calls; one point per condition."""
-    conditions = [one for one in (*summary.compared, *summary.bounds) if summary.cell(one).rate.n]
+    """Success against cost per trial: money where all prices are known, else calls; "" where nothing was asked or paid."""
+    conditions = [one for one in (*summary.main, *summary.main_bounds) if summary.cell(one).rate.n]
     cells = {one: summary.cell(one) for one in conditions}
     paid = [cell for cell in cells.values() if cell.usd_per_trial]
     in_money = bool(paid) and all(cell.usd_per_trial is not None for cell in cells.values())
+    if not in_money and not any(cell.mean("calls") for cell in cells.values()):
+        return ""
     figure, axes = _figure(8.6, 3.4)
     for place, (one, cell) in enumerate(cells.items()):
         across = cell.usd_per_trial if in_money else cell.mean("calls")
         low, high = wilson_interval(cell.rate.successes, cell.rate.n)
         share = cell.rate.successes / cell.rate.n
         errors = [[100 * max(0.0, share - low)], [100 * max(0.0, high - share)]]
-        style = {"fmt": _MARKS[place % len(_MARKS)], "capsize": 4, "label": _short(one.label), "alpha": 0.8}
+        style = {"fmt": _MARKS[place % len(_MARKS)], "capsize": 4, "label": short_names(one.label), "alpha": 0.8}
         axes.errorbar(across or 0.0, 100 * share, yerr=errors, color=f"C{place % 10}", **style)
     axes.set_ylim(-5, 108)
     axes.margins(x=0.1)
@@ -55,9 +60,56 @@ def cost_plot(summary: Summary) -> str:
     return _svg(figure)
 
 
+def task_plot(summary: Summary) -> str:
+    """Success per task of what was compared, the paper's figures as hollow diamonds; "" for one task or too many conditions."""
+    conditions = [one for one in summary.main if summary.cell(one).rate.n]
+    if len(summary.tasks) < 2 or not 1 <= len(conditions) <= MOST_PER_TASK:
+        return ""
+    sides = [(one, False) for one in conditions] + [(one, True) for one in conditions]
+    sides = [side for side in sides if not side[1] or any(paper_beside(task, side[0]) for task in summary.tasks)]
+    figure, axes = _figure(8.6, 1.0 + (0.14 + 0.1 * len(sides)) * len(summary.tasks))
+    for place, (one, published) in enumerate(sides):
+        shift = (place - (len(sides) - 1) / 2) * 0.8 / len(sides)
+        found = [_task_rate(summary, one, task, published) for task in summary.tasks]
+        drawn = [(row + shift, *rate) for row, rate in enumerate(found) if rate is not None]
+        if not drawn:
+            continue
+        rows, shares, lows, highs = zip(*drawn, strict=True)
+        errors = [
+            [s - low for s, low in zip(shares, lows, strict=True)],
+            [h - s for s, h in zip(shares, highs, strict=True)],
+        ]
+        colour = f"C{conditions.index(one) % 10}"
+        style = {"fmt": "D", "mfc": "white", "alpha": 0.75} if published else {"fmt": "o"}
+        label = f"paper ({one.method})" if published else short_names(one.label)
+        axes.errorbar(shares, rows, xerr=errors, color=colour, capsize=2, ms=5, lw=1, label=label, **style)
+    axes.set_yticks(range(len(summary.tasks)), [task.removeprefix("tabletop/") for task in summary.tasks])
+    axes.set_ylim(len(summary.tasks) - 0.5, -0.5)
+    axes.set_xlim(-3, 103)
+    axes.set_xlabel("success [%], 95 % Wilson interval; no bar where the paper does not state n")
+    axes.legend(fontsize=8, loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=2, frameon=False)
+    return _svg(figure)
+
+
+def _task_rate(summary: Summary, one: Condition, task: str, published: bool) -> tuple[float, float, float] | None:
+    """Share and interval in percent; None without a figure."""
+    if published:
+        figure = paper_beside(task, one)
+        if figure is None:
+            return None
+        low, high = figure.interval or (figure.percent / 100, figure.percent / 100)
+        return figure.percent, min(100 * low, figure.percent), max(100 * high, figure.percent)
+    rate = summary.cell(one, task).rate
+    if not rate.n:
+        return None
+    low, high = wilson_interval(rate.successes, rate.n)
+    share = rate.successes / rate.n
+    return 100 * share, 100 * min(low, share), 100 * max(high, share)
+
+
 def _named(one: Condition, summary: Summary) -> str:
     rate = summary.cell(one).rate
-    return f"{_short(one.label)} ({rate.successes}/{rate.n})"
+    return f"{short_names(one.label)} ({rate.successes}/{rate.n})"
 
 
 def _colour(one: Condition, summary: Summary) -> str:
@@ -87,8 +139,3 @@ def _svg(figure: Any) -> str:
     figure.savefig(out, format="svg", metadata={"Date": None})
     text = out.getvalue()
     return text[text.index("<svg") :]
-
-
-def _short(label: str) -> str:
-    """A label without the folders of FILE.py:NAME: a long path would leave no room for the plot."""
-    return re.sub(r"[^\s·]*/", "", label)

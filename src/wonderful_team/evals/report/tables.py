@@ -10,10 +10,11 @@ from collections.abc import Sequence
 from typing import Any
 
 from wonderful_team.errors import MissingExtraError
-from wonderful_team.evals.paper import paper_figure
+from wonderful_team.evals.pairing import Pair
+from wonderful_team.evals.paper import paper_beside
 from wonderful_team.evals.statistics import wilson_interval
 from wonderful_team.evals.summary import Cell, Summary
-from wonderful_team.evals.trials import Row
+from wonderful_team.evals.trials import Condition, Row
 
 _RESULT = (
     "outcome",
@@ -43,6 +44,7 @@ def trial_record(row: Row) -> dict[str, Any]:
         "isolate": condition.isolate,
         "perturb": condition.perturb,
         "replans": condition.replans,
+        "how": condition.how,
     }
     flat |= {name: None if result is None else getattr(result, name) for name in _RESULT}
     flat["provenance"] = None if result is None else " ".join(result.provenance)
@@ -83,6 +85,7 @@ def condition_json(cell: Cell) -> dict[str, Any]:
         "isolate": cell.condition.isolate,
         "perturb": cell.condition.perturb,
         "replans": cell.condition.replans,
+        "how": cell.condition.how,
         "successes": rate.successes,
         "scored": rate.n,
         "success": rate.share,
@@ -138,6 +141,38 @@ def cell_words(cell: Cell) -> tuple[str, ...]:
     )
 
 
+PAIR_HEAD = ("first", "second", "first less second", "95 %", "exact p", "pairs", "only first", "only second")
+
+
+def pair_words(one: Pair) -> tuple[str, ...]:
+    """The line of a comparison, in the order of PAIR_HEAD."""
+    counts = (str(one.n), str(one.only_first), str(one.only_second))
+    if one.difference is None or one.interval is None or one.p is None:
+        return (one.first.label, one.second.label, "no data", "no data", "no data", *counts)
+    low, high = one.interval
+    gap = f"{100 * one.difference:+.1f}"
+    return (one.first.label, one.second.label, gap, f"{100 * low:+.1f} to {100 * high:+.1f}", f"{one.p:.3g}", *counts)
+
+
+VARIANT_HEAD = ("", "success", "95 %", "n", "errors", "less the whole", "95 %", "exact p", "pairs")
+
+
+def variant_words(cell: Cell, against: Pair | None) -> tuple[str, ...]:
+    """The line of an isolated part or a harder tier, in the order of VARIANT_HEAD; `against` pairs it with the whole."""
+    condition = cell.condition
+    parts = [f"{condition.isolate} alone"] if condition.isolate else []
+    parts += [condition.perturb] if condition.perturb else []
+    _, share, interval, n, errors, *_ = cell_words(cell)
+    paired = ("", "", "", "") if against is None else pair_words(against)[2:6]
+    return (" · ".join(parts) or "whole, as it is", share, interval, n, errors, *paired)
+
+
+def in_order(summary: Summary) -> tuple[Condition, ...]:
+    """All conditions: those compared as they are, then the parts and tiers, then the controls."""
+    rest = tuple(one for one in summary.compared if one not in summary.main)
+    return (*summary.main, *rest, *summary.bounds)
+
+
 def number(value: float | None, digits: int) -> str:
     """A figure, or that it is not known."""
     return "unknown" if value is None else f"{value:.{digits}f}"
@@ -146,12 +181,8 @@ def number(value: float | None, digits: int) -> str:
 def task_table(summary: Summary) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
     """Success per task and condition, each compared method's column of the paper beside it."""
     head: list[str] = ["task"]
-    conditions = (*summary.compared, *summary.bounds)
-    with_paper = {
-        one
-        for one in summary.compared
-        if not one.isolate and any(paper_figure(task, one.method) for task in summary.tasks)
-    }
+    conditions = (*summary.main, *summary.main_bounds)
+    with_paper = {one for one in summary.main if any(paper_beside(task, one) for task in summary.tasks)}
     for one in conditions:
         head += [one.label] + ([f"paper ({one.method})"] if one in with_paper else [])
     lines = []
@@ -160,7 +191,7 @@ def task_table(summary: Summary) -> tuple[tuple[str, ...], list[tuple[str, ...]]
         for one in conditions:
             line.append(rate_words(summary.cell(one, task)))
             if one in with_paper:
-                line.append(str(paper_figure(task, one.method) or "-"))
+                line.append(str(paper_beside(task, one) or "-"))
         lines.append(tuple(line))
     return tuple(head), lines
 
@@ -180,41 +211,17 @@ def to_markdown(summary: Summary, baseline: str | None = None) -> str:
     warnings = summary.warnings()
     if warnings:
         parts.append("\n".join(f"- warning: {text}" for text in warnings))
-    parts.append(_markdown(HEAD, [cell_words(summary.cell(one)) for one in (*summary.compared, *summary.bounds)]))
+    parts.append(_markdown(HEAD, [cell_words(summary.cell(one)) for one in in_order(summary)]))
     parts.append(_markdown(*task_table(summary)))
+    pairs = [pair_words(one) for one in summary.pairs(baseline)]
+    if pairs:
+        parts.append(_markdown(PAIR_HEAD, pairs))
+    for whole, members in summary.variants():
+        lines = [variant_words(summary.cell(one), against) for one, against in members]
+        parts.append(_markdown((whole.label, *VARIANT_HEAD[1:]), lines))
     return "\n\n".join(parts) + "\n"
 
 
 def _markdown(head: Sequence[str], lines: Sequence[Sequence[str]]) -> str:
     rows = [head, ["---"] * len(head), *lines]
     return "\n".join("| " + " | ".join(word.replace("|", "\\|") for word in row) + " |" for row in rows)
-
-
-def to_latex(head: Sequence[str], lines: Sequence[Sequence[str]], caption: str) -> str:
-    """A table environment for booktabs."""
-    body = "\n".join("    " + " & ".join(_tex(word) for word in line) + r" \\" for line in lines)
-    return (
-        "\\begin{table}\n  \\centering\n"
-        f"  \\caption{{{_tex(caption)}}}\n"
-        f"  \\begin{{tabular}}{{l{'r' * (len(head) - 1)}}}\n    \\toprule\n"
-        f"    {' & '.join(_tex(word) for word in head)} \\\\\n    \\midrule\n{body}\n    \\bottomrule\n"
-        "  \\end{tabular}\n\\end{table}\n"
-    )
-
-
-_TEX = {
-    "%": r"\%",
-    "_": r"\_",
-    "&": r"\&",
-    "#": r"\#",
-    "$": r"\$",
-    "·": r"$\cdot$",
-    "{": r"\{",
-    "}": r"\}",
-    "~": r"\textasciitilde{}",
-    "^": r"\textasciicircum{}",
-}
-
-
-def _tex(word: str) -> str:
-    return "".join(_TEX.get(letter, letter) for letter in word.replace("\\", "/"))

@@ -1,0 +1,176 @@
+"""What the page of a study says, part by part: figures become words, links and thumbnails; the template only lays them out."""
+
+from __future__ import annotations
+
+import base64
+import os
+from collections.abc import Sequence
+from itertools import zip_longest
+from pathlib import Path
+from typing import Any
+
+import cv2
+from markupsafe import Markup
+
+from wonderful_team.errors import MissingExtraError
+from wonderful_team.evals.pairing import Pair
+from wonderful_team.evals.paper import published
+from wonderful_team.evals.report import tables
+from wonderful_team.evals.report.plots import cost_plot, rate_plot, task_plot
+from wonderful_team.evals.summary import Summary
+from wonderful_team.evals.trials import Condition, Row
+
+EXAMPLES = 3
+GALLERY = 24
+THUMBNAIL_PX = 320
+
+
+def page_content(summary: Summary, warnings: Sequence[str], baseline: str | None, page: Path) -> dict[str, Any]:
+    """Everything that the template names but stores and files."""
+    head, lines = tables.task_table(summary)
+    return {
+        "summary": summary,
+        "answer": summary.headline(baseline),
+        "warnings": warnings,
+        "head": tables.HEAD,
+        "compared": [tables.cell_words(summary.cell(one)) for one in summary.main],
+        "bounds": [tables.cell_words(summary.cell(one)) for one in summary.main_bounds],
+        "plots": _plots(summary),
+        "task_head": head,
+        "task_lines": lines,
+        "paper": published(),
+        "with_paper": any(name.startswith("paper (") for name in head),
+        "pair_head": tables.PAIR_HEAD,
+        "pairs": [_pair(one, summary, page) for one in summary.pairs(baseline)],
+        "stages": _stage_table(summary),
+        "failures": [_failures(one, summary, page) for one in summary.compared],
+        "variant_head": tables.VARIANT_HEAD,
+        "variants": [
+            (whole.label, [tables.variant_words(summary.cell(one), against) for one, against in members])
+            for whole, members in summary.variants()
+        ],
+        "facts": _facts(summary),
+        "gallery": _gallery(summary, page),
+        "versions": sorted({f"{k} {v}" for row in summary.rows if row.result for k, v in row.result.versions.items()}),
+    }
+
+
+def _plots(summary: Summary) -> dict[str, Any]:
+    if not any(summary.cell(one).rate.n for one in (*summary.compared, *summary.bounds)):
+        return {"missing": "no scored trial: nothing to plot"}
+    try:
+        # Made by matplotlib from our own figures: labels are escaped by it.
+        made = {"rates": rate_plot(summary), "costs": cost_plot(summary), "tasks": task_plot(summary)}
+        return {name: Markup(text) for name, text in made.items() if text}  # noqa: S704
+    except MissingExtraError as error:
+        return {"missing": str(error)}
+
+
+def _stage_table(summary: Summary) -> dict[str, Any]:
+    """How often each compared condition failed at each stage."""
+    counts = {one: summary.stages(one) for one in summary.compared}
+    names = sorted({stage for one in counts.values() for stage in one}, key=_place)
+    lines = [(one.label, [found.get(name, 0) for name in names], sum(found.values())) for one, found in counts.items()]
+    return {"names": names, "lines": lines}
+
+
+_ORDER = ("draft", "plan", "checked", "grounding", "wrong object", "actions", "gate", "execution", "replan", "budget")
+
+
+def _place(stage: str) -> tuple[int, str]:
+    """Stages in the order in which a trial passes them; others after."""
+    return (_ORDER.index(stage) if stage in _ORDER else len(_ORDER), stage)
+
+
+def _pair(one: Pair, summary: Summary, page: Path) -> dict[str, Any]:
+    pages = {
+        (row.spec.condition, row.spec.task, row.spec.seed, row.spec.repeat): link(row.result.page, page)
+        for row in summary.rows
+        if row.result is not None and row.result.page
+    }
+    listed = [
+        {
+            "scene": f"{task}#{seed}" + (f" repeat {repeat}" if repeat else ""),
+            "won": (one.first if won == "first" else one.second).label,
+            "pages": [
+                (side.label, pages[side, task, seed, repeat])
+                for side in (one.first, one.second)
+                if (side, task, seed, repeat) in pages
+            ],
+        }
+        for (task, seed, repeat), won in one.discordant
+    ]
+    return {"pair": one, "words": tables.pair_words(one), "discordant": listed}
+
+
+def _failures(one: Condition, summary: Summary, page: Path) -> dict[str, Any]:
+    stages = []
+    for stage, count in summary.stages(one).most_common():
+        examples = [
+            {"scene": row.spec.scene, "reason": row.result.reason, "page": link(row.result.page, page)}
+            for row in summary.rows
+            if row.spec.condition == one
+            and row.result is not None
+            and row.result.outcome == "failure"
+            and (row.result.stage or "unknown") == stage
+        ]
+        stages.append({"stage": stage, "count": count, "examples": examples[:EXAMPLES]})
+    errors = [
+        {"scene": row.spec.scene, "reason": row.result.reason, "page": link(row.result.page, page)}
+        for row in summary.rows
+        if row.spec.condition == one and row.result is not None and row.result.outcome == "error"
+    ]
+    return {"label": one.label, "stages": stages, "errors": errors[:EXAMPLES], "error_count": len(errors)}
+
+
+def _facts(summary: Summary) -> list[tuple[str, list[tuple[str, str]]]]:
+    """Means of what trials measured beside their outcome, such as the overlap of boxes on photos."""
+    found = []
+    for one in summary.compared:
+        cell = summary.cell(one)
+        names = dict.fromkeys(name for result in cell.results for name in result.facts)
+        if names:
+            found.append((one.label, [(name, tables.number(cell.fact(name), 3)) for name in names]))
+    return found
+
+
+def _gallery(summary: Summary, page: Path) -> list[dict[str, Any]]:
+    """Trials with a page: of every condition and outcome in turn, so that none crowds out the others."""
+    groups: dict[tuple[Condition, str], list[Row]] = {}
+    for row in summary.rows:
+        if row.result is not None and row.result.page:
+            groups.setdefault((row.spec.condition, row.result.outcome), []).append(row)
+    turns = [row for turn in zip_longest(*groups.values()) for row in turn if row is not None]
+    return [
+        {
+            "page": link(row.result.page, page),
+            "picture": _thumbnail(Path(row.result.page).parent),
+            "scene": row.spec.scene,
+            "label": row.spec.condition.label,
+            "outcome": row.result.outcome,
+            "stage": row.result.stage or "",
+        }
+        for row in turns[:GALLERY]
+        if row.result is not None
+    ]
+
+
+def _thumbnail(run: Path) -> str:
+    """A small picture of a run as a data address, so that the page stands alone: its plan, else its last view; "" without any."""
+    views = [run / "final.png", *sorted((run / "pictures").glob("view_*.png"), reverse=True)]
+    for path in views:
+        picture = cv2.imread(str(path)) if path.is_file() else None
+        if picture is not None:
+            height = max(1, round(picture.shape[0] * THUMBNAIL_PX / picture.shape[1]))
+            small = cv2.resize(picture, (THUMBNAIL_PX, height), interpolation=cv2.INTER_AREA)
+            done, coded = cv2.imencode(".jpg", small, [cv2.IMWRITE_JPEG_QUALITY, 82])
+            if done:
+                return "data:image/jpeg;base64," + base64.b64encode(coded.tobytes()).decode()
+    return ""
+
+
+def link(target: str, page: Path) -> str:
+    """A link from the page's folder; "" for nothing."""
+    if not target:
+        return ""
+    return Path(os.path.relpath(Path(target).absolute(), page.parent.absolute())).as_posix()

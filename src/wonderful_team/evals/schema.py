@@ -1,0 +1,47 @@
+"""The tables of a store, and how a store of an earlier release becomes one of this release."""
+
+from __future__ import annotations
+
+import sqlite3
+
+SCHEMA_VERSION = 2
+"""1: first release. 2: `how` of a condition, and what a trial in flight holds of the study's caps."""
+SPEC = ("task", "seed", "repeat", "method", "model", "isolate", "perturb", "replans", "how")
+RESULT = (
+    *("outcome", "stage", "reason", "calls", "tokens", "pictures", "usd", "seconds", "rounds"),
+    *("provenance", "by_role", "page", "instruction", "versions", "facts"),
+)
+JSON = ("provenance", "by_role", "versions", "facts")
+_HELD = ("held_calls", "held_tokens", "held_usd")
+_TABLES = f"""
+CREATE TABLE IF NOT EXISTS meta(name TEXT PRIMARY KEY, value TEXT NOT NULL);
+CREATE TABLE IF NOT EXISTS trials(
+    id INTEGER PRIMARY KEY, key TEXT NOT NULL UNIQUE,
+    task TEXT NOT NULL, seed INTEGER NOT NULL, repeat INTEGER NOT NULL, method TEXT NOT NULL, model TEXT NOT NULL,
+    isolate TEXT NOT NULL, perturb TEXT NOT NULL, replans INTEGER NOT NULL,
+    state TEXT NOT NULL DEFAULT 'pending' CHECK(state IN ('pending', 'claimed', 'done')),
+    owner TEXT NOT NULL DEFAULT '', lease_until_s REAL NOT NULL DEFAULT 0, crashes INTEGER NOT NULL DEFAULT 0,
+    ended TEXT, {", ".join(RESULT)},
+    how TEXT NOT NULL DEFAULT '', {", ".join(f"{name} REAL NOT NULL DEFAULT 0" for name in _HELD)});
+CREATE INDEX IF NOT EXISTS trials_by_state ON trials(state, id);
+CREATE TABLE IF NOT EXISTS studies(name TEXT PRIMARY KEY, request TEXT NOT NULL, started TEXT NOT NULL);
+CREATE TABLE IF NOT EXISTS wanted(study TEXT NOT NULL, trial INTEGER NOT NULL, PRIMARY KEY(study, trial)) WITHOUT ROWID;
+CREATE TABLE IF NOT EXISTS discarded(
+    trial INTEGER NOT NULL, why TEXT NOT NULL, calls INTEGER, tokens INTEGER, usd REAL, reason TEXT, at TEXT NOT NULL);
+"""
+
+
+def make_tables(base: sqlite3.Connection) -> str:
+    """Make what is missing, within the caller's transaction; returns the schema version that the store then has."""
+    for statement in _TABLES.split(";"):
+        if statement.strip():
+            base.execute(statement)
+    base.execute("INSERT OR IGNORE INTO meta VALUES('schema_version', ?)", (str(SCHEMA_VERSION),))
+    version = str(base.execute("SELECT value FROM meta WHERE name='schema_version'").fetchone()[0])
+    if version != "1":
+        return version
+    base.execute("ALTER TABLE trials ADD COLUMN how TEXT NOT NULL DEFAULT ''")
+    for name in _HELD:
+        base.execute(f"ALTER TABLE trials ADD COLUMN {name} REAL NOT NULL DEFAULT 0")
+    base.execute("UPDATE meta SET value=? WHERE name='schema_version'", (str(SCHEMA_VERSION),))
+    return str(SCHEMA_VERSION)

@@ -1,7 +1,7 @@
 """How often the whole chain solves a task when the model makes no errors: subgoals, targets, frames, motion and gate.
 
 Run: python benchmarks/perfect.py [--world tabletop|vimabench] [--first 500] [--seeds 6] [--task NAME ...] [--way lean|paper]
-     [--replans N] [--show shifted|flipped|noised|blank] [--isolate planning|grounding] [--jobs N] [--model NAME]
+     [--replans N] [--looks N] [--show shifted|flipped|noised|blank] [--isolate planning|grounding] [--jobs N] [--model NAME]
 
 Every scene is run twice: by the oracle, which looks after every action, and by the team with `simulated:perfect`, which answers
 from truth as it is seen through the pictures that it is shown. Whatever the oracle solves and the team does not is listed
@@ -36,7 +36,8 @@ class Job:
     way: str
     setting: str
     model: str
-    replans: int | None
+    replans: int
+    looks: int | None
     show: str
     isolate: str
 
@@ -83,9 +84,11 @@ def by_team(job: Job) -> tuple[bool, str, str]:
         model = _model(job, world)
         # A scene of pushes is looked at after every push, as long as it lasts.
         sweeping = "push" in world.vocabulary.kinds
-        replans = job.replans if job.replans is not None else world.horizon if sweeping else 0
+        looks = job.looks if job.looks is not None else world.horizon if sweeping else 0
         team = Team(model, TeamConfig(way=job.way, setting=job.setting))  # type: ignore[arg-type]
-        trial = rollout(team, world, replans=replans, scorer=world.privileged, seed=job.seed, max_age_s=None)
+        trial = rollout(
+            team, world, replans=job.replans, looks=looks, scorer=world.privileged, seed=job.seed, max_age_s=None
+        )
         return trial.outcome == "success", trial.stage or "", trial.reason
     finally:
         world.close()
@@ -135,9 +138,8 @@ def main() -> None:
     parser.add_argument("--way", choices=("lean", "paper"), default="lean")
     parser.add_argument("--setting", choices=tuple(SETTINGS), default="full", help="members switched off")
     parser.add_argument("--model", default="simulated:perfect")
-    parser.add_argument(
-        "--replans", type=int, help="default 0; for pushes the task's horizon, one look after every push"
-    )
+    parser.add_argument("--replans", type=int, default=0)
+    parser.add_argument("--looks", type=int, help="default 0; for pushes the task's horizon, one after every push")
     parser.add_argument(
         "--show", choices=tuple(CHANGES), default="", help="change every picture on its way to the model"
     )
@@ -147,8 +149,8 @@ def main() -> None:
     names = options.task or VIMA_TASKS
     jobs = [
         Job(
-            f"{options.world}/{name}", seed, options.way, options.setting, options.model, options.replans, options.show,
-            options.isolate,
+            f"{options.world}/{name}", seed, options.way, options.setting, options.model, options.replans, options.looks,
+            options.show, options.isolate,
         )
         for name in names
         for seed in range(options.first, options.first + options.seeds)

@@ -19,6 +19,7 @@ TOP = {
     "made",
     "methods",
     "observe",
+    "own_world",
     "photos",
     "probing",
     "registry",

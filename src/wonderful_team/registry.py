@@ -8,15 +8,15 @@ from __future__ import annotations
 
 import importlib
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal, cast
 
-from wonderful_team.actions import Action, Vocabulary
 from wonderful_team.errors import ConfigError, UnknownNameError
 from wonderful_team.interfaces import Model, Policy, Privileged, World
 from wonderful_team.loading import build, is_file_name, load_from_file
+from wonderful_team.own_world import OwnWorld
 from wonderful_team.simulated_models import SIMULATED, simulated_model
-from wonderful_team.types import Instruction, KeepOut, Limits, Observation, StepReport
+from wonderful_team.types import Instruction, KeepOut
 
 if TYPE_CHECKING:
     from wonderful_team.models.door import Door
@@ -190,50 +190,6 @@ def load_method(name: str, door: Door) -> Policy:
 
 
 # -- worlds --------------------------------------------------------------------------------------------------------
-
-
-@dataclass(frozen=True, eq=False)
-class OwnWorld:
-    """A user's world made whole: an instruction from outside, and what it left out (`stop`, `close`) as no-ops.
-
-    Replacing the instruction also drops the scorer: it judges the instruction that the world came with.
-    """
-
-    inner: Any
-    instruction: Instruction
-    keep_out: tuple[KeepOut, ...] = ()
-
-    @property
-    def vocabulary(self) -> Vocabulary:
-        return cast(Vocabulary, self.inner.vocabulary)
-
-    @property
-    def limits(self) -> Limits:
-        limits = cast(Limits, self.inner.limits)
-        return replace(limits, keep_out=(*limits.keep_out, *self.keep_out))
-
-    @property
-    def horizon(self) -> int | None:
-        return getattr(self.inner, "horizon", None)
-
-    @property
-    def privileged(self) -> Any:
-        own = getattr(self.inner, "instruction", None)
-        return getattr(self.inner, "privileged", None) if self.instruction is own else None
-
-    def observe(self) -> Observation:
-        return cast(Observation, self.inner.observe())
-
-    def execute(self, action: Action) -> StepReport:
-        return cast(StepReport, self.inner.execute(action))
-
-    def stop(self) -> None:
-        if hasattr(self.inner, "stop"):
-            self.inner.stop()
-
-    def close(self) -> None:
-        if hasattr(self.inner, "close"):
-            self.inner.close()
 
 
 def task_names() -> dict[str, str]:

@@ -45,7 +45,7 @@ class Study:
             with "*" for the rest.
         seeds: For every task; None for the suite's own, from 1000 on.
         store: File that keeps what ended; the same study on the same file resumes.
-        repeats, replans, shard: As `bench` has them.
+        repeats, replans, looks, shard: As `bench` has them.
         isolate: whole, planning, grounding: one or several. perturb: KIND=LEVEL: one or several; "" is the scene as it is.
         thinking, price, allow_unpriced, local_only, cache, cache_file, prompts: As `Method` takes them.
         controls: Those that run beside the methods; () refuses them all.
@@ -64,6 +64,7 @@ class Study:
     store: str | Path = "study.db"
     repeats: int = 1
     replans: int | None = None
+    looks: int = 0
     isolate: str | Sequence[str] = ""
     perturb: str | Sequence[str] = ""
     shard: tuple[int, int] = (1, 1)
@@ -116,6 +117,7 @@ class Study:
             self.replans,
             self.shard,
             self._how(),
+            self.looks,
             {"command": self.command, **_photo_counts(suites)},
         )
         self.store = sharded(Path(self.store), self.shard)
@@ -137,6 +139,7 @@ class Study:
             options["store"],
             repeats=options["repeats"],
             replans=options["replans"],
+            looks=options["looks"],
             isolate=options["isolate"],
             perturb=options["perturb"],
             shard=(1, 1) if options["shard"] is None else read_shard(options["shard"]),

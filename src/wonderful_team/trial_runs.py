@@ -165,13 +165,27 @@ def _run(spec: TrialSpec, settings: RunSettings, world: World, count: Counting) 
     if settings.pages == "none":
         policy: Policy = method.policy(count)
         trial = roll_out(
-            policy, world, scorer=truth, seed=spec.seed, scene=spec.scene, replans=condition.replans, max_age_s=None
+            policy,
+            world,
+            scorer=truth,
+            seed=spec.seed,
+            scene=spec.scene,
+            replans=condition.replans,
+            looks=condition.looks,
+            max_age_s=None,
         )
         return trial, ""
     # A folder of its own: trials that run at the same time must not share the pointer to the newest run.
     out = (settings.out or Path("runs")) / "trials" / hashlib.sha256(spec.key.encode()).hexdigest()[:12]
     recorded = rollout(
-        method, world, replans=condition.replans, seed=spec.seed, scene=spec.scene, out=out, subscribers=(count,)
+        method,
+        world,
+        replans=condition.replans,
+        looks=condition.looks,
+        seed=spec.seed,
+        scene=spec.scene,
+        out=out,
+        subscribers=(count,),
     )
     if settings.pages == "failures" and recorded.outcome == "success":
         shutil.rmtree(out, ignore_errors=True)
@@ -259,7 +273,7 @@ def reproduce(spec: TrialSpec, asked: Mapping[str, Any] | None = None) -> str:
     else:
         words = ["run", spec.task, "--seed", str(spec.seed)]
         models = [*(word for name in by_role for word in ("--model", name)), *thinking]
-    replans = ["--replans", str(condition.replans)]
+    replans = ["--replans", str(condition.replans), *(["--looks", str(condition.looks)] if condition.looks else [])]
     return shlex.join(["wonderful-team", *words, *replans, "--method", condition.method, *models])
 
 

@@ -161,7 +161,7 @@ def test_a_store_of_the_first_release_opens_and_goes_on(tmp_path: Path) -> None:
     path = tmp_path / "s.db"
     run_study(toy_plan(2), path, runners.quick, jobs=1)
     base = sqlite3.connect(path)
-    for column in ("how", "held_calls", "held_tokens", "held_usd"):
+    for column in ("how", "looks", "held_calls", "held_tokens", "held_usd"):
         base.execute(f"ALTER TABLE trials DROP COLUMN {column}")
     base.execute("UPDATE meta SET value='1'")
     base.commit()

@@ -55,6 +55,13 @@ QUIET_S = 10.0
 @click.option("--repeats", type=click.IntRange(1), default=1, show_default=True, help="How often each scene is run.")
 @click.option("--replans", type=click.IntRange(0), help="Plans after the first; default the suite's protocol.")
 @click.option(
+    "--looks",
+    type=click.IntRange(0),
+    default=0,
+    show_default=True,
+    help="New pictures after a push, the rest planned anew.",
+)
+@click.option(
     "--isolate",
     multiple=True,
     metavar="whole|planning|grounding",

@@ -5,8 +5,8 @@ from __future__ import annotations
 import sqlite3
 
 SCHEMA_VERSION = 2
-"""1: first release. 2: `how` of a condition, and what a trial in flight holds of the study's caps."""
-SPEC = ("task", "seed", "repeat", "method", "model", "isolate", "perturb", "replans", "how")
+"""1: first release. 2: `how` and `looks` of a condition, and what a trial in flight holds of the study's caps."""
+SPEC = ("task", "seed", "repeat", "method", "model", "isolate", "perturb", "replans", "how", "looks")
 RESULT = (
     *("outcome", "stage", "reason", "calls", "tokens", "pictures", "usd", "seconds", "rounds"),
     *("provenance", "by_role", "page", "instruction", "versions", "facts"),
@@ -22,7 +22,7 @@ CREATE TABLE IF NOT EXISTS trials(
     state TEXT NOT NULL DEFAULT 'pending' CHECK(state IN ('pending', 'claimed', 'done')),
     owner TEXT NOT NULL DEFAULT '', lease_until_s REAL NOT NULL DEFAULT 0, crashes INTEGER NOT NULL DEFAULT 0,
     ended TEXT, {", ".join(RESULT)},
-    how TEXT NOT NULL DEFAULT '', {", ".join(f"{name} REAL NOT NULL DEFAULT 0" for name in _HELD)});
+    how TEXT NOT NULL DEFAULT '', looks INTEGER NOT NULL DEFAULT 0, {", ".join(f"{name} REAL NOT NULL DEFAULT 0" for name in _HELD)});
 CREATE INDEX IF NOT EXISTS trials_by_state ON trials(state, id);
 CREATE TABLE IF NOT EXISTS studies(name TEXT PRIMARY KEY, request TEXT NOT NULL, started TEXT NOT NULL);
 CREATE TABLE IF NOT EXISTS wanted(study TEXT NOT NULL, trial INTEGER NOT NULL, PRIMARY KEY(study, trial)) WITHOUT ROWID;
@@ -41,6 +41,7 @@ def make_tables(base: sqlite3.Connection) -> str:
     if version != "1":
         return version
     base.execute("ALTER TABLE trials ADD COLUMN how TEXT NOT NULL DEFAULT ''")
+    base.execute("ALTER TABLE trials ADD COLUMN looks INTEGER NOT NULL DEFAULT 0")
     for name in _HELD:
         base.execute(f"ALTER TABLE trials ADD COLUMN {name} REAL NOT NULL DEFAULT 0")
     base.execute("UPDATE meta SET value=? WHERE name='schema_version'", (str(SCHEMA_VERSION),))

@@ -26,6 +26,7 @@ class Condition:
         perturb: "" or KIND=LEVEL: a harder tier, scored separately.
         replans: How often it may plan again after its first attempt.
         how: What else was asked for of models, words and caps, such as "thinking high"; "" for nothing.
+        looks: How often it may run only the first push of a plan, look, and plan the rest anew.
     """
 
     method: str
@@ -34,6 +35,7 @@ class Condition:
     perturb: str = ""
     replans: int = 0
     how: str = ""
+    looks: int = 0
 
     @property
     def values(self) -> tuple[Any, ...]:
@@ -47,6 +49,7 @@ class Condition:
         words += [f"{self.isolate} alone"] if self.isolate else []
         words += [self.perturb] if self.perturb else []
         words += [f"{self.replans} replans"] if self.replans else []
+        words += [f"{self.looks} looks"] if self.looks else []
         words += [self.how] if self.how else []
         return " · ".join(words)
 
@@ -66,9 +69,10 @@ class TrialSpec:
 
     @property
     def key(self) -> str:
-        """Identity in the store; stores made before `how` existed keep theirs."""
-        *values, how = self.condition.values
-        return json.dumps([self.task, self.seed, self.repeat, *values, *([how] if how else [])])
+        """Identity in the store; stores made before `how` and `looks` existed keep theirs."""
+        *values, how, looks = self.condition.values
+        later = [how, looks] if looks else [how] if how else []
+        return json.dumps([self.task, self.seed, self.repeat, *values, *later])
 
     @property
     def scene(self) -> str:

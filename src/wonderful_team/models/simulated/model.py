@@ -28,6 +28,7 @@ from wonderful_team.contracts import (
 )
 from wonderful_team.errors import UnsupportedQuestion
 from wonderful_team.interfaces import SceneTruth
+from wonderful_team.models.budget import Estimate
 from wonderful_team.models.simulated import crops, drafting, grounding, outcome
 from wonderful_team.models.simulated.context import Context
 from wonderful_team.models.simulated.luck import Luck
@@ -74,6 +75,10 @@ class SimulatedModel:
         self.name = f"simulated:{profile.name}"
         self.profile = profile
         self._context = Context(truth, instruction, self.name, profile)
+
+    def estimate(self, request: Request) -> Estimate:
+        """What a request may cost: nothing, answered or not."""
+        return Estimate(0, 0, 0.0, 0.0)
 
     async def answer(self, request: Request) -> Answer:
         """Answer one request.

@@ -9,6 +9,7 @@ import numpy as np
 
 from wonderful_team.geometry.arrays import Array
 from wonderful_team.models.offline.description import PATTERNS
+from wonderful_team.models.offline.vision.fitting import least_squares
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,7 +90,7 @@ def _contrast(pixels: Array, inner: Array) -> float:
     x = (columns - columns.mean()) / max(float(np.ptp(columns)), 1.0)
     terms = np.stack([np.ones_like(x), x, y, x * x, x * y, y * y], axis=1)
     stride = max(1, len(x) // 1500)
-    fit, *_ = np.linalg.lstsq(terms[::stride], pixels[::stride], rcond=None)
+    fit = least_squares(terms[::stride], pixels[::stride])
     left = pixels[::stride] - terms[::stride] @ fit
     return float(np.sqrt(np.einsum("ij,ij->", left, left) / len(left)))
 

@@ -97,8 +97,8 @@ def close_ring(mask: Array) -> Array:
 
 def _beyond_table(mask: Array, valid: Array) -> bool:
     """Whether a patch is the room round the table: large and reaching two or more sides of the view."""
-    rows, columns = np.nonzero(valid)
-    y0, y1, x0, x1 = rows.min(), rows.max(), columns.min(), columns.max()
+    rows, columns = np.flatnonzero(valid.any(axis=1)), np.flatnonzero(valid.any(axis=0))
+    y0, y1, x0, x1 = rows[0], rows[-1], columns[0], columns[-1]
     sides = [
         mask[y0 : y0 + 2].any(),
         mask[y1 - 1 : y1 + 1].any(),

@@ -8,6 +8,7 @@ import cv2
 import numpy as np
 
 from wonderful_team.geometry.arrays import Array
+from wonderful_team.models.offline.vision.fitting import least_squares
 from wonderful_team.models.offline.vision.room import room_distance
 
 _FLOOR = np.array([1.7, 1.3, 1.3])
@@ -124,7 +125,7 @@ def _fit_surface(lab: Array, valid: Array, height_m: Array | None) -> tuple[Arra
         columns = 3 if order == 1 else 6
         if chosen.sum() < 4 * columns:
             columns = 1
-        fitted, *_ = np.linalg.lstsq(terms[chosen][:, :columns], sub[chosen], rcond=None)
+        fitted = least_squares(terms[chosen][:, :columns], sub[chosen])
         coefficients[:] = 0.0
         coefficients[:columns] = fitted
         residual = np.abs(sub - terms @ coefficients)
@@ -177,24 +178,28 @@ def height_above_table(depth_m: Array, valid: Array) -> Array | None:
     yy, xx = yy[::stride], xx[::stride]
     z = depth_m[yy, xx].astype(np.float64)
     terms = np.stack([np.ones(len(xx)), xx / W, yy / H], axis=1)
-    Y, X = np.mgrid[0:H, 0:W]
-    best: tuple[float, Array] | None = None
+    best: tuple[float, Array, bool] | None = None
     for inverse in (False, True):
         plane = _robust_plane(terms, 1 / z if inverse else z, 1 / np.median(z) ** 2 if inverse else 1.0)
-        full = plane[0] + plane[1] * X / W + plane[2] * Y / H
-        surface = 1 / np.maximum(full, 1e-9) if inverse else full
-        error = float(np.median(np.abs((surface - depth_m)[known])))
+        error = float(np.median(np.abs(_depth(terms @ plane, inverse=inverse) - z)))
         if best is None or error < best[0] - 1e-6:
-            best = (error, surface)
+            best = (error, plane, inverse)
     assert best is not None
-    return np.where(known, best[1] - depth_m, np.nan).astype(np.float32)
+    _, plane, inverse = best
+    full = (plane[0] + plane[1] * np.arange(W) / W)[None, :] + (plane[2] * np.arange(H) / H)[:, None]
+    return np.where(known, _depth(full, inverse=inverse) - depth_m, np.nan).astype(np.float32)
+
+
+def _depth(values: Array, *, inverse: bool) -> Array:
+    """Depth from a plane's values, which are its inverse for pinhole cameras."""
+    return np.asarray(1 / np.maximum(values, 1e-9)) if inverse else values
 
 
 def _robust_plane(terms: Array, values: Array, unit: float) -> Array:
     """Coefficients of the plane that most values lie on; things above it are nearer, so smaller depths are outliers."""
     rng = np.random.default_rng(0)
     tolerance = 0.003 * unit
-    best, most = np.linalg.lstsq(terms, values, rcond=None)[0], -1
+    best, most = least_squares(terms, values), -1
     for _ in range(40):
         pick = rng.choice(len(values), 3, replace=False)
         matrix = terms[pick]
@@ -207,5 +212,5 @@ def _robust_plane(terms: Array, values: Array, unit: float) -> Array:
     for _ in range(3):
         near = np.abs(terms @ best - values) < tolerance
         if near.sum() >= 10:
-            best = np.linalg.lstsq(terms[near], values[near], rcond=None)[0]
+            best = least_squares(terms[near], values[near])
     return np.asarray(best)

@@ -208,3 +208,16 @@ def test_a_moved_camera_sees_points_where_the_picture_shows_them() -> None:
             points = camera.deproject([(30.0, 20.0), (55.0, 41.0)], [1.0, 0.8])
         before = camera.project(points)
         assert np.allclose(moved(camera, A).project(points), before @ A[:, :2].T + A[:, 2])
+
+
+def test_looks_are_part_of_what_a_trial_is_and_leave_earlier_trials_alone() -> None:
+    suites = resolve(["rotate"], KNOWN, all_suites(KNOWN), _is_own)
+    plain, looking = (StudyPlan(suites, ("team",), ("m",), controls=("oracle",), looks=looks) for looks in (0, 8))
+    team, oracle = looking.conditions(suites[0])
+    assert (team.looks, oracle.looks) == (8, 0)
+    assert team.label == "team · m · 8 looks"
+    specs = [TrialSpec("tabletop/rotate", 1000, plan.conditions(suites[0])[0]) for plan in (plain, looking)]
+    assert specs[0].key == '["tabletop/rotate", 1000, 0, "team", "m", "", "", 0]'
+    assert specs[0].key != specs[1].key
+    with pytest.raises(ConfigError, match="looks must be 0 or more, got -1"):
+        StudyPlan(suites, looks=-1)

@@ -8,8 +8,9 @@ from dataclasses import replace
 import cv2
 import numpy as np
 
+from wonderful_team.geometry.arrays import Array
 from wonderful_team.models.offline.vision.examples import alike_colour, alike_pattern
-from wonderful_team.models.offline.vision.outlines import Outline, filled, same_form, study_outline
+from wonderful_team.models.offline.vision.outlines import filled, largest_contour, same_form, study_outline
 from wonderful_team.models.offline.vision.things import Match, Scene, Thing, covers
 
 DIRECTIONS = {"left_of": (-1.0, 0.0), "right_of": (1.0, 0.0), "above": (0.0, -1.0), "below": (0.0, 1.0)}
@@ -40,17 +41,38 @@ def relation_score(relation: str, thing: Thing, others: Sequence[Thing], scene: 
             # A texture is a surface as a whole: its colours and how they are spread.
             return alike_colour(thing.look, other.look) * (0.4 + 0.6 * alike_pattern(thing.look, other.look))
         case "same_shape":
-            return same_form(_body(thing), _body(other))
+            one, two = _body(thing), _body(other)
+            alike = same_form(study_outline(one), study_outline(two))
+            # A rectangle that is nearly a square has a square's corners all the same.
+            return max(alike, 0.8 * same_form(study_outline(_evened(one)), study_outline(_evened(two))))
         case _:
             raise ValueError(f"unknown relation {relation!r}")
 
 
-def _body(thing: Thing) -> Outline:
-    """The outer edge of a thing without thin parts that stick out, such as a handle."""
+def _body(thing: Thing) -> Array:
+    """The filled mask of a thing without thin parts that stick out, such as a handle, padded."""
     size = max(3, int(0.55 * thing.radius_px / thing.zoom) | 1)
     whole = np.pad(filled(thing.mask), size).astype(np.uint8)
     opened = cv2.morphologyEx(whole, cv2.MORPH_OPEN, cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (size, size)))
-    return study_outline(opened > 0 if opened.any() else whole > 0)
+    return np.asarray(opened > 0 if opened.any() else whole > 0)
+
+
+_EVENED_SIDE = 64
+"""Side of the square that a body is stretched to [px]."""
+
+_NEARLY_EVEN = 1.5
+"""Long over short side up to which a body is stretched."""
+
+
+def _evened(body: Array) -> Array:
+    """A body whose tightest rectangle is stretched to a square; a clearly long one as it is."""
+    rectangle = cv2.minAreaRect(largest_contour(body))
+    if max(rectangle[1]) + 1 > _NEARLY_EVEN * (min(rectangle[1]) + 1):
+        return body
+    side, rim = _EVENED_SIDE, 8
+    corners = np.array([[rim, rim + side], [rim, rim], [rim + side, rim]], np.float32)
+    warp = cv2.getAffineTransform(cv2.boxPoints(rectangle)[:3].astype(np.float32), corners)
+    return np.asarray(cv2.warpAffine(body.astype(np.uint8), warp, (side + 2 * rim, side + 2 * rim)) > 0)
 
 
 def direction_score(relation: str, point: tuple[float, float], origin: tuple[float, float]) -> float:

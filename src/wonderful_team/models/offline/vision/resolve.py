@@ -19,8 +19,11 @@ from wonderful_team.pictures import Point
 FITS = 0.4
 """Score from which a thing is taken to fit a description."""
 
-_SAME = 0.45
-"""Likeness from which two things have the same colour, texture or shape."""
+_SAME_SURFACE = 0.45
+"""Likeness from which two things have the same colour or texture."""
+
+_NEARLY_AS_ALIKE = 0.83
+"""Share of the best likeness of shapes from which another thing has that shape too."""
 
 NEAR_BEST = 0.75
 """Share of the best score from which things like an example are compared with each other."""
@@ -233,17 +236,21 @@ def _related(
         if not found:
             return []
         anchors.append(found)
-    out = []
+    rated: list[tuple[float, Match]] = []
     for match in matches:
         assert match.thing is not None
         others = [next((a for a in found if a.thing is not match.thing), None) for found in anchors]
         things = [other.thing for other in others if other is not None and other.thing is not None]
-        if len(things) < len(anchors):
-            continue
-        fit = relation_score(relation, match.thing, things, scene)
-        if fit > (_SAME if relation.startswith("same_") else 0.3):
-            out.append(replace(match, score=match.score * fit, why=f"{match.why}, {relation} {fit:.2f}"))
-    return out
+        if len(things) == len(anchors):
+            rated.append((relation_score(relation, match.thing, things, scene), match))
+    least = _SAME_SURFACE if relation in ("same_colour", "same_pattern") else 0.3
+    if relation == "same_shape":
+        least = max(least, _NEARLY_AS_ALIKE * max((fit for fit, _ in rated), default=0.0))
+    return [
+        replace(match, score=match.score * fit, why=f"{match.why}, {relation} {fit:.2f}")
+        for fit, match in rated
+        if fit > least
+    ]
 
 
 def _spots(scene: Scene, description: Description, examples: Mapping[str, Example]) -> list[Match]:

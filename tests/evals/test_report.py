@@ -106,8 +106,10 @@ def test_the_table_of_trials_has_a_line_for_each_with_its_condition(store: Path)
     with made.csv.open(encoding="utf-8") as file:
         lines = list(csv.DictReader(file))
     assert len(lines) == 60
-    columns = "task seed repeat method model isolate perturb replans how outcome stage reason calls tokens pictures usd"
-    assert list(lines[0])[:16] == columns.split()
+    columns = (
+        "task seed repeat method model isolate perturb replans how looks outcome stage reason calls tokens pictures usd"
+    )
+    assert list(lines[0])[:17] == columns.split()
 
 
 def test_shards_merge_to_the_whole(store: Path, tmp_path: Path) -> None:

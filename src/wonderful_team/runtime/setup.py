@@ -12,6 +12,10 @@ from wonderful_team.runtime.values_file import decode, encode
 from wonderful_team.types import NO_WORKSPACE, KeepOut, Limits, Target
 
 
+LATER: Mapping[str, Any] = {"looks": 0}
+"""Fields that records of earlier releases lack, and what those runs did."""
+
+
 @dataclass(frozen=True, eq=False)
 class Setup:
     """The arguments of one run beside its model, method and pictures.
@@ -61,7 +65,7 @@ def read_setup(record: Mapping[str, Any], where: str) -> Setup:
     if told is None:
         raise ConfigError(f"{where}: this record does not say how it was called, so it cannot be run again")
     try:
-        setup = decode(told, Setup)
+        setup = decode({**LATER, **told}, Setup)
     except (ValueError, ConfigError) as error:
         raise ConfigError(f"{where}: the set-up in the record cannot be read: {error}") from error
     assert isinstance(setup, Setup)

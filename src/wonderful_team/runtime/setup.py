@@ -11,7 +11,6 @@ from wonderful_team.errors import ConfigError
 from wonderful_team.runtime.values_file import decode, encode
 from wonderful_team.types import NO_WORKSPACE, KeepOut, Limits, Target
 
-
 LATER: Mapping[str, Any] = {"looks": 0}
 """Fields that records of earlier releases lack, and what those runs did."""
 

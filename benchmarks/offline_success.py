@@ -12,8 +12,10 @@ from __future__ import annotations
 
 import argparse
 import json
+import sys
 import time
 from collections import Counter
+from collections.abc import Iterable
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import asdict, dataclass
 from multiprocessing import get_context
@@ -30,6 +32,10 @@ PICTURES = (
 )  # fmt: skip
 VIMA17 = (*VIMA, *PICTURES)
 FRUIT = tuple(f"fruit_placement/{name}" for name in ("all_match", "no_area", "misplaced", "both"))
+
+
+PROGRESS_EVERY = 10
+"""Trials between two lines of progress."""
 
 
 @dataclass(frozen=True)
@@ -100,11 +106,22 @@ def world_of(job: Job) -> Any:
 
 
 def run_all(jobs: list[Job], workers: int) -> list[Result]:
-    """Run trials on several processes; results in the order of the jobs."""
+    """Run trials on several processes; results in the order of the jobs, with progress on stderr."""
     if workers == 1:
-        return [run(job) for job in jobs]
+        return _told(map(run, jobs), len(jobs))
     with ProcessPoolExecutor(workers, mp_context=get_context("spawn")) as pool:
-        return list(pool.map(run, jobs, chunksize=4))
+        return _told(pool.map(run, jobs, chunksize=4), len(jobs))
+
+
+def _told(results: Iterable[Result], count: int) -> list[Result]:
+    ended: list[Result] = []
+    for result in results:
+        ended.append(result)
+        last = len(ended) == count
+        if last or len(ended) % PROGRESS_EVERY == 0:
+            solved = sum(one.outcome == "success" for one in ended)
+            print(f"{len(ended)}/{count} trials, {solved} solved, now {result.job.task}", file=sys.stderr, flush=True)
+    return ended
 
 
 def report(results: list[Result]) -> None:

@@ -11,6 +11,8 @@ from wonderful_team.pictures import Point
 GAP_SHARE = 0.15
 """Free space left between two things put side by side (share of the standing one's smaller side)."""
 LEAST_GAP_PX = 2.0
+SHORTEST_PX = 0.25
+"""A shorter push has no direction; a small view's pixel may be 4 mm wide, and a thing be that much short of its place."""
 
 _TOWARDS: dict[Side, Point] = {"left": (-1, 0), "right": (1, 0), "above": (0, -1), "below": (0, 1)}
 
@@ -70,7 +72,7 @@ def behind_px(box: Box, end: Point) -> tuple[Point, Point]:
     """
     dx, dy = end[0] - box.centre[0], end[1] - box.centre[1]
     length = math.hypot(dx, dy)
-    if length < 1.0:
+    if length < SHORTEST_PX:
         raise ValueError("the push would end where it begins")
     dx, dy = dx / length, dy / length
     reach = (abs(dx) * box.width + abs(dy) * box.height) / 2

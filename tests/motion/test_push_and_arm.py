@@ -34,7 +34,7 @@ from wonderful_team.actions import (
 )
 from wonderful_team.errors import PlanError
 from wonderful_team.motion import ground_actions
-from wonderful_team.types import GroundedTarget, PlannedAction
+from wonderful_team.types import NO_WORKSPACE, GroundedTarget, Limits, PlannedAction
 
 CAMERA = affine_top()
 RED = Block(0.46, -0.1, 0.52, 0.0, 0.06)
@@ -111,6 +111,21 @@ def test_a_push_that_goes_nowhere_or_starts_outside_is_refused() -> None:
     edge = Block(0.46, -0.53, 0.52, -0.51)
     with pytest.raises(PlanError, match="its start at .* would lie outside the view of 256 x 128 px"):
         run(PushStep("G1", At("T3"), At("T2")), targets=TARGETS | {"T3": found(CAMERA, "T3", edge)})
+
+
+def test_a_tool_may_come_down_outside_the_picture_where_the_workspace_reaches() -> None:
+    border = Block(0.46, -0.53, 0.52, -0.49)
+    found_there = found(CAMERA, "T3", border)
+    assert found_there.box is not None
+    targets = TARGETS | {"T3": found_there, "T2": area("T2", (200, found_there.box.centre[1]))}
+    wide = Limits((0.25, -0.56, 0.0), (0.75, 0.56, 0.3))
+    (planned,) = ground_actions([PushStep("G1", At("T3"), At("T2"))], targets, VIEW, wide)
+    assert isinstance(planned.action, Push)
+    assert planned.sources[0].point_px[0] < 0
+    assert -0.56 <= planned.action.start_m[1] < -0.5
+    for tight in (LIMITS, NO_WORKSPACE):
+        with pytest.raises(PlanError, match="its start at .* would lie outside the view"):
+            ground_actions([PushStep("G1", At("T3"), At("T2"))], targets, VIEW, tight)
 
 
 def heights(planned: tuple[PlannedAction, ...]) -> list[float]:

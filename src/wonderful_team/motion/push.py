@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 from wonderful_team.actions import At, Place, Push, PushStep
 from wonderful_team.motion.beside import behind_px
+from wonderful_team.motion.lift import Spot
 from wonderful_team.motion.places import Places
 from wonderful_team.motion.progress import Moved, Progress
 from wonderful_team.motion.sources import source
 from wonderful_team.pictures import Point
-from wonderful_team.types import PlannedAction, PointRole
+from wonderful_team.types import NO_WORKSPACE, PlannedAction, PointRole
 
 _TO_END: tuple[PointRole, ...] = ("push_end", "place", "pick", "grasp")
 
@@ -21,6 +24,7 @@ def ground_push(step: PushStep, places: Places, progress: Progress) -> tuple[Pla
     """
     thing = step.start.target
     start_px = _given_start(step, places, progress)
+    computed = start_px is None
     end_px, end_is_tool = _end(step, places, progress)
     box = places.box_now(thing, progress) if start_px is None or not end_is_tool else None
     start_how, end_how = f"{thing} push_start point", f"{step.end.target} push_end point"
@@ -35,10 +39,12 @@ def ground_push(step: PushStep, places: Places, progress: Progress) -> tuple[Pla
         if not end_is_tool:
             end_px, end_how = short, f"half of {thing}'s box short of {_named(step.end)}"
     assert start_px is not None
-    _check_inside(places, thing, start_px, end_px)
     z_m = places.support_z_m(thing)
     start = places.lift.at_height(start_px, z_m, f"{start_how}, at the height z = {z_m:.3f} m that it stands on")
     end = places.lift.at_height(end_px, z_m, f"{end_how}, at the same height")
+    _check_inside(
+        places, thing, {"end": end} if computed and _reachable(start, places) else {"start": start, "end": end}
+    )
     action = None
     if start.position_m is not None and end.position_m is not None:
         action = Push(start.position_m, end.position_m)
@@ -77,11 +83,22 @@ def _named(place: Place) -> str:
     return f"the place {place.target}"
 
 
-def _check_inside(places: Places, thing: str, start: Point, end: Point) -> None:
+def _reachable(start: Spot, places: Places) -> bool:
+    """Whether the robot's workspace is known and holds a point.
+
+    A tool that comes down behind a thing at the picture's edge may do so just outside of the picture, where the workspace reaches.
+    """
+    if start.position_m is None or places.limits is NO_WORKSPACE:
+        return False
+    low, high = places.limits.low_m, places.limits.high_m
+    return all(low[k] <= start.position_m[k] <= high[k] for k in (0, 1))
+
+
+def _check_inside(places: Places, thing: str, spots: Mapping[str, Spot]) -> None:
     width, height = places.lift.view.size_px
-    for name, px in (("start", start), ("end", end)):
-        if not places.lift.inside(px):
+    for name, spot in spots.items():
+        if not places.lift.inside(spot.px):
             raise places.fail(
-                f"push of {thing!r}: its {name} at ({px[0]:.0f}, {px[1]:.0f}) px would lie outside the view of "
+                f"push of {thing!r}: its {name} at ({spot.px[0]:.0f}, {spot.px[1]:.0f}) px would lie outside the view of "
                 f"{width} x {height} px"
             )

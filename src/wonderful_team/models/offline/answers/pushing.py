@@ -42,6 +42,8 @@ SHORTEST = 0.4
 HALF = 0.5
 STEP = 0.3
 GRID = 0.55
+OFF_DRAWN = 0.85
+"""How far from walls that are only drawn the middle of a thing rests on its way."""
 STOPS = (0.0, 1.2, 2.6, 4.2, 6.0, 8.0)
 """How much farther than BEFORE_MOUTH from the room a thing may rest on its way."""
 CLEAR_OF = 1.9
@@ -83,6 +85,7 @@ class Field:
         room: Where to.
         least: How far from the room's back a thing's middle must stay, because of a line inside.
         zoom: Picture pixels per working pixel.
+        open_round: The room can be entered from every side.
     """
 
     blocks: dict[int, Block]
@@ -92,6 +95,7 @@ class Field:
     room: Room
     least: float
     zoom: float
+    open_round: bool = False
 
     def point(self, at: Array) -> Point:
         """Picture pixels of a place."""
@@ -132,6 +136,7 @@ def study_field(
         return None
     named = {into.number, *(thing.number for thing in lines)}
     movable = [thing for thing in scene.things if thing.number not in named and not thing.flat]
+    blocks = {thing.number: _block(thing, masks[thing.number]) for thing in movable}
     around = _around(scene, [*masks.values()])
     fixed = around if room.walls is None or flat_walls else around | room.walls
     line = np.zeros(shape, bool)
@@ -141,8 +146,8 @@ def study_field(
         line |= mask
         if limit:
             least = max(least, _reach(room, mask))
-    blocks = {thing.number: _block(thing, masks[thing.number]) for thing in movable}
-    return Field(blocks, {number: masks[number] for number in blocks}, fixed, line, room, least, scene.zoom)
+    open_round = flat_walls or not room.mouth
+    return Field(blocks, {number: masks[number] for number in blocks}, fixed, line, room, least, scene.zoom, open_round)
 
 
 def _around(scene: Scene, masks: Sequence[Array]) -> Array:
@@ -245,20 +250,24 @@ def _spread(low: float, high: float, step: float) -> Array:
 
 
 def _stops(field: Field, block: Block) -> Array:
-    """Places on the free table before the room's open side (around a room that is open everywhere)."""
+    """Places on the free table before the room's open side (around a room that can be entered from every side)."""
     room, side = field.room, block.side
     x, y = _columns(room, side), _spread(BESIDE_WALL * side, room.depth - BESIDE_WALL * side, GRID * side)
     out = (BEFORE_MOUTH + np.array(STOPS)) * side
     local = [np.stack(np.meshgrid(x, room.depth + out), axis=-1).reshape(-1, 2)]
-    if not room.mouth:
+    if field.open_round:
         local.append(np.stack(np.meshgrid(x, -out), axis=-1).reshape(-1, 2))
         local.append(np.stack(np.meshgrid(-out, y), axis=-1).reshape(-1, 2))
         local.append(np.stack(np.meshgrid(room.width + out, y), axis=-1).reshape(-1, 2))
     points = room.at(np.concatenate(local))
     height, width = field.fixed.shape
     margin = 1.2 * side
-    inside_picture = (points > margin).all(axis=1) & (points < np.array([width, height]) - margin).all(axis=1)
-    return np.asarray(points[inside_picture])
+    points = points[(points > margin).all(axis=1) & (points < np.array([width, height]) - margin).all(axis=1)]
+    if room.mouth and field.open_round and room.walls is not None:
+        # A thing that rests on drawn walls is hard to tell from them at the next look.
+        at = points.astype(int)
+        points = points[_distance(room.walls)[at[:, 1], at[:, 0]] > OFF_DRAWN * side]
+    return np.asarray(points)
 
 
 def _beside(points: Array, path: Sequence[Array]) -> Array:

@@ -15,6 +15,7 @@ import cv2
 import numpy as np
 import pytest
 
+from tests.interrupting import listen
 from wonderful_team.cli.app import COMMANDS, run
 
 OWN = '''
@@ -380,6 +381,7 @@ def test_ctrl_c_ends_cleanly(command: str, desk: Path, own: Path, runs_folder: P
         stderr=subprocess.PIPE,
         text=True,
         env=dict(os.environ),
+        preexec_fn=listen,
     )
     assert process.stdout is not None
     assert process.stdout.readline() == "ASKED\n"

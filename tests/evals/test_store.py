@@ -16,6 +16,7 @@ import pytest
 
 from tests.evals import runners
 from tests.evals.runners import toy_plan
+from tests.interrupting import listen
 from wonderful_team.errors import ConfigError
 from wonderful_team.evals.claims import Owner, is_free
 from wonderful_team.evals.places import network_file_system
@@ -223,7 +224,7 @@ def _start(tmp_path: Path, log: Path) -> subprocess.Popen[bytes]:
     script.write_text(SWEEP.format(store=str(tmp_path / "s.db")), encoding="utf-8")
     environment = {**os.environ, "TOY_LOG": str(log), "PYTHONPATH": f"{ROOT}{os.pathsep}{ROOT / 'src'}"}
     # A group of its own, so that parent and workers can be killed together, as a machine that loses power would.
-    return subprocess.Popen([sys.executable, str(script)], env=environment, start_new_session=True)
+    return subprocess.Popen([sys.executable, str(script)], env=environment, start_new_session=True, preexec_fn=listen)
 
 
 def _lines(log: Path) -> list[str]:

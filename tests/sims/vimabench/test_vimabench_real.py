@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from wonderful_team.actions import PickPlace, Push
-from wonderful_team.cli import main
+from wonderful_team.cli.app import run
 from wonderful_team.errors import WorldUnavailableError
 from wonderful_team.registry import make_world
 from wonderful_team.sims.vimabench import VimaWorld
@@ -136,5 +136,5 @@ def test_a_world_by_its_name_is_the_same_every_time() -> None:
 
 
 def test_run_in_it_ends_with_the_simulators_own_word(capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["run", "vimabench/rotate", "--seed", "3"]) == 0
+    assert run(["run", "vimabench/rotate", "--seed", "3"]) == 0
     assert "every goal is met" in capsys.readouterr().out

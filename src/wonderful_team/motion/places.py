@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -20,6 +21,10 @@ TO_PICK: tuple[PointRole, ...] = ("pick", "grasp")
 TO_PLACE: tuple[PointRole, ...] = ("place", "push_end", "pick", "grasp")
 ANY: tuple[PointRole, ...] = ("pick", "grasp", "place", "push_end", "push_start")
 TO_GRASP: tuple[PointRole, ...] = ("grasp", "pick", "place", "push_start", "push_end")
+
+
+EVEN_M = 0.002
+"""A surface at most this much higher than a thing's own point may still be what a flat thing lies on [m]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,7 +99,10 @@ class Places:
 
     def support_z_m(self, name: str) -> float:
         """Height of what the target stood on in the picture [m]."""
-        return self.lift.support_z_m(self.target(name).box)
+        found = self.target(name)
+        point = next((px for role, px in found.points.items() if role in ("pick", "grasp")), None)
+        seen = None if point is None or not self.lift.inside(point) else self.lift.surface(point, name).position_m
+        return self.lift.support_z_m(found.box, math.inf if seen is None else float(seen[2]) + EVEN_M)
 
     def centre(self, name: str, progress: Progress) -> Spot:
         """Where the target's centre lies now: that of its box, at the height of the point chosen on it.

@@ -11,7 +11,7 @@ from shapely import Point, affinity
 from wonderful_team.actions import At, Beside, Gripper, MoveStep, OriginOf, PickPlace, PickPlaceStep, Push, PushStep
 from wonderful_team.geometry import Box
 from wonderful_team.geometry.arrays import Array
-from wonderful_team.runtime.relief import RAISED_M, Relief, outline
+from wonderful_team.runtime.relief import RAISED_M, Relief, covered, outline
 from wonderful_team.types import GroundedTarget, Plan, PlannedAction, View
 
 RING_SHARE, LEAST_RING_PX = 0.15, 2.0
@@ -51,6 +51,7 @@ class Stage:
         meant: What the thing (or tool) is meant to meet: a shape on the table; None for nothing.
         level: Whether the place has to be level with its surroundings: nothing was named to stand on.
         stated: Whether a plan names the place; otherwise its numbers have to agree with the surface.
+        restored: It goes back to where it stood, so what was seen beside it there leaves room for it.
     """
 
     planned: PlannedAction
@@ -60,6 +61,7 @@ class Stage:
     meant: Any | None
     level: bool
     stated: bool
+    restored: bool = False
 
 
 class Course:
@@ -71,6 +73,7 @@ class Course:
         self._relief = Relief.of(view)
         self._held: tuple[str, Carried, Array] | None
         self._things: dict[str, Array] = {}
+        self._bases: dict[str, float] = {}
         self._regions: dict[str, Any] = {}
         # What a robot holds from the start has a size that nobody has said.
         self._held = ("", Carried(None), np.zeros(0, dtype=np.int64)) if holding else None
@@ -102,7 +105,8 @@ class Course:
         own, base = self._own(name, action.pick_m)
         carried = self._carried(name, own, action.pick_m, base)
         meant, level, stated = self._place(step, action)
-        stage = Stage(planned, self._relief, own, carried, meant, level, stated)
+        back = isinstance(step, PickPlaceStep) and isinstance(step.place, OriginOf) and step.place.target == name
+        stage = Stage(planned, self._relief, own, carried, meant, level, stated, back and action.yaw_rad == 0)
         self._move(name, own, base, action.pick_m, action.place_m, action.yaw_rad)
         return stage
 
@@ -177,8 +181,7 @@ class Course:
             return None, self._table_z_m
         heights = relief.xyz_m[:, 2]
         if name in self._things:
-            known = self._mask(self._things[name])
-            return known, float(min(heights[known].min(), at_m[2])) if known.any() else self._table_z_m
+            return self._mask(self._things[name]), self._bases[name]
         target: GroundedTarget | None = self._grounded.get(name)
         if target is None or target.box is None:
             return relief.patch(at_m[:2], self._table_z_m), self._table_z_m
@@ -220,11 +223,17 @@ class Course:
         points[own] = _moved(points[own], base, start, end, yaw_rad)
         px = relief.px.copy()
         px[own] = np.nan
+        # What it covers there is not the surface any more; when it leaves again, its support is.
+        hidden = ~own & relief.inside(outline(points[own, :2], relief.cell_m))
+        hidden[hidden] = covered(points[own, :2], points[hidden, :2], relief.cell_m)
+        hidden &= points[:, 2] < end[2] + RAISED_M
+        points[hidden], px[hidden] = np.nan, np.nan
         self._relief = Relief(
             np.vstack([points, left]), np.vstack([px, np.full((len(left), 2), np.nan)]), relief.spacing_m
         )
         if name in self._grounded:
             self._things[name] = np.flatnonzero(own)
+            self._bases[name] = float(end[2])
 
     def _mask(self, indices: Array) -> Array:
         assert self._relief is not None

@@ -93,6 +93,8 @@ def place_checks(action: Action, stage: Stage, limits: Limits) -> list[GateCheck
     c, s = np.cos(action.yaw_rad), np.sin(action.yaw_rad)
     placed = offsets @ np.array([[c, s], [-s, c]]) + action.place_m[:2]
     others = np.ones(len(stage.relief.xyz_m), dtype=bool) if stage.own is None else ~stage.own
+    if stage.restored:
+        others &= np.isnan(stage.relief.px[:, 0])
     return free_checks(placed, float(action.place_m[2]), stage.relief, others, stage.meant, stage.level, limits)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -11,8 +12,10 @@ from shapely import Point, affinity
 from wonderful_team.actions import At, Beside, Gripper, MoveStep, OriginOf, PickPlace, PickPlaceStep, Push, PushStep
 from wonderful_team.geometry import Box
 from wonderful_team.geometry.arrays import Array
+from wonderful_team.runtime.keep_out import table_height_m
 from wonderful_team.runtime.relief import RAISED_M, Relief, covered, outline
-from wonderful_team.types import GroundedTarget, Plan, PlannedAction, View
+from wonderful_team.runtime.sweep import sweep_of
+from wonderful_team.types import GroundedTarget, Limits, Plan, PlannedAction, View
 
 RING_SHARE, LEAST_RING_PX = 0.15, 2.0
 """How far round a box its support is looked for: share of its smaller side, and at least so many pixels."""
@@ -269,6 +272,16 @@ class Course:
         if step.to.target in self._grounded:
             return self.region(step.to.target, end)
         return self._relief.standing(end[:2], self._table_z_m)
+
+
+def stages_of(actions: Sequence[PlannedAction], plan: Plan | None, view: View, limits: Limits) -> tuple[Stage, ...]:
+    """The scene as it is expected before each action."""
+    course, tool_m = Course(view, plan, table_height_m(limits)), None
+    stages = []
+    for planned in actions:
+        stages.append(course.next(planned, tool_m))
+        tool_m = None if planned.action is None else sweep_of(planned.action, limits, tool_m).after_m
+    return tuple(stages)
 
 
 def _moved(points: Array, base: float, start: Array, end: Array, yaw_rad: float) -> Array:

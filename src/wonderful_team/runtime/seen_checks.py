@@ -13,7 +13,7 @@ from wonderful_team.geometry.arrays import Array
 from wonderful_team.runtime.course import Stage
 from wonderful_team.runtime.relief import Relief, covered, outline
 from wonderful_team.runtime.sweep import Sweep
-from wonderful_team.types import GateCheck, Limits
+from wonderful_team.types import GateCheck, Limits, PlannedAction, View
 
 AGREE_M = 0.02
 """How far the height of a pick or of a place that no plan names may be from the surface seen there [m]."""
@@ -21,6 +21,8 @@ PROUD_M = 0.01
 """How much higher than the place something may be before it stands in the way [m]; depth noise."""
 PUSHED_M = 0.015
 """What is less than this higher than a push lies flat, such as a line or a sheet [m]."""
+OFF_M = 0.02
+"""How far from where it was expected a thing may have come to lie [m]."""
 SPECKS_SHARE, LEAST_SPECKS = 0.01, 3
 """So few of the points of a place do not make a thing: edges that are seen unsharp."""
 LEVEL_SHARE = 0.5
@@ -83,19 +85,36 @@ def _touched(action: Action, limits: Limits) -> list[tuple[str, Array]]:
 
 def place_checks(action: Action, stage: Stage, limits: Limits) -> list[GateCheck]:
     """Whether the place is free, but for what the thing is meant to rest on."""
-    if not isinstance(action, PickPlace) or stage.relief is None or stage.carried is None:
+    if not isinstance(action, PickPlace) or stage.relief is None:
         return []
-    if stage.carried.offsets_m is None:
-        angles = np.linspace(0, 2 * np.pi, 12, endpoint=False)
-        offsets = 0.01 * np.column_stack([np.cos(angles), np.sin(angles)])
-    else:
-        offsets = stage.carried.offsets_m
-    c, s = np.cos(action.yaw_rad), np.sin(action.yaw_rad)
-    placed = offsets @ np.array([[c, s], [-s, c]]) + action.place_m[:2]
     others = np.ones(len(stage.relief.xyz_m), dtype=bool) if stage.own is None else ~stage.own
     if stage.restored:
+        # What was seen beside it there left room for it; what the plan itself put there does not.
         others &= np.isnan(stage.relief.px[:, 0])
-    return free_checks(placed, float(action.place_m[2]), stage.relief, others, stage.meant, stage.level, limits)
+    place_z_m = float(action.place_m[2])
+    return free_checks(_placed(action, stage), place_z_m, stage.relief, others, stage.meant, stage.level, limits)
+
+
+def still_free_checks(planned: PlannedAction, stage: Stage, view: View, limits: Limits) -> list[GateCheck]:
+    """The same for an action that comes later, by the depth of a picture that was taken just before it."""
+    action, relief = planned.action, Relief.of(view)
+    if not isinstance(action, PickPlace) or relief is None or stage.relief is None or stage.restored:
+        return []
+    others = np.ones(len(relief.xyz_m), dtype=bool)
+    if stage.own is not None and stage.own.any():
+        others = ~relief.inside(outline(stage.relief.xyz_m[stage.own, :2], 2 * OFF_M))
+    place_z_m = float(action.place_m[2])
+    return free_checks(_placed(action, stage), place_z_m, relief, others, stage.meant, False, limits)
+
+
+def _placed(action: PickPlace, stage: Stage) -> Array:
+    """What the thing will cover of the table, as points from above, shape (M, 2) [m]."""
+    offsets = stage.carried.offsets_m if stage.carried is not None else None
+    if offsets is None:
+        angles = np.linspace(0, 2 * np.pi, 12, endpoint=False)
+        offsets = 0.01 * np.column_stack([np.cos(angles), np.sin(angles)])
+    c, s = np.cos(action.yaw_rad), np.sin(action.yaw_rad)
+    return np.asarray(offsets @ np.array([[c, s], [-s, c]]) + action.place_m[:2])
 
 
 def free_checks(

@@ -204,14 +204,13 @@ class Course:
 
     def _carried(self, name: str, own: Array | None, tool_m: Array, base: float) -> Carried:
         hanging = max(0.0, float(tool_m[2]) - base)
-        target = self._grounded.get(name)
-        boxed = None
-        if target is not None and target.box is not None and name not in self._things:
-            boxed = self._corners(target.box)
         if own is not None and own.any() and self._relief is not None:
             points = self._relief.xyz_m[own, :2]
             return Carried(points[:: max(1, len(points) // _MOST_POINTS)] - tool_m[:2], hanging)
-        return Carried(None if boxed is None else boxed - tool_m[:2], hanging)
+        target = self._grounded.get(name)
+        region = self.region(name, tool_m) if target is not None and target.box is not None else None
+        corners = None if region is None else np.asarray(region.exterior.coords) - tool_m[:2]
+        return Carried(corners, hanging)
 
     def _move(self, name: str, own: Array | None, base: float, start: Array, end: Array, yaw_rad: float) -> None:
         """The thing stands at its end now, and what it stood on shows where it was."""

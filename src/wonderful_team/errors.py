@@ -7,8 +7,24 @@ Messages name the value, the limit and what would be valid; they are built here 
 from __future__ import annotations
 
 import difflib
+import shlex
+import sys
 from collections.abc import Iterable
+from importlib import metadata
 from typing import ClassVar
+
+
+def extra_command(extra: str) -> str:
+    """The command that installs an optional part: its packages by name, so that it works however this package was installed."""
+    mark = f'extra == "{extra}"'
+    try:
+        lines = metadata.requires("wonderful-team") or []
+    except metadata.PackageNotFoundError:
+        lines = []
+    needed = [line.partition(";")[0].strip() for line in lines if mark in line.replace("'", '"')]
+    return shlex.join([sys.executable, "-m", "pip", "install", *(needed or [f".[{extra}]"])]) + (
+        "" if needed else " (in a checkout)"
+    )
 
 
 class WonderfulTeamError(Exception):
@@ -43,7 +59,7 @@ class MissingExtraError(ConfigError):
     """An optional dependency is not installed; names the exact command that brings it."""
 
     def __init__(self, feature: str, extra: str) -> None:
-        super().__init__(f"{feature} needs an optional part: pip install 'wonderful-team[{extra}]'")
+        super().__init__(f"{feature} needs the optional part {extra!r}: {extra_command(extra)}")
 
 
 class BadPictureError(ConfigError):

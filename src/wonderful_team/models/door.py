@@ -28,7 +28,7 @@ from wonderful_team.errors import (
     WonderfulTeamError,
 )
 from wonderful_team.interfaces import Event, Model, Subscriber
-from wonderful_team.models.budget import Budget, Estimating, Ticket, hand_over
+from wonderful_team.models.budget import Budget, Ticket, hand_over
 from wonderful_team.models.wire.unreadable import Unreadable
 from wonderful_team.types import Answer, Request, Usage
 
@@ -132,7 +132,9 @@ class Door:
     async def _send(self, model: Model, request: Request) -> Answer:
         async with self._place():
             budget = self.budget
-            estimate = model.estimate(request) if isinstance(model, Estimating) else None
+            # Not isinstance with a protocol: from Python 3.12 on it misses what a wrapper forwards, and caps would fail open.
+            reckon = getattr(model, "estimate", None)
+            estimate = reckon(request) if callable(reckon) else None
             ticket = await budget.take(estimate)
             usage = None
             started = time.monotonic()

@@ -38,7 +38,12 @@ def test_a_json_document_reads_back_as_the_same_values() -> None:
 
 
 def test_counts_agree_with_their_nouns() -> None:
-    assert [counted(number, "action") for number in (0, 1, 2, 1200)] == ["0 actions", "1 action", "2 actions", "1,200 actions"]
+    assert [counted(number, "action") for number in (0, 1, 2, 1200)] == [
+        "0 actions",
+        "1 action",
+        "2 actions",
+        "1,200 actions",
+    ]
     assert counted(2, "entry", "entries") == "2 entries"
 
 

@@ -27,7 +27,7 @@ def counted(number: int, noun: str, plural: str | None = None) -> str:
 
 
 def visible(text: Text, *, layout: bool = False) -> Text:
-    """The text with every character that hides, moves or reorders what is read written as its escape, such as \\x1b.
+    """The text with every character that hides, moves or reorders what is read written as its escape (ESC: backslash, x1b).
 
     Words of a model go through this at every way out: terminal, log, tables, pages, notebooks.
 

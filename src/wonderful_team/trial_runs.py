@@ -108,7 +108,7 @@ def run_trial(spec: TrialSpec, settings: RunSettings) -> TrialResult:
             provenance=tuple(sorted({*count.provenance, *trial.provenance})),
             by_role={role: to_jsonable(one) for role, one in by_role.items()},
             page=page,
-            instruction="" if spec.condition.method in CONTROLS else world.instruction.text,
+            instruction="" if spec.condition.method in CONTROLS else world.instruction.plain_text,
             versions=fingerprint(spec),
         )
     finally:

@@ -10,6 +10,7 @@ import click
 from wonderful_team.cli.options import PATH
 from wonderful_team.cli.output import finish
 from wonderful_team.errors import ConfigError
+from wonderful_team.text import counted
 
 KINDS = ("models", "worlds", "tasks", "suites", "methods", "prompts", "runs")
 
@@ -64,7 +65,7 @@ def _suites(out: Path | None) -> dict[str, str]:
     from wonderful_team.studies import known_suites
 
     return {
-        name: f"{len(suite.tasks)} tasks; {suite.help or suite.protocol.name}{'; ' + suite.note if suite.note else ''}"
+        name: f"{counted(len(suite.tasks), 'task')}; {suite.help or suite.protocol.name}{'; ' + suite.note if suite.note else ''}"
         for name, suite in known_suites().items()
     }
 

@@ -14,6 +14,7 @@ from wonderful_team.cli.options import PATH, read_models
 from wonderful_team.cli.output import finish
 from wonderful_team.cli.report import shown_path
 from wonderful_team.errors import UnknownNameError
+from wonderful_team.text import counted
 
 
 @click.command(
@@ -95,7 +96,7 @@ def _replay(folder: Path, tolerant: bool, as_json: bool) -> int:
 
     found = replay(folder, tolerant=tolerant)
     how = "SAME" if found.same else "DIFFERENT"
-    lines = [f"{how}  {found.answers} answers replayed"]
+    lines = [f"{how}  {counted(found.answers, 'answer')} replayed"]
     lines += [
         f"plan {number}: {then or '-'} {'=' if then == now else '->'} {now or '-'}"
         for number, (then, now) in enumerate(zip_longest(found.then, found.now), start=1)
@@ -113,13 +114,13 @@ def _replay(folder: Path, tolerant: bool, as_json: bool) -> int:
 
 def _branch(folder: Path, stage: str, words: Sequence[str], out: Path | None, as_json: bool, open_page: bool) -> int:
     """A new run that branches off this one."""
-    from wonderful_team.cli.progress import Progress, cost_line
+    from wonderful_team.cli.progress import Progress
     from wonderful_team.cli.report import trial_json
     from wonderful_team.cli.wording import plan_exit_code, plan_lines, trial_exit_code, trial_lines
     from wonderful_team.made import MadePlan
     from wonderful_team.replays import branch
 
-    progress = Progress()
+    progress = Progress(live=not as_json)
     command = shlex.join(["wonderful-team", *(click.get_current_context().obj or ())])
     # Where its parent lies, unless another place is asked for.
     made = branch(
@@ -130,7 +131,7 @@ def _branch(folder: Path, stage: str, words: Sequence[str], out: Path | None, as
         subscribers=(progress,),
         command=command,
     )
-    click.echo(cost_line(made.usage, progress.seconds, progress.kept), err=True)
+    progress.end(made.usage)
     if isinstance(made, MadePlan):
         lines, result, code = plan_lines(made), made.to_json(), plan_exit_code(made)
     else:

@@ -13,6 +13,7 @@ from wonderful_team.errors import ConfigError
 from wonderful_team.geometry import Camera
 from wonderful_team.geometry.arrays import Array
 from wonderful_team.pictures import checked_depth, checked_rgb, picture_hash
+from wonderful_team.text import picture_names, spoken
 
 SlotKind: TypeAlias = Literal["object", "scene", "frame", "before", "after"]
 
@@ -124,3 +125,8 @@ class Instruction:
                     f"the instruction has a picture {name!r} but its text never says {{{name}}}: {self.text!r}"
                 )
         object.__setattr__(self, "slots", MappingProxyType(dict(self.slots)))
+
+    @property
+    def plain_text(self) -> str:
+        """The words as people read them without the pictures: "put [picture 1] into [picture 2]"."""
+        return spoken(self.text, picture_names(self.text, self.slots))

@@ -15,7 +15,8 @@ from wonderful_team.runtime.page.plans import plans, replans
 from wonderful_team.runtime.page.requests import Asked
 from wonderful_team.runtime.page.running import actions, execution
 from wonderful_team.runtime.page.strips import overviews, targets
-from wonderful_team.runtime.page.words import brief, counted, money, pretty_name, seconds
+from wonderful_team.runtime.page.words import brief, money, pretty_name, seconds
+from wonderful_team.text import counted
 
 __all__ = [
     "actions",
@@ -189,7 +190,7 @@ def _motion_events(record: dict[str, Any]) -> list[tuple[float, str, str, str]]:
         if not gate["admitted"]:
             events.append((at_s, "gate", f"{gate['where']}: {_refusals([gate])}", ""))
         elif gate["where"] == "before motion":
-            events.append((at_s, "gate", f"admitted: {len(gate['checks'])} checks passed", ""))
+            events.append((at_s, "gate", f"admitted: {counted(len(gate['checks']), 'check')} passed", ""))
     position = 0
     for run in planner["subgoals"]:
         last = position + run["actions"] - 1

@@ -42,11 +42,6 @@ def money(usd: float | None) -> str:
     return "0" if usd == 0 else f"${usd:.4f}" if usd < 1 else f"${usd:.2f}"
 
 
-def counted(number: int, noun: str) -> str:
-    """`3 calls`, `1 call`."""
-    return f"{number:,} {noun}{'' if number == 1 else 's'}"
-
-
 def brief(text: str, most: int = 220) -> str:
     """The first sentences of a text, at most `most` characters of it; what is cut is marked with "…"."""
     if len(text) <= most:

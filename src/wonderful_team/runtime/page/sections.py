@@ -16,7 +16,7 @@ from wonderful_team.runtime.page.requests import Asked
 from wonderful_team.runtime.page.running import actions, execution
 from wonderful_team.runtime.page.strips import overviews, targets
 from wonderful_team.runtime.page.words import brief, money, pretty_name, seconds
-from wonderful_team.text import counted
+from wonderful_team.text import counted, picture_names, spoken
 
 __all__ = [
     "actions",
@@ -66,7 +66,7 @@ def title(record: dict[str, Any]) -> str:
 
 def _text(record: dict[str, Any]) -> str:
     said = record["planner"]["instruction"]
-    return str(said["text"]) if said else "a run without an instruction"
+    return spoken(said["text"], picture_names(said["text"], said["slots"])) if said else "a run without an instruction"
 
 
 def _outcome(record: dict[str, Any]) -> dict[str, Any]:
@@ -78,7 +78,7 @@ def _outcome(record: dict[str, Any]) -> dict[str, Any]:
     return {"outcome": state, "stage": None, "reason": reason}
 
 
-def head(record: dict[str, Any], album: Album, asked: Sequence[Asked]) -> dict[str, Any]:
+def head(record: dict[str, Any], asked: Sequence[Asked], planted: str = "") -> dict[str, Any]:
     """1: the verdict bar."""
     outcome = _outcome(record)
     current = last_plan(record)
@@ -101,6 +101,7 @@ def head(record: dict[str, Any], album: Album, asked: Sequence[Asked]) -> dict[s
         "tone": _TONES.get(name, "bad"),
         "stage": outcome.get("stage"),
         "reason": brief(reason),
+        "planted": planted,
         "whole_reason": reason if reason != brief(reason) else "",
         "choices": current["choices"] if current else [],
         "badges": _badges(asked, current),

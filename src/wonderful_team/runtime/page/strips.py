@@ -169,6 +169,13 @@ def _examples(target: dict[str, Any], record: dict[str, Any], album: Album) -> l
     return found
 
 
+def history_frames(
+    record: dict[str, Any], plan: dict[str, Any], item: dict[str, Any], album: Album, position: int
+) -> list[dict[str, Any]]:
+    """How one target's box and points came about, picture by picture."""
+    return _frames(record, item, scene_of(record, plan), album, position)
+
+
 def _frames(
     record: dict[str, Any], item: dict[str, Any], scene: dict[str, Any] | None, album: Album, position: int
 ) -> list[dict[str, Any]]:

@@ -29,6 +29,7 @@ __all__ = [
     "replans",
     "reproduce",
     "story",
+    "summary",
     "targets",
     "title",
     "warnings",
@@ -107,6 +108,27 @@ def head(record: dict[str, Any], asked: Sequence[Asked], planted: str = "") -> d
         "badges": _badges(asked, current),
         "unverified": bool(current and current["status"] == "planned" and not current["verified"]),
         "facts": [(key, value) for key, value in facts if value not in (None, "")],
+    }
+
+
+def summary(record: dict[str, Any]) -> dict[str, Any]:
+    """A run in one line of a table."""
+    outcome, settings = _outcome(record), record["configuration"]
+    answers = [request["answer"] for request in record["planner"]["requests"] if request["answer"]]
+    prices = [answer["usage"]["usd"] for answer in answers]
+    name = str(outcome["outcome"])
+    return {
+        "text": _text(record),
+        "started": str(record["clock"].get("started", ""))[:16].replace("T", " "),
+        "scene": settings.get("scene") or "",
+        "outcome": pretty_name(name),
+        "tone": _TONES.get(name, "bad"),
+        "reason": outcome.get("reason") or _plain_reason(name, last_plan(record)),
+        "method": outcome.get("method") or settings.get("method") or "",
+        "model": outcome.get("model") or settings.get("model") or "",
+        "usd": None if any(price is None for price in prices) else sum(prices),
+        "seconds": record["clock"].get("seconds"),
+        "calls": len(record["planner"]["requests"]),
     }
 
 

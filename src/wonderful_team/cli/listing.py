@@ -93,9 +93,17 @@ def _suites(out: Path | None) -> dict[str, str]:
 
 
 def _methods(out: Path | None) -> dict[str, str]:
+    from wonderful_team.planning.config import SETTINGS
     from wonderful_team.registry import METHODS
 
-    return {**METHODS, "FILE.py:NAME": "your own: a class with the Policy interface"}
+    def words(name: str, text: str) -> str:
+        setting = SETTINGS.get(name.rpartition(":")[2])
+        return text if setting is None else f"{text}: {setting.words}"
+
+    return {
+        **{name: words(name, text) for name, text in METHODS.items()},
+        "FILE.py:NAME": "your own: a class with the Policy interface",
+    }
 
 
 def _prompts(out: Path | None) -> dict[str, str]:

@@ -12,8 +12,9 @@ from typing import Literal, TypeAlias
 from wonderful_team.errors import ConfigError
 from wonderful_team.geometry import Camera
 from wonderful_team.geometry.arrays import Array
+from wonderful_team.notebook import card
 from wonderful_team.pictures import checked_depth, checked_rgb, picture_hash
-from wonderful_team.text import picture_names, spoken
+from wonderful_team.text import counted, picture_names, spoken
 
 SlotKind: TypeAlias = Literal["object", "scene", "frame", "before", "after"]
 
@@ -82,6 +83,15 @@ class Observation:
     def hash(self) -> str:
         """Hash over all views, in order."""
         return hashlib.sha256("".join(view.hash for view in self.views.values()).encode()).hexdigest()[:16]
+
+    def _repr_html_(self) -> str:
+        """In a notebook: every view, with what is known beside its pixels."""
+        pictures = []
+        for name, view in self.views.items():
+            known = [word for word, value in (("depth", view.depth_m), ("camera", view.camera)) if value is not None]
+            size = f"{view.size_px[0]} x {view.size_px[1]} px"
+            pictures.append((view.rgb, f"{name}, {size}, {' and '.join(known) or 'no depth, no camera'}"))
+        return card(f"observation of {counted(len(pictures), 'view')}", pictures=pictures)
 
 
 @dataclass(frozen=True, eq=False)

@@ -63,7 +63,8 @@ def command(
     from wonderful_team.api import Team, make_world, rollout
     from wonderful_team.cli.progress import Progress
     from wonderful_team.cli.report import report_trial
-    from wonderful_team.cli.video import Film, check_video_name
+    from wonderful_team.cli.video import FRAME_S, Film, check_video_name
+    from wonderful_team.interfaces import Filmed
     from wonderful_team.methods import Method
     from wonderful_team.photos import read_keep_out
     from wonderful_team.registry import scene_name, team_way
@@ -81,6 +82,8 @@ def command(
     place = make_world(world, seed, instruction, regions)
     try:
         film = Film() if video is not None else None
+        if film is not None and isinstance(place, Filmed):
+            place.film(film.motion, FRAME_S)
         progress.header(method)
         progress.task(scene_name(world, seed), place.instruction)
         trial = rollout(
@@ -98,7 +101,7 @@ def command(
         place.close()
     if film is not None and video is not None:
         film.write(video)
-        progress.note(f"video: {video} ({len(film.frames)} pictures)")
+        progress.note(f"video: {video} ({counted(len(film.frames), 'picture')})")
     return report_trial("run", trial, common, progress, {"video": None if video is None else str(video)})
 
 

@@ -158,7 +158,7 @@ def test_nothing_scored_is_no_data(tmp_path: Path) -> None:
         store.want(plan.name, plan.trials(), plan.request())
     made = write_all([tmp_path / "s.db"], tmp_path / "p.html")
     assert "no data" in made.page.read_text(encoding="utf-8")
-    assert any("have not ended" in text for text in made.warnings)
+    assert any("not ended yet" in text for text in made.warnings)
 
 
 def test_controls_accuse_a_wrong_scorer() -> None:

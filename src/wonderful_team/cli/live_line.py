@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import shutil
 import threading
 import time
 from collections.abc import Callable
@@ -94,8 +95,9 @@ class LiveLine:
         if not text or self._closed.is_set():
             return
         self._ticks += 1
-        width = os.get_terminal_size(self._stream.fileno()).columns if self._stream.isatty() else 80
-        self._write(CLEAR + click.style(visible(text)[: max(1, width - 1)], dim=True))
+        # Cut to the width, so that it never wraps; some terminals say 0 columns.
+        width = shutil.get_terminal_size().columns
+        self._write(CLEAR + click.style(visible(text)[: width - 1], dim=True))
         self._shown = True
 
     def _clear(self) -> None:

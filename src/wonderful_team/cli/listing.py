@@ -52,6 +52,7 @@ def _write_table(path: Path, out: Path | None, open_page: bool) -> str:
     from wonderful_team.runtime.page.runs import write_runs_table
 
     try:
+        path.parent.mkdir(parents=True, exist_ok=True)
         write_runs_table(all_runs(out), path)
     except OSError as error:
         raise ConfigError(f"--html {str(path)!r}: {error.strerror or error}") from error

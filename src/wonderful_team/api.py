@@ -138,7 +138,7 @@ class Team(Method):
         make: Callable[[Recorder], _Work],
     ) -> MadePlan:
         """Make a plan in a run folder of its own, pass it through the gate, and write its page."""
-        folder = new_run_folder(instruction.text, self.out)
+        folder = new_run_folder(instruction.plain_text, self.out)
         recorder = Recorder(folder, command=self.command)
         everyone = (recorder, *self.subscribers)
         started = time.monotonic()
@@ -215,7 +215,7 @@ def rollout(
     if isinstance(method, Method):
         method = method.in_world(world)
     named = method if isinstance(method, Method) else None
-    folder = new_run_folder(world.instruction.text, out if out is not None else (named.out if named else None))
+    folder = new_run_folder(world.instruction.plain_text, out if out is not None else (named.out if named else None))
     recorder = Recorder(folder, command=named.command if named else None)
     if named is not None:
         for text in named.warnings:

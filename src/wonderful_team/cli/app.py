@@ -10,7 +10,7 @@ from typing import Any
 import click
 
 from wonderful_team import __version__
-from wonderful_team.cli.output import Document, wants_json
+from wonderful_team.cli.output import Document, say, wants_json
 
 INTERRUPTED = 130
 CRASHED = 70
@@ -118,5 +118,5 @@ def _fail(argv: list[str], name: str, message: str, code: int, stage: str | None
     if wants_json(argv):
         command = next((word for word in argv if word in COMMANDS), "")
         Document(command, {}, error={"type": name, "message": message, "stage": stage}).print(code)
-    click.echo(f"error: {message}" if code != INTERRUPTED else message, err=True)
+    say(f"error: {message}" if code != INTERRUPTED else message, err=True)
     return code

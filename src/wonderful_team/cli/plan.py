@@ -72,7 +72,7 @@ def command(
     *files, text = words
     observation = Observation.from_files(*files, depth=depth, camera=camera, corners=corners)
     instruction = instruction_with_pictures(text, read_pairs(picture, "--picture"))
-    progress = Progress()
+    progress = Progress(live=not common.as_json)
     team = Team(**common.team_arguments(), subscribers=(progress,))
     progress.header(team)
     made = team.plan(

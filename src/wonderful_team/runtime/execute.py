@@ -10,6 +10,7 @@ from wonderful_team.runtime.approval import Approval, Approver
 from wonderful_team.runtime.freshness import freshness_checks, touched, watched
 from wonderful_team.runtime.gate import check_gate
 from wonderful_team.runtime.progress import Ending, Progress
+from wonderful_team.text import counted
 from wonderful_team.types import GateReport, Observation, Plan, PlannedAction, StepReport, SubgoalRun
 
 
@@ -81,7 +82,9 @@ class Execution:
         for index, planned in enumerate(actions):
             if horizon is not None and self._progress.executed >= horizon:
                 self._close(actions[index - 1], before, last, reports)
-                return Ending(None, "execution", f"the world's horizon of {horizon} actions is reached", final=True)
+                return Ending(
+                    None, "execution", f"the world's horizon of {counted(horizon, 'action')} is reached", final=True
+                )
             if index > 0 and not self._still_fresh(planned, index, plan, then, last, excused):
                 self._close(actions[index - 1], before, last, reports)
                 return Ending("failure", "gate", "; ".join(self._refused().reasons))

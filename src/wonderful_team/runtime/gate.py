@@ -16,6 +16,7 @@ from wonderful_team.runtime.approval import Approval, approved_id
 from wonderful_team.runtime.freshness import MAX_AGE_S, freshness_checks, watched
 from wonderful_team.runtime.keep_out import distance, region_m, region_px, table_height_m
 from wonderful_team.runtime.sweep import carry_height_m, swept_path_m, swept_path_px, tool_after
+from wonderful_team.text import counted
 from wonderful_team.types import GateCheck, GateReport, KeepOut, Limits, Observation, Plan, PlannedAction
 
 TOOL_RADIUS_M = 0.01
@@ -93,7 +94,7 @@ def _plan_checks(actions: Sequence[PlannedAction], plan: Plan | None, expected_i
     if plan is not None:
         ours, theirs = _texts(actions), _texts(plan.actions)
         same = ours == theirs
-        value = f"{len(actions)} action{'s' * (len(actions) != 1)}" + ("" if same else ", not those of the plan")
+        value = counted(len(actions), "action") + ("" if same else ", not those of the plan")
         checks.append(GateCheck(None, "actions of the plan", same, value, f"the {len(theirs)} of plan {plan.id}"))
     if not actions:
         checks.append(GateCheck(None, "actions", False, "0", "at least 1"))
@@ -189,7 +190,7 @@ def _pixel_checks(
     checks = [GateCheck(None, "metres", not must_run, "pixels only", "metres from a camera" if must_run else "none")]
     points = np.array(swept_path_px(planned), dtype=np.float64).reshape(-1, 2)
     finite = bool(np.isfinite(points).all())
-    checks.append(GateCheck(None, "numbers", finite, f"{len(points)} points", "all finite"))
+    checks.append(GateCheck(None, "numbers", finite, counted(len(points), "point"), "all finite"))
     if len(points) == 0 or not finite:
         return checks
     width, height = now.main.size_px

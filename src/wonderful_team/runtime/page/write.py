@@ -10,10 +10,11 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
 from wonderful_team.errors import ConfigError
-from wonderful_team.runtime.page import cost, requests, sections
-from wonderful_team.runtime.page.pictures import Album
+from wonderful_team.runtime.page import cost, planted, requests, sections
+from wonderful_team.runtime.page.pictures import Album, pictured
 from wonderful_team.runtime.page.words import clock_time, money, pretty, pretty_name, seconds
 from wonderful_team.runtime.recorder import RECORD_SCHEMA_VERSION
+from wonderful_team.text import counted, visible
 
 PAGE_NAME = "page.html"
 _HERE = Path(__file__).parent
@@ -39,6 +40,8 @@ def write_page(folder: Path) -> Path:
         lstrip_blocks=True,
     )
     environment.filters.update(pretty=pretty, seconds=seconds, money=money, title=pretty_name, clock=clock_time)
+    environment.filters["counted"] = counted
+    environment.filters["pictured"] = lambda text: pictured(text, record, album)
     content = _content(record, album)
     style = Markup((_HERE / "page.css").read_text(encoding="utf-8"))
     # The body comes first: it decides which pictures the page has to hold.
@@ -50,7 +53,7 @@ def write_page(folder: Path) -> Path:
         pictures=album.definitions(),
     )
     path = folder / PAGE_NAME
-    path.write_text(html, encoding="utf-8")
+    path.write_text(visible(html, layout=True), encoding="utf-8")
     return path
 
 
@@ -76,11 +79,13 @@ def read_record(folder: Path) -> dict[str, Any]:
 
 def _content(record: dict[str, Any], album: Album) -> dict[str, Any]:
     asked = requests.in_order(record, album)
+    cards = planted.planted(record, album, asked)
     return {
         "title": sections.title(record),
         "record": record,
         "album": album,
-        "head": sections.head(record, album, asked),
+        "head": sections.head(record, asked, planted.sentence(cards)),
+        "planted": cards,
         "instruction": sections.instruction(record, album),
         "ends": sections.before_after(record, album),
         "overviews": sections.overviews(record, album),

@@ -14,6 +14,7 @@ from wonderful_team import registry, types
 from wonderful_team.actions import PICK_PLACE, VOCABULARIES, Vocabulary
 from wonderful_team.errors import ConfigError, UnknownNameError
 from wonderful_team.finding import find
+from wonderful_team.geometry import PlanarCamera
 from wonderful_team.interfaces import Decision, Event, Policy, Privileged, Situation, Subscriber, World
 from wonderful_team.made import MadePlan, RecordedTrial
 from wonderful_team.methods import Method
@@ -149,6 +150,13 @@ class Team(Method):
         tell(everyone, "observe", "start", observation)
         if limits is NO_WORKSPACE and observation.main.camera is not None:
             tell(everyone, "warning", "workspace", "no workspace is stated: the gate checks everything but that")
+        if observation.main.depth_m is None and _calibrated(observation):
+            tell(
+                everyone,
+                "warning",
+                "heights",
+                "no depth is given: every height is taken to be the table's (--depth FILE)",
+            )
         work = make(recorder)
         try:
             with Caller() as caller:
@@ -284,7 +292,22 @@ def plan_gate(plan: Plan, observation: types.Observation, vocabulary: Vocabulary
     """What the gate says of a plan that is not run now; None without actions."""
     if plan.status != "planned" or not plan.actions:
         return None
-    return check_gate(plan.actions, vocabulary=vocabulary, limits=limits, plan=plan, then=observation, now=observation)
+    # A photo with a camera file says where the robot is, so its heights have to be known; a world's robot may find them.
+    photo = getattr(observation, "limits", None) is not None and _calibrated(observation)
+    return check_gate(
+        plan.actions,
+        vocabulary=vocabulary,
+        limits=limits,
+        plan=plan,
+        then=observation,
+        now=observation,
+        measured_heights=photo,
+    )
+
+
+def _calibrated(observation: types.Observation) -> bool:
+    """Whether the main view's camera could turn depth into metres."""
+    return observation.main.camera is not None and not isinstance(observation.main.camera, PlanarCamera)
 
 
 def _page_of(folder: Path) -> None:

@@ -168,7 +168,10 @@ def _outline(region: KeepOut, camera: Camera | None, z_m: float) -> tuple[Point,
         return region.box.corners
     if camera is None:
         return None
-    seen = camera.project([(x, y, z_m) for x, y in region.box.corners])
+    try:
+        seen = camera.project([(x, y, z_m) for x, y in region.box.corners])
+    except ValueError:
+        return None  # a part of it lies behind the camera
     return tuple((float(x), float(y)) for x, y in seen) if np.isfinite(seen).all() else None
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
@@ -21,6 +22,10 @@ TO_PICK: tuple[PointRole, ...] = ("pick", "grasp")
 TO_PLACE: tuple[PointRole, ...] = ("place", "push_end", "pick", "grasp")
 ANY: tuple[PointRole, ...] = ("pick", "grasp", "place", "push_end", "push_start")
 TO_GRASP: tuple[PointRole, ...] = ("grasp", "pick", "place", "push_start", "push_end")
+
+
+EVEN_M = 0.002
+"""A surface at most this much higher than a thing's own point may still be what a flat thing lies on [m]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,7 +102,7 @@ class Places:
 
     def support_z_m(self, name: str) -> float:
         """Height of what the target stood on in the picture [m]."""
-        return self.lift.support_z_m(self.target(name).box)
+        return self.lift.support_z_m(self.target(name).box, self._top_z_m(name) + EVEN_M)
 
     def centre(self, name: str, progress: Progress) -> Spot:
         """Where the target's centre lies now: that of its box, at the height of the point chosen on it.
@@ -151,7 +156,8 @@ class Places:
                 # A thing that is put down where it is, such as one that is only turned.
                 return self.resting(target, progress)
             case At(target):
-                return self._shared(target, self.spot(target, TO_PLACE, progress)[1])
+                spot = self._shared(target, self.spot(target, TO_PLACE, progress)[1])
+                return spot if progress.moved.get(target) else self._freed(spot, progress, thing, target)
             case OriginOf(target):
                 return self.origin(target)
             case Beside():
@@ -179,4 +185,24 @@ class Places:
             px = beside_px(self.box_now(place.target, progress), place.side, half, self.lift.view.size_px)
         except ValueError as error:
             raise self.fail(f"no room for {thing or 'the tool'} {place.side} of {place.target!r}: {error}") from error
-        return self.lift.surface(px, f"{place.side} of {place.target}'s box")
+        spot = self.lift.surface(px, f"{place.side} of {place.target}'s box")
+        return self._freed(spot, progress, thing, place.target)
+
+    def _freed(self, spot: Spot, progress: Progress, thing: str | None, place: str) -> Spot:
+        """The same spot, but at the height of the support where the picture shows a thing that will have left it."""
+        for name in (*progress.moved, *([thing] if thing is not None else [])):
+            box = self.target(name).box if name != place else None
+            if box is None or spot.position_m is None or not box.contains(spot.px):
+                continue
+            support_m, top_m = self.support_z_m(name), self._top_z_m(name)
+            if support_m + EVEN_M < float(spot.position_m[2]) <= top_m + EVEN_M:
+                return self.lift.at_height(
+                    spot.px, support_m, f"{spot.how}; {name} has left it, so z = {support_m:.3f} m"
+                )
+        return spot
+
+    def _top_z_m(self, name: str) -> float:
+        """Height of the point at which a thing is held; infinite without one."""
+        point = next((px for role, px in self.target(name).points.items() if role in TO_PICK), None)
+        seen = None if point is None or not self.lift.inside(point) else self.lift.surface(point, name).position_m
+        return math.inf if seen is None else float(seen[2])

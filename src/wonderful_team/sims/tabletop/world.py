@@ -17,6 +17,8 @@ from wonderful_team.sims.tabletop.spatula import SHORTEST_M
 from wonderful_team.sims.tabletop.table import Snapshot, Table
 from wonderful_team.types import Instruction, Limits, Observation, RobotState, StepReport, View
 
+MOST_TURN_RAD = 2 * math.pi + 1e-6
+
 
 class TabletopWorld:
     """Implements the World protocol; time is simulated, and everything follows from the seed.
@@ -140,6 +142,8 @@ def _out_of_reach(action: PickPlace | Push) -> str:
             low, high, value = TABLE_LOW_M[axis], TABLE_HIGH_M[axis], float(point[axis])
             if not low <= value <= high:
                 return f"{role} {'xy'[axis]} = {value:.3f} m is out of reach [{low}, {high}] m"
+    if isinstance(action, PickPlace) and abs(action.yaw_rad) > MOST_TURN_RAD:
+        return f"a turn of {action.yaw_rad:.3g} rad is more than once round (limit {MOST_TURN_RAD:.3f} rad)"
     if isinstance(action, Push):
         length = math.dist(action.start_m[:2], action.end_m[:2])
         if length < SHORTEST_M:

@@ -17,7 +17,7 @@ from wonderful_team import registry
 from wonderful_team.actions import Vocabulary
 from wonderful_team.agents import Prompts
 from wonderful_team.api import Team, rollout
-from wonderful_team.errors import ConfigError
+from wonderful_team.errors import ConfigError, WonderfulTeamError
 from wonderful_team.interfaces import Event, Model, Subscriber
 from wonderful_team.made import MadePlan, RecordedTrial
 from wonderful_team.models.replay import Branching, ReplayModel
@@ -66,15 +66,21 @@ def replay(folder: Path, *, tolerant: bool = False, subscribers: Sequence[Subscr
     model, plans = ReplayModel(record, tolerant=tolerant), _Plans()
     with tempfile.TemporaryDirectory(prefix="wonderful-team-replay-") as place:
         team = _team(folder, record, model, out=place, subscribers=(plans, *subscribers))
-        if setup.entry == "run":
-            policy = team.policy()
-            with Caller() as caller:
-                for situation in situations(folder, record, setup):
-                    caller.wait_for(policy.decide(situation))
-            # A plan that was handed in is never told as one that was made.
-            plans.ids[:0] = [] if setup.plan is None else [setup.plan]
-        else:
-            _plan_again(folder, record, setup, team)
+        try:
+            if setup.entry == "run":
+                policy = team.policy()
+                with Caller() as caller:
+                    for situation in situations(folder, record, setup):
+                        caller.wait_for(policy.decide(situation))
+            else:
+                _plan_again(folder, record, setup, team)
+        except WonderfulTeamError as error:
+            # What ended the run then ends it again; anything else did not happen then.
+            if error not in model.failed:
+                raise
+    if setup.plan is not None:
+        # A plan that was handed in is never told as one that was made.
+        plans.ids[:0] = [setup.plan]
     then = dict.fromkeys(str(entry["id"]) for entry in record["planner"]["plans"])
     return Replayed(tuple(then), tuple(dict.fromkeys(plans.ids)), model.replayed, tuple(model.differences))
 

@@ -66,6 +66,7 @@ def command(
     from wonderful_team.photos import read_keep_out
     from wonderful_team.registry import scene_name, team_way
     from wonderful_team.runtime import read_plan
+    from wonderful_team.runtime.user_code import close_world
 
     if video is not None:
         check_video_name(video)
@@ -93,7 +94,7 @@ def command(
             subscribers=() if film is None else (film,),
         )
     finally:
-        place.close()
+        close_world(place, progress.note)
     if film is not None and video is not None:
         film.write(video)
         progress.note(f"video: {video} ({len(film.frames)} pictures)")

@@ -36,6 +36,7 @@ class ReplayModel:
     Attributes:
         differences: What differed, in words; empty after an exact replay.
         replayed: How many answers were given.
+        failed: The errors of the record that were raised again.
     """
 
     def __init__(self, record: Mapping[str, Any], *, tolerant: bool = False) -> None:
@@ -44,6 +45,7 @@ class ReplayModel:
         self.tolerant = tolerant
         self.differences: list[str] = []
         self.replayed = 0
+        self.failed: list[WonderfulTeamError] = []
         self._entries = {(entry["id"], entry["attempt"]): entry for entry in record["planner"]["requests"]}
         outcome = record.get("outcome") or {}
         plans = record["planner"]["plans"]
@@ -80,7 +82,8 @@ class ReplayModel:
             raw = entry["invalid"]["raw"]
             return Answer(raw, Usage(calls=0), self.name, raw, provenance="replayed")
         if entry.get("failed"):
-            raise _revived(entry["failed"])
+            self.failed.append(_revived(entry["failed"]))
+            raise self.failed[-1]
         # Sent, but given up before an answer came: something else ended the run, and will again.
         await asyncio.sleep(_PATIENCE_S)
         raise ReplayError(f"{_called(request)} was never answered in the record")
@@ -208,6 +211,7 @@ def _revived(told: Mapping[str, Any]) -> WonderfulTeamError:
         kind = ModelOutputError
     error: WonderfulTeamError = kind.__new__(kind)
     WonderfulTeamError.__init__(error, told["message"], stage=told["stage"])
+    error.trace = str(told.get("trace", ""))
     for name in ("question", "choices", "contract", "reasons"):
         if name in told:
             value = told[name]

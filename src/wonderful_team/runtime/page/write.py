@@ -94,6 +94,7 @@ def _content(record: dict[str, Any], album: Album) -> dict[str, Any]:
         "waterfall": cost.waterfall(asked),
         "rounds": cost.rounds(asked),
         "warnings": sections.warnings(record, asked),
+        "crashes": record["planner"].get("crashes", []),
         "requests": asked,
         "reproduce": sections.reproduce(record),
     }

@@ -75,7 +75,7 @@ class ReplayModel:
         if found and not self.tolerant:
             raise ReplayError(f"{_called(request)} is not what was asked then: {'; '.join(found)}")
         self.differences += [f"{_called(request)}: {text}" for text in found]
-        self.replayed += 1
+        self.replayed += bool(entry["answer"] or entry["invalid"] or entry.get("failed"))
         if entry["answer"]:
             return _answer(request, entry["answer"])
         if entry["invalid"]:

@@ -82,6 +82,37 @@ def code_of(whose: str, error_class: type[WonderfulTeamError]) -> Iterator[None]
         raise error_class(whose, cause=error) from error
 
 
+@contextlib.contextmanager
+def reading(what: str, valid: str = "", error_class: type[WonderfulTeamError] | None = None) -> Iterator[None]:
+    """Read what somebody else wrote (a file, an option): whatever is wrong with it becomes one error that names it.
+
+    This is for readers alone: what fails in here fails because of what was read.
+
+    Args:
+        what: Which file or option, as it begins the message.
+        valid: What would be valid.
+        error_class: ConfigError, or one of its kind.
+    """
+    kind = error_class or ConfigError
+    try:
+        yield
+    except WonderfulTeamError:
+        raise
+    except RecursionError as error:
+        raise kind(f"{what} is nested too deeply{_valid(valid)}") from error
+    except MemoryError as error:
+        raise kind(f"{what} is too large for this machine's memory{_valid(valid)}") from error
+    except OSError as error:
+        raise kind(f"{what} cannot be read: {error.strerror or error}{_valid(valid)}") from error
+    except Exception as error:
+        said = str(error) if type(error) is ValueError else f"{type(error).__name__}: {error}"
+        raise kind(f"{what} cannot be read: {said[:MESSAGE_LIMIT]}{_valid(valid)}") from error
+
+
+def _valid(text: str) -> str:
+    return f"; valid: {text}" if text else ""
+
+
 class ConfigError(WonderfulTeamError):
     """Wrong use or configuration; raised before anything is touched."""
 

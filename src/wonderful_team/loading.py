@@ -19,6 +19,20 @@ def is_file_name(name: str) -> bool:
     return name.endswith(".py") or ".py:" in name
 
 
+def check_names_no_code(name: str, whose: str) -> str:
+    """A name out of a file (a record, a store, a profile), which may name what is built in and never code that runs.
+
+    Raises:
+        ConfigError: It has the form FILE.py:NAME.
+    """
+    if is_file_name(name):
+        raise ConfigError(
+            f"{whose} names code: {name!r}. Code runs only when it is named on the command line or by the caller; "
+            "files name what is built in"
+        )
+    return name
+
+
 def load_from_file(name: str, what: str) -> Any:
     """The object that `FILE.py:Name` names.
 

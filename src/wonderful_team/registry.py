@@ -20,7 +20,7 @@ from wonderful_team.errors import (
     code_of,
 )
 from wonderful_team.interfaces import Model, Policy, Privileged, World
-from wonderful_team.loading import is_file_name, load_from_file, make_from_file
+from wonderful_team.loading import check_names_no_code, is_file_name, load_from_file, make_from_file
 from wonderful_team.own_world import OwnWorld
 from wonderful_team.simulated_models import SIMULATED, simulated_model
 from wonderful_team.types import Instruction, KeepOut
@@ -100,7 +100,7 @@ def make_model(
         made = make_provider(spec, profile=profile, thinking=thinking, price=price, local_only=asked.local_only)
         return cast(Model, made)
     if profile is not None:
-        return make_model(spec, options, role, world)
+        return make_model(check_names_no_code(spec, f"profile {model!r}"), options, role, world)
     if model not in MODELS:
         raise UnknownNameError("model", model, [*MODELS, *profile_names(), *MODEL_FORMS])
     return cast(Model, importlib.import_module("wonderful_team.models.offline").OfflineModel())

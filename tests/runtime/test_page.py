@@ -177,7 +177,7 @@ def test_missing_pictures_do_not_stop_the_page(folder, tmp_path):
 @pytest.mark.parametrize(
     ("content", "message"),
     [
-        (None, "no record.json to read"),
+        (None, "record.json.* cannot be read: No such file"),
         ("{", "not JSON"),
         ('{"schema_version": 9}', "schema version 9; this release reads 1"),
     ],

@@ -90,6 +90,11 @@ def run(argv: list[str]) -> int:
         The exit code. An error has then been told on stderr, and as a JSON document on stdout with --json.
     """
     _write_anything()
+    foreign = [word for word in argv if any(0xD800 <= ord(letter) <= 0xDFFF for letter in word)]
+    if foreign:
+        return _fail(
+            [word for word in argv if word not in foreign], "UsageError", f"{foreign[0]!r} is not text in UTF-8", 2
+        )
     try:
         code: Any = group.main(args=argv, prog_name="wonderful-team", standalone_mode=False, obj=tuple(argv))
         return code if isinstance(code, int) else 0

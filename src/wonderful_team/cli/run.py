@@ -62,6 +62,7 @@ def command(
     from wonderful_team.cli.progress import Progress
     from wonderful_team.cli.report import report_trial
     from wonderful_team.cli.video import Film, check_video_name
+    from wonderful_team.errors import reading
     from wonderful_team.methods import Method
     from wonderful_team.photos import read_keep_out
     from wonderful_team.registry import scene_name, team_way
@@ -74,7 +75,8 @@ def command(
     if looks is None:
         looks = LOOKS if replans and plan is None else 0
     kind = Method if team_way(common.method) is None else Team
-    regions = read_keep_out(keep_out)
+    with reading("--keep-out", "[NAME=]x0,y0,x1,y1[px|m]"):
+        regions = read_keep_out(keep_out)
     progress = Progress()
     method = kind(**common.team_arguments(), subscribers=(progress,))
     place = make_world(world, seed, instruction, regions)

@@ -9,7 +9,14 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from wonderful_team import errors
-from wonderful_team.errors import BudgetReached, ModelOutputError, ReplayError, UnknownNameError, WonderfulTeamError
+from wonderful_team.errors import (
+    BudgetReached,
+    ModelOutputError,
+    ReplayError,
+    UnknownNameError,
+    WonderfulTeamError,
+    reading,
+)
 from wonderful_team.interfaces import Model
 from wonderful_team.jsonable import to_jsonable
 from wonderful_team.models.budget import Estimate
@@ -40,12 +47,16 @@ class ReplayModel:
     """
 
     def __init__(self, record: Mapping[str, Any], *, tolerant: bool = False) -> None:
-        told = record.get("configuration", {}).get("model") or "a model"
-        self.name = f"replay of {told}"
+        with reading("the record"):
+            self._read(record)
         self.tolerant = tolerant
         self.differences: list[str] = []
         self.replayed = 0
         self.failed: list[WonderfulTeamError] = []
+
+    def _read(self, record: Mapping[str, Any]) -> None:
+        told = record.get("configuration", {}).get("model") or "a model"
+        self.name = f"replay of {told}"
         self._entries = {(entry["id"], entry["attempt"]): entry for entry in record["planner"]["requests"]}
         outcome = record.get("outcome") or {}
         plans = record["planner"]["plans"]
@@ -71,7 +82,8 @@ class ReplayModel:
             if self._budget is not None:
                 raise BudgetReached(self._budget)
             raise ReplayError(f"{_called(request)} is not in the record: this time the run took another way")
-        found = differences(request, entry)
+        with reading(f"{_called(request)} in the record"):
+            found = differences(request, entry)
         if found and not self.tolerant:
             raise ReplayError(f"{_called(request)} is not what was asked then: {'; '.join(found)}")
         self.differences += [f"{_called(request)}: {text}" for text in found]

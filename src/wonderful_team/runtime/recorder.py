@@ -20,11 +20,11 @@ from wonderful_team.runtime import entries
 from wonderful_team.runtime.keep_out import outlines
 from wonderful_team.runtime.picture_store import PictureStore
 from wonderful_team.runtime.plan_file import plan_to_json
+from wonderful_team.runtime.record_schema import RECORD_SCHEMA_VERSION
 from wonderful_team.runtime.redact import redact, redact_all, secrets_of_environment
 from wonderful_team.runtime.versions import versions
 from wonderful_team.types import Instruction, Limits, Observation, Plan, Request, Trial
 
-RECORD_SCHEMA_VERSION = 1
 _REWRITE_EVERY_S = 0.3
 """Least time between two rewrites of record.json; important events are written at once."""
 _AT_ONCE = frozenset({"run", "stage", "plan", "gate", "execute", "subgoal", "warning", "crash", "done"})

@@ -22,7 +22,7 @@ def _golden():
 
 
 def test_there_is_a_golden_record_of_every_schema_version():
-    from wonderful_team.runtime.recorder import RECORD_SCHEMA_VERSION
+    from wonderful_team.runtime.record_schema import RECORD_SCHEMA_VERSION
 
     kept = {read_record(folder)["schema_version"] for folder in _golden()}
     assert kept == set(range(1, RECORD_SCHEMA_VERSION + 1))

@@ -183,7 +183,7 @@ class Event:
     """Something that happened.
 
     Attributes:
-        kind: request | answer | invalid | stage | decision | observe | gate | execute | verdict | warning | done.
+        kind: request | answer | invalid | stage | decision | observe | gate | execute | verdict | warning | crash | done.
         name: Which one, such as the request's id or the stage's name.
         content: The value itself (a Request, an Answer, a Plan, a GateReport, …) or a small mapping.
         round: Number of waiting rounds on the main line so far, where known.

@@ -49,6 +49,7 @@ class MadePlan:
         usage_by_role: Cost by role.
         seconds: How long planning took, on the wall clock.
         folder: The run folder; None when nothing was recorded.
+        told: Warnings of the run beside those of the plan, as they were told while it ran.
     """
 
     plan: Plan
@@ -57,6 +58,7 @@ class MadePlan:
     usage_by_role: Mapping[str, Usage] = field(default_factory=dict)
     seconds: float = 0.0
     folder: Path | None = None
+    told: tuple[str, ...] = ()
 
     @property
     def id(self) -> str:
@@ -84,7 +86,8 @@ class MadePlan:
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        return self.plan.warnings
+        """All that the user was warned of, each once."""
+        return tuple(dict.fromkeys((*self.told, *self.plan.warnings)))
 
     @property
     def subgoals(self) -> tuple[Subgoal, ...]:
@@ -152,9 +155,10 @@ class MadePlan:
 
 @dataclass(frozen=True, eq=False)
 class RecordedTrial(Trial):
-    """A trial that knows its run folder."""
+    """A trial that knows its run folder, and what the user was warned of."""
 
     folder: Path | None = None
+    warnings: tuple[str, ...] = ()
 
     @property
     def page(self) -> Path | None:

@@ -12,7 +12,7 @@ import inspect
 import shlex
 import shutil
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import lru_cache
 from pathlib import Path
@@ -28,7 +28,7 @@ from wonderful_team.evals.controls import CONTROLS, make_control
 from wonderful_team.evals.trials import Condition, Limiter, RunSettings, TrialResult, TrialSpec
 from wonderful_team.interfaces import Event, Model, Policy, World
 from wonderful_team.jsonable import to_jsonable
-from wonderful_team.loading import is_file_name
+from wonderful_team.loading import check_names_no_code, is_file_name
 from wonderful_team.methods import Method, role_names
 from wonderful_team.models.providers import model_options
 from wonderful_team.role_models import REST, choice_of
@@ -86,6 +86,7 @@ class Limited:
 
 def run_trial(spec: TrialSpec, settings: RunSettings) -> TrialResult:
     """Run one trial of a study in this process; a `TrialRunner`."""
+    check_code(spec, settings)
     if spec.task.endswith(".json"):
         from wonderful_team.photo_runs import run_photo
 
@@ -116,6 +117,26 @@ def run_trial(spec: TrialSpec, settings: RunSettings) -> TrialResult:
     finally:
         with contextlib.suppress(Exception):
             world.close()
+
+
+def code_of_names(names: Iterable[str], models: Iterable[str]) -> frozenset[str]:
+    """Those of tasks and methods, and of models (one or by role), that are FILE.py:NAME."""
+    chosen = [choice_of(model) for model in models]
+    single = [name for one in chosen for name in ([one] if isinstance(one, str) else one.values())]
+    return frozenset(name for name in (*names, *single) if is_file_name(name))
+
+
+def check_code(spec: TrialSpec, settings: RunSettings) -> None:
+    """Whether a trial names only code that the caller named: what a store's file says never runs by itself.
+
+    Raises:
+        ConfigError: It names other code.
+    """
+    if settings.named_code is None:
+        return
+    condition = spec.condition
+    for name in sorted(code_of_names((spec.task, condition.method), (condition.model,)) - settings.named_code):
+        check_names_no_code(name, "the store")
 
 
 class Unseen:

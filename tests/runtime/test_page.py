@@ -162,10 +162,12 @@ def test_a_half_finished_run_has_a_page(tmp_path):
     assert "it was still running when this page was made" in text
     world = SquaresWorld(trouble={1: RuntimeError("cable out")})
     moves = [((60.0, 60.0), (200.0, 30.0))]
-    with recorder, pytest.raises(RuntimeError):
+    with recorder:
         rollout(MovesPolicy([moves]), world, subscribers=[recorder])
     _, text = read(write_page(tmp_path))
     assert "RuntimeError: cable out" in text
+    # The traceback of the user's own code is there to be read.
+    assert "Traceback (most recent call last)" in text
 
 
 def test_a_refusal_shows_its_reasons(tmp_path):
@@ -186,7 +188,7 @@ def test_missing_pictures_do_not_stop_the_page(folder, tmp_path):
 @pytest.mark.parametrize(
     ("content", "message"),
     [
-        (None, "no record.json to read"),
+        (None, "record.json.* cannot be read: No such file"),
         ("{", "not JSON"),
         ('{"schema_version": 9}', "schema version 9; this release reads 1"),
     ],

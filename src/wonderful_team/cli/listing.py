@@ -127,7 +127,7 @@ def _prompts(out: Path | None) -> dict[str, str]:
 
 def _runs(out: Path | None) -> dict[str, str]:
     from wonderful_team.runs import all_runs
-    from wonderful_team.runtime.page.write import read_record
+    from wonderful_team.runtime.record_schema import read_record
 
     found = {}
     for folder in all_runs(out):

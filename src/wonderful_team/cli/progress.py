@@ -105,16 +105,32 @@ class Progress:
                 planned, report = event.content
                 self.line(
                     "execute",
-                    f"action {event.name} {planned.step.kind}: " + ("ran" if report.executed else f"{report.fault}"),
+                    f"action {event.name} {planned.step.kind}: " + report.words,
                 )
             case "warning":
                 self.line("warning", str(event.content))
+            case "crash":
+                for line in trace_lines(event.content.trace):
+                    self._write(f"    {line}")
             case "answer":
                 self.kept += event.content[1].provenance == "cached"
 
     def line(self, name: str, text: str) -> None:
         """One line: time, name, text."""
         self._write(f"{self.seconds:5.1f} s  {name:<{NAME_WIDTH}} {text}")
+
+
+TRACE_LINES = 6
+
+
+def trace_lines(trace: str) -> list[str]:
+    """The end of a traceback: where it was raised, and what."""
+    lines = trace.rstrip().splitlines()
+    return (
+        lines
+        if len(lines) <= TRACE_LINES
+        else [f"… {len(lines) - TRACE_LINES} lines more in log.txt", *lines[-TRACE_LINES:]]
+    )
 
 
 def cost_line(usage: Usage, seconds: float, kept: int = 0) -> str:

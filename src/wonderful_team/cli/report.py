@@ -46,6 +46,7 @@ def trial_json(trial: RecordedTrial) -> dict[str, Any]:
         "refusals": [reason for gate in trial.gates for reason in gate.reasons],
         "executed": sum(report.executed for report in trial.reports),
         "verdicts": to_jsonable(trial.verdicts),
+        "warnings": list(trial.warnings),
         **cost_json(trial.usage, trial.usage_by_role, trial.folder),
     }
 

@@ -64,11 +64,13 @@ def command(
     from wonderful_team.cli.progress import Progress
     from wonderful_team.cli.report import report_trial
     from wonderful_team.cli.video import FRAME_S, Film, check_video_name
+    from wonderful_team.errors import reading
     from wonderful_team.interfaces import Filmed
     from wonderful_team.methods import Method
     from wonderful_team.photos import read_keep_out
     from wonderful_team.registry import scene_name, team_way
     from wonderful_team.runtime import read_plan
+    from wonderful_team.runtime.user_code import close_world
 
     if video is not None:
         check_video_name(video)
@@ -76,7 +78,8 @@ def command(
     if looks is None:
         looks = LOOKS if replans and plan is None else 0
     kind = Method if team_way(common.method) is None else Team
-    regions = read_keep_out(keep_out)
+    with reading("--keep-out", "[NAME=]x0,y0,x1,y1[px|m]"):
+        regions = read_keep_out(keep_out)
     progress = Progress(live=not common.as_json)
     method = kind(**common.team_arguments(), subscribers=(progress,))
     place = make_world(world, seed, instruction, regions)
@@ -98,7 +101,7 @@ def command(
             subscribers=() if film is None else (film,),
         )
     finally:
-        place.close()
+        close_world(place, progress.note)
     if film is not None and video is not None:
         film.write(video)
         progress.note(f"video: {video} ({counted(len(film.frames), 'picture')})")

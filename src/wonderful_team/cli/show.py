@@ -13,7 +13,7 @@ import click
 from wonderful_team.cli.options import PATH, read_models
 from wonderful_team.cli.output import finish
 from wonderful_team.cli.report import shown_path
-from wonderful_team.errors import UnknownNameError
+from wonderful_team.errors import UnknownNameError, reading
 from wonderful_team.text import counted, picture_names, spoken, visible
 
 
@@ -71,7 +71,7 @@ def command(
 def _show(folder: Path, role: str | None, open_page: bool, as_json: bool) -> int:
     """The story, or one role's questions and answers."""
     from wonderful_team.runtime.page import write_page
-    from wonderful_team.runtime.page.write import read_record
+    from wonderful_team.runtime.record_schema import read_record
 
     record = read_record(folder)
     page = write_page(folder)
@@ -83,7 +83,8 @@ def _show(folder: Path, role: str | None, open_page: bool, as_json: bool) -> int
         chosen = [request for request in requests if request["role"] == role]
         text, result = "\n\n".join(_exchange(request) for request in chosen), {"requests": chosen}
     else:
-        text, result = "\n".join(_story(record)), record
+        with reading(f"{folder}: the record"):
+            text, result = "\n".join(_story(record)), record
     if open_page:
         click.launch(page.resolve().as_uri())
     last = f"page: {shown_path(page)}"
@@ -149,9 +150,10 @@ def _branch(folder: Path, stage: str, words: Sequence[str], out: Path | None, as
 def _diff(one: Path, two: Path, as_json: bool) -> int:
     """Two runs side by side; the exit code says nothing of the difference."""
     from wonderful_team.cli.diff import compare
-    from wonderful_team.runtime.page.write import read_record
+    from wonderful_team.runtime.record_schema import read_record
 
-    found = compare((one, read_record(one)), (two, read_record(two)))
+    with reading(f"{one}, {two}: the records"):
+        found = compare((one, read_record(one)), (two, read_record(two)))
     return finish("show", text="\n".join(found.lines()), result=found.to_json(), as_json=as_json, code=0)
 
 

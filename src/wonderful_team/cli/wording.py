@@ -37,7 +37,7 @@ def trial_exit_code(trial: RecordedTrial) -> int:
     if trial.outcome == "success" or (trial.outcome == "unscored" and trial.stage is None):
         return 0
     if trial.outcome == "error":
-        return 3
+        return 6 if trial.stage == "world" else 3
     if any(report.fault for report in trial.reports) and trial.stage == "execution":
         return 6
     status = trial.plans[-1].status if trial.plans else ""

@@ -101,7 +101,9 @@ class Execution:
                 self._close(planned, before, last, reports)
                 before, reports = last, []
             if not report.executed:
-                return Ending(None, "execution", f"action {index + 1} did not run: {report.fault or 'no reason given'}")
+                return Ending(
+                    None, "execution", f"action {index + 1} did not run: {report.fault or 'the robot gave no reason'}"
+                )
         return None
 
     def _execute(self, planned: PlannedAction, before: Observation, reports: list[StepReport]) -> StepReport:

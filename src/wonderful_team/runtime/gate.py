@@ -24,6 +24,7 @@ from wonderful_team.runtime.keep_out import table_height_m
 from wonderful_team.runtime.keep_out_checks import keep_out_checks, keep_out_px_checks
 from wonderful_team.runtime.seen_checks import height_checks, place_checks, way_checks
 from wonderful_team.runtime.sweep import Sweep, carry_height_m, sweep_of, swept_path_px
+from wonderful_team.text import counted
 from wonderful_team.types import GateCheck, GateReport, KeepOut, Limits, Observation, Plan, PlannedAction
 
 TOOL_RADIUS_M = 0.01

@@ -30,9 +30,16 @@ def thing_of(tree: Tree[Token]) -> Description:
             description = CHANGES[str(child.data)](child)(description)
     if _is_bare_one(tree, description):
         description = replace(description, noun="thing", name=PRONOUN)
-    if description.quantity == "all" and any(token.type == "OF_TWO" for token in tokens_in(tree)):
-        description = replace(description, quantity="one")
+    both_of_a_list = description.number > 1 and not any(_is_many(head) for head in trees(tree, "head"))
+    if description.quantity == "all" and (both_of_a_list or any(token.type == "OF_TWO" for token in tokens_in(tree))):
+        description = replace(description, quantity="one", number=1)
     return replace(description, text=render(description))
+
+
+def _is_many(head: Tree[Token]) -> bool:
+    """Whether a head is no noun in the singular: "both the red block and the green one" speaks of one each."""
+    values = [value_of(token) for token in tokens_in(head) if token.type in ("NOUN", "SHAPE")]
+    return not values or bool(values[-1][-1])
 
 
 def _is_bare_one(tree: Tree[Token], description: Description) -> bool:
@@ -71,7 +78,8 @@ def _quantity(tree: Tree[Token]) -> Change:
         return lambda d: replace(d, quantity="one" if number == 1 else "number", number=number)
     if "EACH" in kinds:
         return lambda d: replace(d, quantity="each")
-    return lambda d: replace(d, quantity="all")
+    counted = 2 if any(value_of(token) == 2 for token in kinds.values()) else 1  # noqa: PLR2004  "both"
+    return lambda d: replace(d, quantity="all", number=counted)
 
 
 def _head(tree: Tree[Token]) -> Change:

@@ -132,7 +132,7 @@ _SMALL: dict[str, str] = {
     "SHARE": "shares share sharing has have shows contains holds",
     "AUX": "should must shall be is are been being goes go belongs belong was were stood ends end ought gets lies lie stands stand sits sit rests wants wait comes come going",
     "EACH": "each every",
-    "ALL": "all both",
+    "ALL": "all",
     "ONE": "one ones",
     "RESPECTIVELY": "respectively",
     "EVERYTHING": "everything",
@@ -209,7 +209,7 @@ _OTHERS: dict[str, Entry] = {
     "clockwise": ("TURN", 1.0), "rightwards": ("TURN", 1.0), "cw": ("TURN", 1.0), "counterclockwise": ("TURN", -1.0),
     "anticlockwise": ("TURN", -1.0), "ccw": ("TURN", -1.0), "free": ("FREE", "free"), "empty": ("FREE", "free"),
     "clear": ("FREE", "free"), "open": ("FREE", "free"), "vacant": ("FREE", "free"), "unoccupied": ("FREE", "free"),
-    "back": ("ORIGIN", "origin"),
+    "back": ("ORIGIN", "origin"), "both": ("ALL", 2),
 }  # fmt: skip
 
 

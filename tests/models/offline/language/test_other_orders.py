@@ -145,7 +145,7 @@ def test_a_thing_that_must_stay_is_kept_in_mind() -> None:
     ],
 )
 def test_incomplete_commands_say_what_is_missing(text: str, missing: str) -> None:
-    with pytest.raises(NotUnderstoodError, match=f"I used: .*I do not know: .*{missing}.*I know: "):
+    with pytest.raises(NotUnderstoodError, match=f"I used: .*I do not know: .*{missing}.*I understand: "):
         understand(text)
 
 

@@ -25,7 +25,7 @@ from wonderful_team.models.offline.language.ordering import in_order
 from wonderful_team.models.offline.language.plain_speech import put_plainly
 from wonderful_team.models.offline.language.slots import BY_PARTS, gist_of_matching, read_clauses
 from wonderful_team.models.offline.language.tokens import Token, refusal, tokenise
-from wonderful_team.models.offline.language.vocabulary import known_words
+from wonderful_team.models.offline.language.vocabulary import nearest_words
 
 
 @lru_cache(maxsize=512)
@@ -243,7 +243,7 @@ def _no_sentence(text: str, tokens: list[Token], missing: str) -> str:
         f"I used: {', '.join(token.text for token in tokens)}. I do not know: what {text.strip()!r} asks for ({missing}). "
         "The words are known, but they do not make an instruction for me. I understand: put X into/onto/left of/beside Y, "
         "rotate X by N degrees, stack X on Y, push X to Y, swap X and Y, sort or put each X into the Y of the same colour. "
-        f"I know: {known_words()}. For other wordings name a vision-language model: --model anthropic:..., or probe your "
+        f"For other wordings name a vision-language model: --model anthropic:..., or probe your "
         "own server."
     )
 
@@ -251,6 +251,6 @@ def _no_sentence(text: str, tokens: list[Token], missing: str) -> str:
 def _no_noun_phrase(words: str, tokens: list[Token]) -> str:
     return (
         f"I know every word of {words.strip()!r}, but they do not name a thing for me. "
-        f"I used: {', '.join(token.text for token in tokens) or 'nothing'}. I know: {known_words()}. "
+        f"I used: {', '.join(token.text for token in tokens) or 'nothing'}. {nearest_words(())} "
         "For photos like this name a vision-language model: --model anthropic:..., or probe your own server."
     )

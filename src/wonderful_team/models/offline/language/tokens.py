@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from wonderful_team.errors import NotUnderstoodError
 from wonderful_team.models.offline.language.phrases import PHRASES
-from wonderful_team.models.offline.language.vocabulary import ARTICLES, FILLERS, NUMBERS, WORDS, known_words
+from wonderful_team.models.offline.language.vocabulary import ARTICLES, FILLERS, NUMBERS, WORDS, nearest_words
 
 _PIECE = re.compile(r"\{[^{}]+\}|beside_[a-z]+|\d+(?:\.\d+)?(?:nd|rd|th)?|°|[^\W\d_]+|[,;.:!?()]", re.UNICODE)
 _LONGEST = max(len(phrase) for phrase in PHRASES)
@@ -107,7 +107,7 @@ def refusal(tokens: list[Token], unknown: list[str]) -> str:
         or "nothing"
     )
     return (
-        f"I used: {used}. I do not know: {', '.join(dict.fromkeys(unknown))}. I know: {known_words()}. "
+        f"I used: {used}. I do not know: {', '.join(dict.fromkeys(unknown))}. {nearest_words(unknown)} "
         "For photos like this name a vision-language model: --model anthropic:..., or probe your own server."
     )
 

@@ -6,6 +6,9 @@ by name. The canonical values are those of `description.py`.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+from difflib import get_close_matches
+
 Entry = tuple[str, object]
 """Kind of token (a terminal of the grammar) and its value."""
 
@@ -260,12 +263,22 @@ WORDS: dict[str, Entry] = _words()
 """Single words."""
 
 
-def known_words() -> str:
-    """What the model knows, in one line for a refusal."""
-    nouns = sorted({word for word, (kind, value) in WORDS.items() if kind == "NOUN" and not value[2]})  # type: ignore[index]
-    return (
-        f"colours ({', '.join((*_COLOURS, 'orange'))}), patterns ({', '.join(_PATTERNS)}), "
-        f"materials ({', '.join(_MATERIALS)}), shapes ({', '.join(_SHAPES)}, "
-        f"l-shape, letters), nouns ({', '.join(nouns)}), left of, right of, above, below, beside, between, in, on, "
-        "largest, smallest, leftmost, rightmost, middle, put, rotate, stack, push, sort, each, all"
-    )
+_LISTED = {"COLOUR": "colours", "PATTERN": "patterns", "MATERIAL": "materials", "SHAPE": "shapes", "NOUN": "nouns",
+           "SUPER": "which of several", "ORDINAL": "which of several", "PUT": "put", "TAKE": "take", "ROTATE": "rotate", "STACK": "stack",
+           "SWAP": "swap", "RETURN": "put back", "REMOVE": "remove", "PUSH": "push", "SORT": "sort"}  # fmt: skip
+
+
+def known_words() -> dict[str, str]:
+    """The words that name things and ask for something, by kind; the small words of a sentence are left out."""
+    kinds: dict[str, list[str]] = {}
+    for word, (kind, _) in WORDS.items():
+        if kind in _LISTED:
+            kinds.setdefault(_LISTED[kind], []).append(word)
+    return {kind: ", ".join(sorted(words)) for kind, words in kinds.items()}
+
+
+def nearest_words(unknown: Iterable[str]) -> str:
+    """The known words nearest to unknown ones, and how to see all: a sentence for a refusal."""
+    near = [word for item in unknown for word in get_close_matches(item, WORDS, n=2, cutoff=0.75)]
+    known = f"{', '.join(dict.fromkeys(near))} (the nearest)" if near else "no word like that"
+    return f"I know: {known}; `wonderful-team list words` shows all that I know."

@@ -16,6 +16,8 @@ Change: TypeAlias = Callable[[Description], Description]
 _RELATIONS = {"LEFT_OF": "left_of", "RIGHT_OF": "right_of", "ABOVE": "above", "BELOW": "below", "NEAR": "near",
               "BY": "near", "FAR": "far_from", "ON": "on", "IN": "inside"}  # fmt: skip
 _SAME = {"colour": "same_colour", "texture": "same_pattern", "shape": "same_shape"}
+ONE = "one"
+"""Name of a description whose noun is one that was said before: "the green one"."""
 PRONOUN = "it"
 """Name of a description that stands for something said before."""
 
@@ -45,7 +47,7 @@ def _is_many(head: Tree[Token]) -> bool:
 def _is_bare_one(tree: Tree[Token], description: Description) -> bool:
     """Whether the words are "this one" or "that one" alone."""
     heads = [token.type for head in trees(tree, "head") for token in tokens_in(head)]
-    return heads == ["ONE"] and description == Description(noun="object", text="")
+    return heads == ["ONE"] and description == Description(noun="object", text="", name=ONE)
 
 
 def _place_of(tree: Tree[Token]) -> Description:
@@ -118,6 +120,8 @@ def _head_word(description: Description, token: Token) -> Description:
             return replace(description, noun="thing", name=token.type.lower())
         case "TABLE":
             return replace(description, noun="area", name="table")
+        case "ONE":
+            return replace(description, name=description.name or ONE)
         case _:
             return description
     return replace(description, quantity="all") if many and description.quantity == "one" else description
@@ -229,18 +233,8 @@ def _post_part(child: Token | Tree[Token], kinds: list[str], description: Descri
 
 
 def _except(tree: Tree[Token], description: Description) -> Description:
-    spared = tuple(_of_kind(np, description) for np in trees(tree, "np"))
+    spared = tuple(thing_of(np) for np in trees(tree, "np"))
     return replace(description, excluded=(*description.excluded, *spared))
-
-
-def _of_kind(tree: Tree[Token], whole: Description) -> Description:
-    """What "except the red one" leaves out is of the kind that it is left out of."""
-    spared = thing_of(tree)
-    heads = [token.type for head in trees(tree, "head") for token in tokens_in(head)]
-    if heads == ["ONE"]:
-        spared = replace(spared, noun=whole.noun, name=whole.name, shape=spared.shape or whole.shape)
-        spared = replace(spared, text=render(spared))
-    return spared
 
 
 def _post(tree: Tree[Token]) -> Change:

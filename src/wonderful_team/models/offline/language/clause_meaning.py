@@ -34,7 +34,9 @@ def _things(parts: Parts, meaning: Meaning) -> list[Description]:
 
 def read_swap(parts: Parts, meaning: Meaning) -> None:
     """Two things change places."""
-    things = [item for item in parts.of("np") if item.name != "table"]
+    things = [part for item in parts.of("np") if item.name != "table" for part in split_colours(item)]
+    if len(things) == _TWO:
+        things = [replace(item, quantity="one", number=1) for item in things]
     if len(things) == 1 and (things[0].quantity == "number" and things[0].number == _TWO):
         raise Unclear("name the two things to be swapped, each by its own words")
     if len(things) != _TWO:

@@ -13,7 +13,7 @@ _CONDITION_WORDS = frozenset(
     pieces piece""".split()
 )  # fmt: skip
 _LEAVE = re.compile(
-    r"(?:[.,;]|\band\b|\bbut\b|\botherwise\b|\belse\b)\s*(?:and |but |please |otherwise,? |if not,? |else |"
+    r"(?:[.,;!?]|\band\b|\bbut\b|\botherwise\b|\belse\b)\s*(?:and |but |please |otherwise,? |if not,? |else |"
     r"(?:if|when|where) (?:there (?:is|are) (?:none|no [a-z ]+|not)|none (?:exists?|is there)|no such [a-z]+ exists?),? )*"
     r"(?:(?:leave|ignore|skip|keep)\b[^.;{}]*|(?:do not|don't) (?:move|touch) (?:the )?(?:others?|rest|it|them)\b[^.;{}]*"
     r"|(?:the )?(?:others|rest|other fruits?|remaining [a-z]+)\b[^.;{}]*\b(?:stays?|remains?|where)\b[^.;{}]*"

@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from dataclasses import replace
 from functools import lru_cache
 
@@ -18,11 +19,13 @@ from wonderful_team.models.offline.language.changes import related_of, thing_of
 from wonderful_team.models.offline.language.clause_parts import VERBS, Unclear
 from wonderful_team.models.offline.language.commands import Command, Understood
 from wonderful_team.models.offline.language.conditions import open_conditions
+from wonderful_team.models.offline.language.framing import without_frames
 from wonderful_team.models.offline.language.gists import gist_of_gathering, whole_gist
 from wonderful_team.models.offline.language.grammar import parse
 from wonderful_team.models.offline.language.meaning import Meaning
 from wonderful_team.models.offline.language.ordering import in_order
 from wonderful_team.models.offline.language.plain_speech import put_plainly
+from wonderful_team.models.offline.language.references import with_noun, with_nouns
 from wonderful_team.models.offline.language.slots import BY_PARTS, gist_of_matching, read_clauses
 from wonderful_team.models.offline.language.tokens import Token, refusal, tokenise
 from wonderful_team.models.offline.language.vocabulary import nearest_words
@@ -35,14 +38,31 @@ def understand(text: str) -> Understood:
     Raises:
         NotUnderstoodError: A word is unknown, or the words do not make an instruction; says which.
     """
+    return unframed(text, _understand)
+
+
+def unframed(text: str, read: Callable[[str], Understood]) -> Understood:
+    """A text read as it stands; where that fails, without the sentences that ask for nothing."""
+    try:
+        return read(text)
+    except NotUnderstoodError:
+        plain, nothing_else = without_frames(text)
+        if plain == text:
+            raise
+    understood = read(plain)
+    return replace(understood, text=text, nothing_else=understood.nothing_else or nothing_else)
+
+
+def _understand(text: str) -> Understood:
     later = _LATER.search(text)
     if later is not None:
         raise NotUnderstoodError(refusal([], [later.group(0)]))
     bounds = set_bounds(put_plainly(without_reasons(_ACCORDINGLY.sub("", text))), try_describe)
     asides = set_aside(in_order(bounds.text), try_describe)
     plain, conditional = open_conditions(asides.text)
-    tokens = _joined(tokenise(plain))
+    tokens = _turns(_joined(tokenise(plain)))
     commands = _with_what_is_shared(_commands(tokens, asides.text, text), tokens, asides.text, text)
+    commands = with_nouns(commands)
     if conditional or asides.others_without:
         commands = tuple(replace(command, conditional=True) for command in commands)
     if bounds.off is not None or bounds.limit is not None:
@@ -150,7 +170,7 @@ def describe(words: str, where: str = "") -> Description:
     description = thing_of(tree)
     if where.strip():
         description = _with_where(description, where)
-    return description
+    return with_noun(description, None)
 
 
 def try_understand(text: str) -> Understood | None:
@@ -214,6 +234,20 @@ def _joined(tokens: list[Token]) -> list[Token]:
     while joined and joined[-1].kind in rank:
         joined.pop()
     return joined
+
+
+_WAYS = {"to left": -1.0, "leftwards": -1.0, "to right": 1.0, "rightwards": 1.0}
+
+
+def _turns(tokens: list[Token]) -> list[Token]:
+    """The words "turn the star to the left by 90 degrees" say which way, not which star."""
+    out: list[Token] = []
+    for at, token in enumerate(tokens):
+        after = next((item.kind for item in tokens[at + 1 :] if item.kind in ("ANGLE", *VERBS, "SEP", "THEN")), "")
+        before = next((item.kind for item in reversed(tokens[:at]) if item.kind in VERBS), "")
+        turned = token.kind == "SIDE_POST" and before == "ROTATE" and after == "ANGLE" and token.text in _WAYS
+        out.append(Token("TURN", _WAYS[token.text], token.text) if turned else token)
+    return out
 
 
 def _without_and(tokens: list[Token]) -> list[Token]:

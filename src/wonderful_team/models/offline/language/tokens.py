@@ -51,6 +51,14 @@ def tokenise(text: str) -> list[Token]:
     Raises:
         NotUnderstoodError: A word is not in the vocabulary; says which were used and which are unknown.
     """
+    tokens, unknown = cut(text)
+    if unknown:
+        raise NotUnderstoodError(refusal(tokens, unknown))
+    return tokens
+
+
+def cut(text: str) -> tuple[list[Token], list[str]]:
+    """Tokens of a text in order, and the words that are not in the vocabulary."""
     pieces = [piece for piece in _with_heads(_PIECE.findall(_plain(text))) if piece not in ARTICLES]
     tokens: list[Token] = []
     unknown: list[str] = []
@@ -62,9 +70,7 @@ def tokenise(text: str) -> list[Token]:
         elif length == 0:
             unknown.append(pieces[position])
         position += max(length, 1)
-    if unknown:
-        raise NotUnderstoodError(refusal(tokens, unknown))
-    return tokens
+    return tokens, unknown
 
 
 _BEFORE_HEAD = ("COLOUR", "ORANGE", "PATTERN", "MATERIAL", "LOOK", "SUPER", "SIDE", "DARK", "ORDINAL", "LETTER", "SLOT")

@@ -21,7 +21,7 @@ FILLERS = frozenset(
     currently once so task job goal your my our   safely properly correctly respective
     entire whole  own real alone picture image shown displayed pictured seen visible workspace scene desk
     surface tabletop here away down up overall around bright vivid suitable appropriate proper  individual
-    desktop single mind actually then able nice happy glad shall perhaps maybe kind happily yes well quite
+    desktop single mind actually then able nice happy glad shall perhaps maybe kind happily yes well quite midway halfway whichever
     simple simply current presently""".split()
 )
 """Words that are skipped: politeness, addressing the robot, and words that do not change what is asked."""
@@ -89,7 +89,7 @@ _VERBS: dict[str, str] = {
     "PUT": "put place move bring drop set lay transfer relocate deposit shift position carry deliver insert load placed "
     "moved brought dropped laid transferred relocated deposited shifted carried delivered inserted loaded putting "
     "placing moving bringing dropping transferring stick store throw toss slot pop stow stash dump "
-    "plop tuck add hand send haul release convey transport lower slip pass stored thrown",
+    "plop tuck serve add hand send haul release convey transport lower slip pass stored thrown",
     "TAKE": "take grab pick get lift fetch find locate grasp identify seize collect gather see spot notice consider taking "
     "picking grabbing choose select look use",
     "ROTATE": "rotate turn spin rotated turned rotates turns spins spun rotation twist rotating turning spinning revolve swivel reorient orient pivot",
@@ -121,7 +121,7 @@ _SMALL: dict[str, str] = {
     "AS": "as",
     "AND": "and but",
     "CONTAIN": "contain hold",
-    "FILL": "fill",
+    "FILL": "fill cover",
     "THEN": "then afterwards afterward subsequently thereafter",
     "THAT": "that which until till",
     "WHOSE": "whose",
@@ -172,7 +172,7 @@ _LOOKS: dict[str, tuple[str, tuple[str, ...]]] = {
 """Surfaces named after something else: pattern and colours."""
 _SUPERLATIVES: dict[str, str] = {
     "largest": "largest biggest large big bigger larger huge",
-    "smallest": "smallest littlest small little tiny smaller",
+    "smallest": "smallest littlest small little tiny tiniest smaller",
     "leftmost": "leftmost",
     "rightmost": "rightmost",
     "topmost": "topmost uppermost",

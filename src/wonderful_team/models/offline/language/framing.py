@@ -20,7 +20,10 @@ _THE_TASK = re.compile(
     r"\b(?:something|things?|tasks?|jobs?|works?|requests?|instructions?|this|that|following|all|everything)\b",
     re.IGNORECASE,
 )
-_FORBIDS = re.compile(r"\b(?:you (?:should|must|have to|need to)|not|never|without|except|avoid\w*|only|leave|keep|unless|if)\b|n't\b", re.IGNORECASE)
+_FORBIDS = re.compile(
+    r"\b(?:you (?:should|must|have to|need to)|not|never|without|except|avoid\w*|only|leave|keep|unless|if)\b|n't\b",
+    re.IGNORECASE,
+)
 _NAMED = r"\b(?:the|an?|this|that|these|those|my|your|our|his|her|their|its|every|each|some|any|no|of|with|in|into|on)\s+{}\b"
 _NOTHING_MORE = re.compile(
     r"\b(?:no|nothing) (?:more|else)\b(?: than (?:it|this|that|i|we) (?:says?|said)\b)?", re.IGNORECASE

@@ -53,6 +53,7 @@ _ASIDES = (
     (r"\b(?P<w>into|in|to) (?P<a>(?:the )?\{[^{}]+\})\s*,?\s*(?:and )?then (?=(?:the )?\{[^{}]+\}\s*(?:[.,;]|and\b|$))", r"into \g<a>, then into "),
     (r"(?P<a>\{[^{}]+\}|\bit|\bthere) (?:second|third|last|secondly|lastly)(?=\s*[.,;]|\s*$)", r"\g<a>"),
     (r"\b(?:after|once|when|as soon as) (?!(?:there|it|they|you|such|an?|one|this|that)\b)(?P<a>[^,;.]+?) (?:is|are|lies|sits|was|(?:has|have) (?:been|landed))(?: put| placed| set| moved)? (?P<w>in|inside|on|into|onto) (?P<b>[^,;.]+?)\s*,", r"put \g<a> \g<w> \g<b>, then "),
+    (r"(?:\b(?:on|at|to|towards|in) )(?P<what>(?:the |\{)[^,.;:']+?)['\u2019]s (?P<side>left|right)(?: (?:hand )?side)?\b", r"to the \g<side> of \g<what>"),
     (r"\b(?:whichever|whatever) (?P<what>[a-z]+) (?=(?:is|are|has|have)\b)", r"the \g<what> that "),
     (r"\b(that|there|it|what|who|which|here|where)['\u2019]s\b", r"\1 is"),
     (r"(?:^|(?<=[.;!?]))\s*which (?P<what>[^?{}]+?) (?P<is>is|are) (?P<where>[^?]+)\?(?P<rest>[^.;!?]*?)\b(?:it|that one|this one|them|those)\b", r"\g<rest> the \g<what> that \g<is> \g<where>"),

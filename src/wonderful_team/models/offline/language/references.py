@@ -31,7 +31,7 @@ def with_noun(description: Description, before: Description | None) -> Descripti
     """A description whose "one" is of the kind said before it; an object where none was."""
     full = description
     if description.name == ONE:
-        named = before is not None and before.like is None and before.name not in ("free", "table")
+        named = before is not None and before.like is None and before.name not in ("free", "table", ONE)
         kind = before if named and before is not None else Description(noun=description.noun, text="")
         full = replace(description, noun=kind.noun, name=kind.name, shape=description.shape or kind.shape)
     related = tuple(replace(item, to=tuple(with_noun(to, full) for to in item.to)) for item in full.related)

@@ -32,8 +32,9 @@ def thing_of(tree: Tree[Token]) -> Description:
             description = CHANGES[str(child.data)](child)(description)
     if _is_bare_one(tree, description):
         description = replace(description, noun="thing", name=PRONOUN)
+    some = {token.type for adj in trees(tree, "adj") for token in tokens_in(adj)} & {"OF_TWO", "OF", "ONE_OF"}
     both_of_a_list = description.number > 1 and not any(_is_many(head) for head in trees(tree, "head"))
-    if description.quantity == "all" and (both_of_a_list or any(token.type == "OF_TWO" for token in tokens_in(tree))):
+    if description.quantity == "all" and (both_of_a_list or some):
         description = replace(description, quantity="one", number=1)
     return replace(description, text=render(description))
 

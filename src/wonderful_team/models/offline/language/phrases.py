@@ -97,6 +97,8 @@ PHRASES: dict[tuple[str, ...], Entry] = {
         (("SUPER", "rightmost"), ("right most",)),
         (("SUPER", "topmost"), ("top most",)),
         (("SUPER", "bottommost"), ("bottom most",)),
+        (("BETWEEN", "between"), ("in between", "in the gap between", "in the space between", "into the gap between",
+                                  "into the space between", "halfway between", "midway between")),
         (("TAKE", "take"), ("pick up", "take hold of", "look for", "take up", "get hold of", "lift up", "start with", "begin with")),
         (("WANT", "want"), ("i want", "i would like", "i d like", "i want you to have", "see to it that",
                             "make sure that", "make sure", "ensure that", "ensure", "i wish", "we want", "i need",

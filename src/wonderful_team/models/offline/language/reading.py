@@ -28,6 +28,7 @@ from wonderful_team.models.offline.language.plain_speech import put_plainly
 from wonderful_team.models.offline.language.references import with_noun, with_nouns
 from wonderful_team.models.offline.language.slots import BY_PARTS, gist_of_matching, read_clauses
 from wonderful_team.models.offline.language.tokens import Token, refusal, tokenise
+from wonderful_team.models.offline.language.turns_of_phrase import turned
 from wonderful_team.models.offline.language.vocabulary import nearest_words
 
 
@@ -57,7 +58,7 @@ def _understand(text: str) -> Understood:
     later = _LATER.search(text)
     if later is not None:
         raise NotUnderstoodError(refusal([], [later.group(0)]))
-    bounds = set_bounds(put_plainly(without_reasons(_ACCORDINGLY.sub("", text))), try_describe)
+    bounds = set_bounds(put_plainly(turned(without_reasons(_ACCORDINGLY.sub("", text)))), try_describe)
     asides = set_aside(in_order(bounds.text), try_describe)
     plain, conditional = open_conditions(asides.text)
     tokens = _turns(_joined(tokenise(plain)))

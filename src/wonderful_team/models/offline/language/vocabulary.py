@@ -89,7 +89,7 @@ _VERBS: dict[str, str] = {
     "PUT": "put place move bring drop set lay transfer relocate deposit shift position carry deliver insert load placed "
     "moved brought dropped laid transferred relocated deposited shifted carried delivered inserted loaded putting "
     "placing moving bringing dropping transferring stick store throw toss slot pop stow stash dump "
-    "plop tuck serve add hand send haul release convey transport lower slip pass stored thrown",
+    "plop tuck serve tidy add hand send haul release convey transport lower slip pass stored thrown",
     "TAKE": "take grab pick get lift fetch find locate grasp identify seize collect gather see spot notice consider taking "
     "picking grabbing choose select look use",
     "ROTATE": "rotate turn spin rotated turned rotates turns spins spun rotation twist rotating turning spinning revolve swivel reorient orient pivot",

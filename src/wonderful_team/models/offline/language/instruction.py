@@ -21,6 +21,7 @@ from wonderful_team.models.offline.language.reading import try_describe, underst
 from wonderful_team.models.offline.language.shown_turns import define_turns
 from wonderful_team.models.offline.language.shows import Shows
 from wonderful_team.models.offline.language.tokens import refusal
+from wonderful_team.models.offline.language.turns_of_phrase import in_full
 
 
 def read_instruction(text: str, shows: Shows) -> Understood:
@@ -33,7 +34,7 @@ def read_instruction(text: str, shows: Shows) -> Understood:
 
 
 def _read(text: str, shows: Shows) -> Understood:
-    plain = without_mentions(define_words(define_turns(text, shows, try_describe), shows), shows)
+    plain = without_mentions(define_words(define_turns(in_full(text), shows, try_describe), shows), shows)
 
     told: list[Understood] = []
 

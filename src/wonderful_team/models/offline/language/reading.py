@@ -16,7 +16,7 @@ from wonderful_team.models.offline.language.accounting import passed_over
 from wonderful_team.models.offline.language.asides import set_aside, without_reasons
 from wonderful_team.models.offline.language.bounds import Bounds, set_bounds
 from wonderful_team.models.offline.language.changes import related_of, thing_of
-from wonderful_team.models.offline.language.clause_parts import VERBS, Unclear
+from wonderful_team.models.offline.language.clause_parts import PLACES, VERBS, Unclear
 from wonderful_team.models.offline.language.commands import Command, Understood
 from wonderful_team.models.offline.language.conditions import open_conditions
 from wonderful_team.models.offline.language.framing import without_frames
@@ -222,6 +222,7 @@ def _noun_words(words: str) -> str:
 def _joined(tokens: list[Token]) -> list[Token]:
     """Runs of commas, stops, "and" and "then" become one; none at either end."""
     tokens = _without_and(tokens)
+    tokens = _listed(tokens)
     rank = {"COMMA": 0, "AND": 1, "SEP": 2, "THEN": 3}
     joined: list[Token] = []
     for token in tokens:
@@ -249,6 +250,25 @@ def _turns(tokens: list[Token]) -> list[Token]:
         turned = token.kind == "SIDE_POST" and before == "ROTATE" and after == "ANGLE" and token.text in _WAYS
         out.append(Token("TURN", _WAYS[token.text], token.text) if turned else token)
     return out
+
+
+def _listed(tokens: list[Token]) -> list[Token]:
+    """The words "the red block and then the green block go into the bowl" list things; "then" starts no clause."""
+    out: list[Token] = []
+    started = False
+    for at, token in enumerate(tokens):
+        if token.kind == "SEP":
+            started = False
+        elif token.kind == "THEN" and not started and out and not _verb_follows(tokens, at + 1):
+            token = Token("AND", "and", token.text)
+        elif token.kind in (*VERBS, *PLACES, "AUX", "WANT", "GIVE", "ANGLE", "ORIGIN", "CONTAIN", "FILL"):
+            started = True
+        out.append(token)
+    return out
+
+
+def _verb_follows(tokens: list[Token], at: int) -> bool:
+    return at < len(tokens) and tokens[at].kind in (*VERBS, "WANT", "GIVE")
 
 
 def _without_and(tokens: list[Token]) -> list[Token]:

@@ -10,10 +10,13 @@ import re
 _PUTTING = r"(?:putting|placing|moving|dropping|setting|laying|bringing)"
 _WHICH = r"(?P<which>[a-z]+(?:st|est|most)|last|first|second|third|fourth|fifth|(?:furthest|farthest) (?:to the )?(?:left|right))"
 _PLACE = r"(?:in|on|into|onto|inside|next to|beside|near|left of|right of|above|below)"
-_TURNS = (
+_SHORT = (
     (r"\bi['\u2019]d\b", "i would"),
     (r"\bi['\u2019]ll\b", "i will"),
     (r"\b(that|there|it|what|who|which|here|where)['\u2019]s\b", r"\1 is"),
+)
+_TURNS = (
+    *_SHORT,
     (r"\b(left|right)[ -]hand\b(?= side)", r"\1"),
     (r"\bover (?=(?:to|on|onto) the (?:left|right|other)\b)", ""),
     (r"(?:\b(?:on|at|to|towards|in) )(?P<what>(?:the |\{)[^,.;:'\u2019]+?)['\u2019]s (?P<side>left|right)(?: (?:hand )?side)?\b", r"to the \g<side> of \g<what>"),
@@ -34,5 +37,12 @@ _TURNS = (
 def turned(text: str) -> str:
     """The same instruction without these turns of phrase."""
     for pattern, plain in _TURNS:
+        text = re.sub(pattern, plain, text, flags=re.IGNORECASE)
+    return text
+
+
+def in_full(text: str) -> str:
+    """The same instruction without contractions."""
+    for pattern, plain in _SHORT:
         text = re.sub(pattern, plain, text, flags=re.IGNORECASE)
     return text

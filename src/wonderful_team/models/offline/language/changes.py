@@ -230,6 +230,8 @@ def _post_part(child: Token | Tree[Token], kinds: list[str], description: Descri
         return replace(description, like_only=only) if "SLOT" in kinds else description
     if child.type == "SLOT":
         return replace(description, like=value_of(child))
+    if child.type == "NOUN":
+        return replace(description, noun=value_of(child)[0], name=value_of(child)[1])
     return _adjective(description, child)
 
 

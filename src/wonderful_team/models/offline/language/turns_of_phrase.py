@@ -30,6 +30,10 @@ _TURNS = (
     (r"(?:^|(?<=[.;!?]))\s*which (?P<what>[^?{}]+?) (?P<is>is|are) (?P<where>[^?]+)\?(?P<rest>[^.;!?]*?)\b(?:it|that one|this one|them|those)\b", r"\g<rest> the \g<what> that \g<is> \g<where>"),
     (rf"\b(?:after|once|when|as soon as) (?!(?:there|it|they|you|such|an?|one|this|that)\b)(?P<a>[^,;.]+?) (?:is|are|lies|sits|was|(?:has|have) (?:been|landed))(?: put| placed| set| moved)? (?P<w>{_PLACE}) (?P<b>[^,;.]+?)\s*,", r"put \g<a> \g<w> \g<b>, then "),
     (r",?\s*\bbefore (?:it )?(?:going|returning|being (?:put|brought|taken)|(?:goes|is (?:put|brought|taken))) (?=back|to (?:its|the) (?:own|original|old))", ", then goes "),
+    (r"\b(?P<go>(?:go|belong)(?:es|s)?|should|must|need|are) both\b|\bboth (?=(?:go|belong|should|must|need|are|have)\b)", r"\g<go> "),
+    (r"\buse (?:the|your|its) (?:gripper|arm|hand|tool|suction cup|robot) to\b", " "),
+    (r"\bit would be (?:great|good|nice|lovely|helpful) if (?P<what>[^,.;]+?) (?:was|were|is|could be)\b", r"\g<what> should be"),
+    (r"\b(?:i|we) (?:would )?(?:like|want|love) to have\b", "i want"),
     (r"\b(?P<put>put|set|place|lay) (?P<it>it|them) (?:down )?on(?:to)? the (?:table|desk|surface)\b", r"\g<put> \g<it> onto a free area"),
 )  # fmt: skip
 

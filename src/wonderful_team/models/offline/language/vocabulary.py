@@ -101,7 +101,7 @@ _VERBS: dict[str, str] = {
     "PUSH": "push slide pushed slid shove nudge pushing sliding drag sweep swept sweeping shoved shoving brush wipe",
     "SORT": "sort distribute pair unite combine couple  group sorted distributed sorting allocate assign organise organize arrange",
     "GIVE": "give perform apply make do execute undergo undergoes receive receives does makes",
-    "WANT": "want wish",
+    "WANT": "want wish prefer",
     "LEAVE": "leave ignore skip keep",
 }
 _SMALL: dict[str, str] = {

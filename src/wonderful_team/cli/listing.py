@@ -12,10 +12,10 @@ from wonderful_team.cli.output import finish
 from wonderful_team.errors import ConfigError
 from wonderful_team.text import counted, visible
 
-KINDS = ("models", "worlds", "tasks", "suites", "methods", "prompts", "runs")
+KINDS = ("models", "worlds", "tasks", "suites", "methods", "prompts", "words", "runs")
 
 
-@click.command(name="list", short_help="List models, worlds, tasks, suites, methods, prompts or runs.")
+@click.command(name="list", short_help="List models, worlds, tasks, suites, methods, prompts, words or runs.")
 @click.argument("kind", type=click.Choice(KINDS))
 @click.option(
     "--out", type=PATH, metavar="DIR", help="For runs: where they lie. For prompts: write them there, to edit."
@@ -24,7 +24,7 @@ KINDS = ("models", "worlds", "tasks", "suites", "methods", "prompts", "runs")
 @click.option("--open", "open_page", is_flag=True, help="Open the table of --html.")
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON document instead of text.")
 def command(kind: str, out: Path | None, html: Path | None, open_page: bool, as_json: bool) -> int:
-    """List models, worlds, tasks, suites, methods, prompts or runs, each with a line of help."""
+    """List models, worlds, tasks, suites, methods, prompts, words (that `offline` reads) or runs, each with a line of help."""
     if kind != "runs" and (html is not None or open_page):
         raise click.UsageError("--html and --open go with `list runs`")
     if open_page and html is None:
@@ -36,6 +36,7 @@ def command(kind: str, out: Path | None, html: Path | None, open_page: bool, as_
         "suites": _suites,
         "methods": _methods,
         "prompts": _prompts,
+        "words": _words,
         "runs": _runs,
     }
     found = lists[kind](out)
@@ -123,6 +124,12 @@ def _prompts(out: Path | None) -> dict[str, str]:
     except OSError as error:
         raise ConfigError(f"--out {str(out)!r}: {error.strerror}") from error
     return {str(out / name): "written" for name in files}
+
+
+def _words(out: Path | None) -> dict[str, str]:
+    from wonderful_team.models.offline.language import known_words
+
+    return known_words()
 
 
 def _runs(out: Path | None) -> dict[str, str]:

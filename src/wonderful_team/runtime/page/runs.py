@@ -20,7 +20,8 @@ from PIL import Image
 from wonderful_team.errors import ConfigError
 from wonderful_team.runtime.page.sections import summary
 from wonderful_team.runtime.page.words import brief, money, seconds
-from wonderful_team.runtime.page.write import PAGE_NAME, read_record
+from wonderful_team.runtime.page.write import PAGE_NAME
+from wonderful_team.runtime.record_schema import read_record
 from wonderful_team.text import counted, visible
 
 _HERE = Path(__file__).parent

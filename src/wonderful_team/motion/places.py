@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -14,6 +14,7 @@ from wonderful_team.geometry import Box
 from wonderful_team.motion.beside import beside_px, half_extents
 from wonderful_team.motion.lift import Lift, Spot
 from wonderful_team.motion.progress import Progress
+from wonderful_team.motion.sharing import Share, share_px
 from wonderful_team.pictures import Point
 from wonderful_team.types import GroundedTarget, Limits, PointRole
 
@@ -32,7 +33,8 @@ class Places:
     """The grounded targets of a plan in their view.
 
     Attributes:
-        step: Number of the step that is being computed, from 1; for messages.
+        step: Number of the step that is being computed, from 1.
+        shares: By step number, which part of its place a thing gets that lies there together with others.
     """
 
     grounded: Mapping[str, GroundedTarget]
@@ -40,6 +42,7 @@ class Places:
     limits: Limits
     paths: Mapping[str, tuple[Point, ...]]
     step: int = 1
+    shares: Mapping[int, Share] = field(default_factory=dict)
 
     def fail(self, message: str) -> PlanError:
         """The error to raise, naming the step."""
@@ -153,12 +156,26 @@ class Places:
                 # A thing that is put down where it is, such as one that is only turned.
                 return self.resting(target, progress)
             case At(target):
-                spot = self.spot(target, TO_PLACE, progress)[1]
+                spot = self._shared(target, self.spot(target, TO_PLACE, progress)[1])
                 return spot if progress.moved.get(target) else self._freed(spot, progress, thing, target)
             case OriginOf(target):
                 return self.origin(target)
             case Beside():
                 return self._beside(place, progress, thing, yaw_rad)
+
+    def _shared(self, name: str, spot: Spot) -> Spot:
+        """This step's part of a place that several things share; the place's own point for one thing alone."""
+        share = self.shares.get(self.step)
+        if share is None:
+            return spot
+        boxes = [self.target(thing).box for thing in share.things]
+        centre = self.point(name, TO_PLACE)[1]
+        px = share_px(share, self.target(name), boxes, centre, self.lift)
+        px = (spot.px[0] + px[0] - centre[0], spot.px[1] + px[1] - centre[1])
+        if px == spot.px:
+            return spot
+        how = f"{spot.how}; part {share.index + 1} of {len(share.things)} that go there"
+        return self.lift.at_height(px, 0.0 if spot.position_m is None else float(spot.position_m[2]), how)
 
     def _beside(self, place: Beside, progress: Progress, thing: str | None, yaw_rad: float) -> Spot:
         half = (0.0, 0.0)

@@ -13,6 +13,7 @@ from wonderful_team.runtime.freshness import freshness_checks, touched, watched
 from wonderful_team.runtime.gate import check_gate
 from wonderful_team.runtime.progress import Ending, Progress
 from wonderful_team.runtime.seen_checks import still_free_checks
+from wonderful_team.text import counted
 from wonderful_team.types import GateReport, Observation, Plan, PlannedAction, StepReport, SubgoalRun
 
 
@@ -85,7 +86,9 @@ class Execution:
         for index, planned in enumerate(actions):
             if horizon is not None and self._progress.executed >= horizon:
                 self._close(actions[index - 1], before, last, reports)
-                return Ending(None, "execution", f"the world's horizon of {horizon} actions is reached", final=True)
+                return Ending(
+                    None, "execution", f"the world's horizon of {counted(horizon, 'action')} is reached", final=True
+                )
             if index > 0 and not self._still_fresh(planned, index, plan, then, last, excused, stages[index]):
                 self._close(actions[index - 1], before, last, reports)
                 return Ending("failure", "gate", "; ".join(self._refused().reasons))
@@ -98,7 +101,9 @@ class Execution:
                 self._close(planned, before, last, reports)
                 before, reports = last, []
             if not report.executed:
-                return Ending(None, "execution", f"action {index + 1} did not run: {report.fault or 'no reason given'}")
+                return Ending(
+                    None, "execution", f"action {index + 1} did not run: {report.fault or 'the robot gave no reason'}"
+                )
         return None
 
     def _execute(self, planned: PlannedAction, before: Observation, reports: list[StepReport]) -> StepReport:

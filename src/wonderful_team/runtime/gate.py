@@ -24,6 +24,7 @@ from wonderful_team.runtime.keep_out import table_height_m
 from wonderful_team.runtime.keep_out_checks import keep_out_checks, keep_out_px_checks
 from wonderful_team.runtime.seen_checks import height_checks, place_checks, way_checks
 from wonderful_team.runtime.sweep import Sweep, carry_height_m, sweep_of, swept_path_px
+from wonderful_team.text import counted
 from wonderful_team.types import GateCheck, GateReport, KeepOut, Limits, Observation, Plan, PlannedAction
 
 TOOL_RADIUS_M = 0.01
@@ -209,7 +210,7 @@ def _plan_checks(actions: Sequence[PlannedAction], plan: Plan | None, expected_i
     if plan is not None:
         ours, theirs = _texts(actions), _texts(plan.actions)
         same = ours == theirs
-        value = f"{len(actions)} action{'s' * (len(actions) != 1)}" + ("" if same else ", not those of the plan")
+        value = counted(len(actions), "action") + ("" if same else ", not those of the plan")
         checks.append(GateCheck(None, "actions of the plan", same, value, f"the {len(theirs)} of plan {plan.id}"))
     if not actions:
         checks.append(GateCheck(None, "actions", False, "0", "at least 1"))

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Mapping
 from functools import cached_property
 
 from wonderful_team.actions import Action, PickPlace, Push, Vocabulary
 from wonderful_team.errors import ConfigError
+from wonderful_team.geometry.arrays import Array
 from wonderful_team.sims.tabletop.cameras import CAMERA_NAMES, TABLE_HIGH_M, TABLE_LOW_M
 from wonderful_team.sims.tabletop.options import Tiers, asked
 from wonderful_team.sims.tabletop.privileged import TabletopTruth
@@ -111,6 +113,15 @@ class TabletopWorld:
         if fault:
             return StepReport(action, False, {}, fault)
         return StepReport(action, True, self._table.run(action))
+
+    def film(self, each: Callable[[Mapping[str, Array]], None] | None, every_s: float = 0.1) -> None:
+        """Hand pictures of all cameras to `each` while an action runs; for people: no planner is shown them."""
+
+        def picture() -> None:
+            if each is not None:
+                each({name: self._table.draw(name).rgb for name in CAMERA_NAMES})
+
+        self._table.film(None if each is None else picture, every_s)
 
     def stop(self) -> None:
         """Nothing moves any more until a new world is made."""

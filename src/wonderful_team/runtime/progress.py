@@ -51,7 +51,11 @@ class Progress:
 
     def asking(self, situation: Situation) -> None:
         """Note what a method is told beside pictures and reports, so that it can be asked so again."""
-        counts = {name: getattr(situation, name) for name in ("attempt", "replans_left", "looks_left")}
+        counts = {
+            "attempt": situation.attempt,
+            "replans_left": situation.replans_left,
+            "looks_left": situation.looks_left,
+        }
         self.tell("asking", f"attempt {situation.attempt}", counts)
 
     def decided(self, decision: Decision) -> None:

@@ -23,13 +23,15 @@ TOOL_M = 0.01
 OVERLAP_M = 0.012
 """Two things overlap when a square of this side fits into what they share [m]: three pixels."""
 SLACK_M = 1e-5
+PUSHED_AWAY_M = 99.0
+"""Where blocks count as lying once they have been pushed [m]: no rule knows where."""
 SEEN = " (seen)"
 """Ends the names of rules that depth is needed for."""
 
 
 def broken_rules(case: Case) -> list[str]:
     """Every rule that a case breaks; [] when there is none."""
-    blocks, tool, found = list(case.blocks), case.tool_m, []
+    blocks, tool, found, places = list(case.blocks), case.tool_m, [], dict[int, str]()
     for number, planned in enumerate(case.actions, start=1):
         action = planned.action
         if not isinstance(action, PickPlace | Push):
@@ -37,14 +39,14 @@ def broken_rules(case: Case) -> list[str]:
         if isinstance(action, Push):
             problems, tool = _push(action, planned, blocks, tool, case)
         else:
-            problems, tool = _pick_place(action, planned, blocks, tool, case)
+            problems, tool = _pick_place(action, planned, blocks, tool, case, places)
         found += [f"{number}: {problem}" for problem in problems if case.depth or not problem.endswith(SEEN)]
         found += [f"{number}: {problem}" for problem in _sources(planned)]
     return found
 
 
 def _pick_place(
-    action: PickPlace, planned: PlannedAction, blocks: list[Block], tool: Any, case: Case
+    action: PickPlace, planned: PlannedAction, blocks: list[Block], tool: Any, case: Case, places: dict[int, str]
 ) -> tuple[list[str], Any]:
     found = _inside((action.pick_m, action.place_m))
     pick, place = action.pick_m, action.place_m
@@ -57,12 +59,14 @@ def _pick_place(
     stated = -math.radians(getattr(step, "rotate_deg", 0.0))
     if abs(math.remainder(action.yaw_rad - stated, 2 * math.pi)) > 1e-4:
         found.append("turns other than the step says")
-    under = [b for b in blocks if b.outline.buffer(-0.008).contains(Point(pick[:2]))]
-    held = max(under, key=lambda b: b.top) if under else None
+    # At an edge it may be one block or another: the one that fits is taken.
     over = [b for b in blocks if b.outline.buffer(0.008).contains(Point(pick[:2]))]
+    sure = [b for b in over if b.outline.buffer(-0.008).contains(Point(pick[:2]))]
+    unsure = [b for b in over if b not in sure and abs(pick[2] - b.top) <= 0.025]
+    held = max(unsure or sure, key=lambda b: b.top) if unsure or sure else None
     if held is not None and abs(pick[2] - held.top) > 0.025:
         found.append(f"picks at {pick[2]:.3f} m, the top is at {held.top:.3f} m{SEEN}")
-    if not over and pick[2] > 0.025:
+    if not over and pick[2] > 0.025 and not any(b.x > PUSHED_AWAY_M / 2 for b in blocks):
         found.append(f"picks in the air{SEEN}")
     shape = held.outline if held is not None else Point(pick[:2]).buffer(0.001)
     moved = affinity.rotate(shape, action.yaw_rad, origin=(pick[0], pick[1]), use_radians=True)
@@ -70,9 +74,10 @@ def _pick_place(
     found += _keep_out(
         case, tool, (pick, place), MultiPoint([*corners_of(shape), *corners_of(moved)]).convex_hull, shape, moved
     )
-    found += _in_the_way(action, planned, blocks, held, moved, carry, case)
+    found += _in_the_way(action, planned, blocks, held, moved, carry, case, places)
     if held is not None:
         x, y = _centre(moved)
+        places[blocks.index(held)] = planned.step.place.target if isinstance(planned.step, PickPlaceStep) else ""
         blocks[blocks.index(held)] = replace(held, x=x, y=y, yaw=held.yaw + action.yaw_rad, base=float(place[2]))
     return found, (float(place[0]), float(place[1]), carry)
 
@@ -85,13 +90,17 @@ def _in_the_way(
     moved: Any,
     carry: float,
     case: Case,
+    places: dict[int, str],
 ) -> list[str]:
     """What stands where the thing goes, or on its way there."""
     step, pick, place, found = planned.step, action.pick_m, action.place_m, list[str]()
     others = [b for b in blocks if b is not held]
     name = step.place.target if isinstance(step, PickPlaceStep) else ""
     for other in others:
-        meant = case.planned and name == f"T{blocks.index(other)}"
+        # What a step names, and what the plan has put to the same named thing, share its room.
+        number = blocks.index(other)
+        shared = name.startswith("T") and isinstance(step, PickPlaceStep) and isinstance(step.place, At)
+        meant = case.planned and (name == f"T{number}" or (shared and places.get(number) == name))
         if not meant and held is not None and _overlap(moved, other.outline) and other.top > place[2] + 0.015:
             found.append(f"puts it into a block of {other.top:.3f} m{SEEN}")
         unasked = case.planned and not meant and isinstance(step, PickPlaceStep) and isinstance(step.place, At)
@@ -103,6 +112,10 @@ def _in_the_way(
                 and _covers(moved, other)
             ):
                 found.append(f"stacks it where nobody asked{SEEN}")
+    support = max((b.top for b in others if b.outline.buffer(0.004).intersects(moved)), default=0.0)
+    pushed = any(b.x > PUSHED_AWAY_M / 2 for b in others)
+    if held is not None and not pushed and place[2] > support + 0.025:
+        found.append(f"lets it go {place[2] - support:.3f} m over what is there{SEEN}")
     hanging = pick[2] - held.base if held is not None else 0.0
     way = LineString([pick[:2], place[:2]]) if math.dist(pick[:2], place[:2]) > 1e-9 else Point(pick[:2])
     for other in others:
@@ -125,6 +138,10 @@ def _push(action: Push, planned: PlannedAction, blocks: list[Block], tool: Any, 
         if not (case.planned and name == f"T{index}") and other.outline.buffer(-0.01).contains(landing):
             if other.top > start[2] + 0.02:
                 found.append(f"comes down on a block{SEEN}")
+    if case.planned and name.startswith("T"):
+        # Where it comes to lie only a picture afterwards tells.
+        number = int(name[1:])
+        blocks[number] = replace(blocks[number], x=PUSHED_AWAY_M)
     return found, (float(end[0]), float(end[1]), CLEARANCE_M)
 
 

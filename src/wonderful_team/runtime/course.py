@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from shapely import affinity
+from shapely import MultiPolygon, affinity
 
 from wonderful_team.actions import At, Beside, Gripper, MoveStep, OriginOf, PickPlace, PickPlaceStep, Push, PushStep
 from wonderful_team.geometry import Box
@@ -19,6 +19,8 @@ from wonderful_team.types import GroundedTarget, Limits, Plan, PlannedAction, Vi
 
 RING_SHARE, LEAST_RING_PX = 0.15, 2.0
 """How far round a box its support is looked for: share of its smaller side, and at least so many pixels."""
+RETURNED_M = 0.02
+"""So near to where it was seen a thing has returned [m]."""
 GONE_M = -1e6
 """Where points go that nothing shows any more [m]: far from every table."""
 _MOST_POINTS = 4000
@@ -57,6 +59,8 @@ class Stage:
         level: Whether the place has to be level with its surroundings: nothing was named to stand on.
         stated: Whether a plan names the place; otherwise its numbers have to agree with the surface.
         restored: It goes back to where it stood, so what was seen beside it there leaves room for it.
+        put: Which points belong to things that the plan itself has put somewhere, but for the named place and what the
+            plan puts there as well, shape (N,) bool.
     """
 
     planned: PlannedAction
@@ -67,6 +71,7 @@ class Stage:
     level: bool
     stated: bool
     restored: bool = False
+    put: Array | None = None
 
 
 class Course:
@@ -75,11 +80,12 @@ class Course:
     def __init__(self, view: View, plan: Plan | None, table_z_m: float, holding: bool = False) -> None:
         self._view, self._table_z_m = view, table_z_m
         self._grounded = dict(plan.grounded) if plan is not None else {}
-        self._relief = Relief.of(view)
+        self._relief = self._seen = Relief.of(view)
         self._held: tuple[str, Carried, Array] | None
         self._things: dict[str, Array] = {}
         self._bases: dict[str, float] = {}
         self._regions: dict[str, Any] = {}
+        self._lies_at: dict[str, str] = {}
         # What a robot holds from the start has a size that nobody has said.
         self._held = ("", Carried(None), np.zeros(0, dtype=np.int64)) if holding else None
         self._at: tuple[str, Array] | None = None
@@ -111,8 +117,12 @@ class Course:
         carried = self._carried(name, own, action.pick_m, base)
         meant, level, stated = self._place(step, action, own)
         back = isinstance(step, PickPlaceStep) and isinstance(step.place, OriginOf) and step.place.target == name
-        stage = Stage(planned, self._relief, own, carried, meant, level, stated, back and action.yaw_rad == 0)
+        back = back and action.yaw_rad == 0 and self._returns(name, action)
+        named = step.place.target if isinstance(step, PickPlaceStep) else ""
+        put = self._put(named)
+        stage = Stage(planned, self._relief, own, carried, meant, level, stated, back, put)
         self._move(name, own, base, action.pick_m, action.place_m, action.yaw_rad)
+        self._lies_at[name] = named if isinstance(step, PickPlaceStep) and isinstance(step.place, At) else ""
         return stage
 
     def _stated(self, place_m: Array, own: Array | None) -> Any | None:
@@ -155,6 +165,16 @@ class Course:
             )
         return stage
 
+    def _returns(self, name: str, action: PickPlace) -> bool:
+        """Whether a thing really comes to lie where the view shows it."""
+        target, now = self._grounded.get(name), self.region(name, action.pick_m)
+        corners = None if target is None or target.box is None else self._corners(target.box, first=True)
+        if corners is None or now is None:
+            return False
+        shown = outline(corners, 0.002).centroid
+        end = _shifted(now, action.pick_m, action.place_m, action.yaw_rad).centroid
+        return float(shown.distance(end)) <= RETURNED_M
+
     def region(self, name: str, at_m: Array) -> Any | None:
         """What a target covers of the table now, as a shape; None when nothing says so."""
         if name in self._regions:
@@ -166,12 +186,13 @@ class Course:
         corners = self._corners(box)
         return None if corners is None else outline(corners, 0.002)
 
-    def _corners(self, box: Box) -> Array | None:
-        """Points of the table that a box shows, shape (N, 2) [m]: those with depth in it, else its corners."""
-        if self._relief is not None:
-            inside = self._relief.in_box(box)
+    def _corners(self, box: Box, first: bool = False) -> Array | None:
+        """Points that a box shows, shape (N, 2) [m]: those with depth in it now, or at first, else its corners."""
+        relief = self._seen if first else self._relief
+        if relief is not None:
+            inside = relief.in_box(box)
             if inside.any():
-                return np.asarray(self._relief.xyz_m[inside, :2])
+                return np.asarray(relief.xyz_m[inside, :2])
         if self._view.camera is None:
             return None
         try:
@@ -209,15 +230,18 @@ class Course:
             return Carried(points[:: max(1, len(points) // _MOST_POINTS)] - tool_m[:2], hanging)
         target = self._grounded.get(name)
         region = self.region(name, tool_m) if target is not None and target.box is not None else None
-        corners = None if region is None else np.asarray(region.exterior.coords) - tool_m[:2]
-        return Carried(corners, hanging)
+        if region is None:
+            return Carried(None, hanging)
+        # What the plan itself has put onto it comes along.
+        on_it = [other for key, other in self._regions.items() if key != name and region.contains(other.centroid)]
+        whole = MultiPolygon([region, *on_it]).convex_hull
+        return Carried(np.asarray(whole.exterior.coords) - tool_m[:2], hanging)
 
     def _move(self, name: str, own: Array | None, base: float, start: Array, end: Array, yaw_rad: float) -> None:
         """The thing stands at its end now, and what it stood on shows where it was."""
         region = self.region(name, start) if name in self._grounded else None
         if region is not None:
-            turned = affinity.rotate(region, yaw_rad, origin=(float(start[0]), float(start[1])), use_radians=True)
-            self._regions[name] = affinity.translate(turned, float(end[0] - start[0]), float(end[1] - start[1]))
+            self._regions[name] = _shifted(region, start, end, yaw_rad)
         if own is None or self._relief is None or not own.any():
             return
         relief = self._relief
@@ -236,6 +260,11 @@ class Course:
         if name in self._grounded:
             self._things[name] = np.flatnonzero(own)
             self._bases[name] = float(end[2])
+
+    def _put(self, place: str) -> Array | None:
+        """Which points belong to things that earlier actions have put elsewhere than at a place, shape (N,) bool."""
+        moved = [indices for name, indices in self._things.items() if place not in (name, self._lies_at.get(name))]
+        return self._mask(np.concatenate(moved)) if moved else None
 
     def _mask(self, indices: Array) -> Array:
         assert self._relief is not None
@@ -281,6 +310,11 @@ def stages_of(actions: Sequence[PlannedAction], plan: Plan | None, view: View, l
         stages.append(course.next(planned, tool_m))
         tool_m = None if planned.action is None else sweep_of(planned.action, limits, tool_m).after_m
     return tuple(stages)
+
+
+def _shifted(region: Any, start: Array, end: Array, yaw_rad: float) -> Any:
+    turned = affinity.rotate(region, yaw_rad, origin=(float(start[0]), float(start[1])), use_radians=True)
+    return affinity.translate(turned, float(end[0] - start[0]), float(end[1] - start[1]))
 
 
 def _moved(points: Array, base: float, start: Array, end: Array, yaw_rad: float) -> Array:

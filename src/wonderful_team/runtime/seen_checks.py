@@ -91,8 +91,13 @@ def place_checks(action: Action, stage: Stage, limits: Limits) -> list[GateCheck
     if stage.restored:
         # What was seen beside it there left room for it; what the plan itself put there does not.
         others &= np.isnan(stage.relief.px[:, 0])
+    put = stage.put if stage.put is not None else np.zeros(len(others), dtype=bool)
     place_z_m = float(action.place_m[2])
-    return free_checks(_placed(action, stage), place_z_m, stage.relief, others, stage.meant, stage.level, limits)
+    placed = _placed(action, stage)
+    checks = free_checks(placed, place_z_m, stage.relief, others, stage.meant, stage.level, limits, put)
+    if stage.stated:
+        checks += _drop(placed, place_z_m, stage.relief, others if stage.own is None else ~stage.own)
+    return checks
 
 
 def still_free_checks(planned: PlannedAction, stage: Stage, view: View, limits: Limits) -> list[GateCheck]:
@@ -103,8 +108,9 @@ def still_free_checks(planned: PlannedAction, stage: Stage, view: View, limits: 
     others = np.ones(len(relief.xyz_m), dtype=bool)
     if stage.own is not None and stage.own.any():
         others = ~relief.inside(outline(stage.relief.xyz_m[stage.own, :2], 2 * OFF_M))
-    place_z_m = float(action.place_m[2])
-    return free_checks(_placed(action, stage), place_z_m, relief, others, stage.meant, False, limits)
+    placed, place_z_m = _placed(action, stage), float(action.place_m[2])
+    checks = free_checks(placed, place_z_m, relief, others, stage.meant, False, limits)
+    return checks + (_drop(placed, place_z_m, relief, others) if stage.stated else [])
 
 
 def _placed(action: PickPlace, stage: Stage) -> Array:
@@ -118,7 +124,14 @@ def _placed(action: PickPlace, stage: Stage) -> Array:
 
 
 def free_checks(
-    placed: Array, z_m: float, relief: Relief, others: Array, meant: Any | None, level: bool, limits: Limits
+    placed: Array,
+    z_m: float,
+    relief: Relief,
+    others: Array,
+    meant: Any | None,
+    level: bool,
+    limits: Limits,
+    put: Array | None = None,
 ) -> list[GateCheck]:
     """Whether a thing that covers `placed`, shape (M, 2) [m], finds room at a height.
 
@@ -130,13 +143,13 @@ def free_checks(
         meant: What it may touch.
         level: Whether what is round the place must not lie lower.
         limits: What lies outside the workspace is not looked at.
+        put: Which points belong to things that the plan has put there: they take room on what is meant too, shape (N,) bool.
     """
     shape = outline(placed, relief.spacing_m)
-    nearby = others & relief.inside(shape.buffer(relief.cell_m))
-    under = nearby.copy()
-    under[nearby] = covered(placed, relief.xyz_m[nearby, :2], relief.cell_m)
+    nearby, under = _under(placed, relief, others)
     if meant is not None:
-        under[under] = ~_within(relief.xyz_m[under, :2], meant)
+        free = _within(relief.xyz_m[under, :2], meant)
+        under[under] = ~free if put is None else ~free | put[under]
     specks = max(LEAST_SPECKS, int(SPECKS_SHARE * nearby.sum()))
     heights = np.sort(relief.xyz_m[under, 2])[::-1]
     top = float(heights[specks]) if len(heights) > specks else z_m
@@ -147,6 +160,25 @@ def free_checks(
     if level:
         checks += _level(shape, z_m, relief, others, limits)
     return checks
+
+
+def _under(placed: Array, relief: Relief, others: Array) -> tuple[Array, Array]:
+    """Which points lie near a thing that covers `placed`, and which of them under it; both of shape (N,) bool."""
+    nearby = others & relief.inside(outline(placed, relief.spacing_m).buffer(relief.cell_m))
+    under = nearby.copy()
+    under[nearby] = covered(placed, relief.xyz_m[nearby, :2], relief.cell_m)
+    return nearby, under
+
+
+def _drop(placed: Array, z_m: float, relief: Relief, others: Array) -> list[GateCheck]:
+    """Whether a thing comes to rest where it is let go: something that is seen under it is about as high."""
+    heights = relief.xyz_m[_under(placed, relief, others)[1], 2]
+    if not len(heights):
+        return []
+    top = float(heights.max())
+    room = top + AGREE_M - z_m
+    value = f"let go at {z_m:.3f} m, where {top:.3f} m is the highest"
+    return [GateCheck(None, "drop", room >= 0, value, f"at most {top + AGREE_M:.3f} m", f"{room:+.3f} m")]
 
 
 def _level(shape: Any, z_m: float, relief: Relief, others: Array, limits: Limits) -> list[GateCheck]:

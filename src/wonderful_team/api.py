@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import inspect
 import time
 import warnings
@@ -15,12 +16,13 @@ from wonderful_team.actions import PICK_PLACE, VOCABULARIES, Vocabulary
 from wonderful_team.errors import ConfigError, UnknownNameError
 from wonderful_team.finding import find
 from wonderful_team.interfaces import Decision, Event, Policy, Privileged, Situation, Subscriber, World
+from wonderful_team.interrupts import ends_on_signal, held
 from wonderful_team.made import MadePlan, RecordedTrial
 from wonderful_team.methods import Method
 from wonderful_team.planning import Team as Planner
 from wonderful_team.planning import Until
-from wonderful_team.runs import new_run_folder
-from wonderful_team.runtime import Approval, Approver, check_gate
+from wonderful_team.runs import find_run, new_run_folder
+from wonderful_team.runtime import Approval, Approver, ReadPlan, check_gate, read_run_plan
 from wonderful_team.runtime import rollout as roll_out
 from wonderful_team.runtime.loop import Caller
 from wonderful_team.runtime.page import write_page
@@ -150,17 +152,18 @@ class Team(Method):
         if limits is NO_WORKSPACE and observation.main.camera is not None:
             tell(everyone, "warning", "workspace", "no workspace is stated: the gate checks everything but that")
         work = make(recorder)
-        try:
-            with Caller() as caller:
-                plan: Plan = caller.wait_for(work.plan)
-            gate = plan_gate(plan, observation, vocabulary, limits)
-            if gate is not None:
-                tell(everyone, "gate", "before motion", gate)
-            tell(everyone, "done", plan.status, plan)
-        finally:
-            recorder.close()
-            _page_of(folder)
-        return MadePlan(plan, observation, gate, dict(work.usage_by_role()), time.monotonic() - started, folder)
+        with ends_on_signal():
+            try:
+                with Caller() as caller:
+                    plan: Plan = caller.wait_for(work.plan)
+                gate = plan_gate(plan, observation, vocabulary, limits)
+                if gate is not None:
+                    tell(everyone, "gate", "before motion", gate)
+                made = MadePlan(plan, observation, gate, dict(work.usage_by_role()), time.monotonic() - started, folder)
+                tell(everyone, "done", made.status, plan)
+            finally:
+                _close(recorder)
+        return made
 
 
 def make_world(
@@ -184,7 +187,7 @@ def rollout(
     method: Method | Policy,
     world: World,
     *,
-    plan: MadePlan | Plan | None = None,
+    plan: MadePlan | ReadPlan | Plan | str | Path | None = None,
     replans: int = 0,
     looks: int = 0,
     approval: Approval | Approver | None = None,
@@ -199,10 +202,14 @@ def rollout(
     Args:
         method: A Team, a Method, or anything with the Policy interface.
         world: Where it acts.
-        plan: A plan that was read beforehand: exactly that plan runs, or the gate refuses.
+        plan: A plan that was read beforehand: what `team.plan` returned, or the folder of the run that made it. Exactly
+            that plan runs, in its own instruction and scene, or nothing moves; after it ran, replans go on as asked.
+            A bare `Plan` comes without its picture: then the scene must be the same pixel for pixel.
         replans: How often the method may plan again after its first attempt.
         looks: How often it may run only the first push of a plan, look, and plan the rest anew; that is no replan.
-        approval: Consent to one plan, or a function that is asked for it before motion.
+        approval: Consent to one plan (`plan.approve("Ada")`), or a function that takes a `Proposal` and returns
+            `proposal.approve(…)` or `proposal.decline(…)`. A no ends the trial; a no with a reason is advice for one
+            new plan, which is asked about again.
         seed: What the record says of the scene's seed.
         scene: What the record calls the scene.
         scored: Let the world's scorer, where it has one, judge the outcome afterwards.
@@ -211,7 +218,10 @@ def rollout(
 
     Raises:
         ConfigError: Wrong use, before anything moved.
+        KeyboardInterrupt: Ctrl-C. The world was stopped and the record is whole.
+        SystemExit: SIGTERM or SIGHUP, likewise; its code is 128 + the signal's number.
     """
+    read = _read(plan)
     if isinstance(method, Method):
         method = method.in_world(world)
     named = method if isinstance(method, Method) else None
@@ -221,9 +231,7 @@ def rollout(
         for text in named.warnings:
             tell((recorder, *subscribers, *named.subscribers), "warning", "setup", text)
     policy: Policy = method.policy(recorder, *subscribers) if isinstance(method, Method) else method
-    made = plan if isinstance(plan, MadePlan) else None
     scorer: Privileged | None = registry.privileged(world) if scored else None
-    given = made.plan if made is not None else plan
     setup = setup_entry(
         "run",
         world.vocabulary,
@@ -233,15 +241,15 @@ def rollout(
         seed=seed,
         replans=replans,
         looks=looks,
-        plan=None if given is None else given.id,
+        plan=None if read is None else read.plan.id,
         scored=scorer is not None,
     )
-    try:
+    with ends_on_signal(), contextlib.ExitStack() as closing:
+        closing.callback(_close, recorder)
         trial = roll_out(
             policy,
             world,
-            plan=given,  # type: ignore[arg-type]
-            plan_observation=made.observation if made is not None else None,
+            plan=read,
             replans=replans,
             looks=looks,
             scorer=scorer,
@@ -256,10 +264,9 @@ def rollout(
                 "setup": setup,
                 "words": named.words() if named else {},
             },
+            page=lambda: _page_of(folder),
+            strict=named.strict if named else False,
         )
-    finally:
-        recorder.close()
-        _page_of(folder)
     held = {item.name: getattr(trial, item.name) for item in fields(trial)}
     return RecordedTrial(**held, folder=folder)
 
@@ -287,12 +294,41 @@ def plan_gate(plan: Plan, observation: types.Observation, vocabulary: Vocabulary
     return check_gate(plan.actions, vocabulary=vocabulary, limits=limits, plan=plan, then=observation, now=observation)
 
 
-def _page_of(folder: Path) -> None:
+def _read(plan: MadePlan | ReadPlan | Plan | str | Path | None) -> ReadPlan | None:
+    """A plan that is handed in, with its picture and its page where those are at hand.
+
+    Raises:
+        ConfigError: It is no plan, or its folder holds none.
+    """
+    match plan:
+        case None | ReadPlan():
+            return plan
+        case MadePlan():
+            photo = getattr(plan.observation, "photo", False)
+            return ReadPlan(plan.plan, plan.observation, plan.page, same_clock=not photo)
+        case Plan():
+            return ReadPlan(plan)
+        case str() | Path():
+            return read_run_plan(find_run(str(plan)))
+    raise ConfigError(
+        f"plan: a {type(plan).__name__} is no plan; valid: what team.plan returned, or the folder of the run that made it"
+    )
+
+
+def _close(recorder: Recorder) -> None:
+    """The record and the page, whole: a signal that comes meanwhile is raised afterwards."""
+    with held():
+        recorder.close()
+        _page_of(recorder.folder)
+
+
+def _page_of(folder: Path) -> Path | None:
     """Write the page. A run may have cost money and moved a robot: a defect of the page must not lose its result."""
     try:
-        write_page(folder)
+        return write_page(folder)
     except Exception as error:  # noqa: BLE001  told as a warning; `wonderful-team show` writes the page anew
         warnings.warn(f"the page of {folder} could not be written: {type(error).__name__}: {error}", stacklevel=3)
+    return None
 
 
 def tell(subscribers: Sequence[Subscriber], kind: str, name: str, content: Any) -> None:

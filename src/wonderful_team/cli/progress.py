@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import time
 from collections.abc import Callable, Mapping
 from typing import Any, Protocol
@@ -24,6 +25,12 @@ class Named(Protocol):
     def model_name(self) -> str: ...
 
 
+def _to_stderr(line: str) -> None:
+    """A terminal that is gone is no reason to leave a robot where it is: signals say what to do."""
+    with contextlib.suppress(OSError):
+        click.echo(line, err=True)
+
+
 class Progress:
     """Prints what happens while it happens.
 
@@ -37,7 +44,7 @@ class Progress:
 
     def __init__(
         self,
-        write: Callable[[str], None] = lambda line: click.echo(line, err=True),
+        write: Callable[[str], None] = lambda line: _to_stderr(line),
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
         self._write, self._clock, self._start = write, clock, clock()
@@ -63,9 +70,10 @@ class Progress:
                 self.line(event.name, _text(event.content))
             case "gate":
                 count = len(event.content.checks)
-                self.line(
-                    "gate", f"{event.name}: " + (f"admitted ({count} checks)" if event.content.admitted else "refused")
-                )
+                said = f"admitted ({count} checks)" if event.content.admitted else "refused:"
+                self.line("gate", f"{event.name}: {said}")
+                for reason in event.content.reasons:
+                    self._write(f"{'':9}{'':<{NAME_WIDTH}} {reason}")
             case "execute":
                 planned, report = event.content
                 self.line(

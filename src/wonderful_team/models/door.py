@@ -11,7 +11,6 @@ import contextlib
 import contextvars
 import inspect
 import json
-import threading
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
@@ -28,6 +27,7 @@ from wonderful_team.errors import (
     WonderfulTeamError,
 )
 from wonderful_team.interfaces import Event, Model, Subscriber
+from wonderful_team.interrupts import start_thread
 from wonderful_team.models.budget import Budget, Estimating, Ticket, hand_over
 from wonderful_team.models.wire.unreadable import Unreadable
 from wonderful_team.types import Answer, Request, Usage
@@ -217,7 +217,7 @@ async def _in_thread(answer: Callable[[Request], Any], request: Request) -> Any:
             # The loop may have ended meanwhile: then nobody waits any more.
             loop.call_soon_threadsafe(settle, result, failed)
 
-    threading.Thread(target=contextvars.copy_context().run, args=(work,), name="model", daemon=True).start()
+    start_thread(contextvars.copy_context().run, work, name="model")
     return await future
 
 

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
-from wonderful_team.interfaces import Act, Decision, Event, Policy, Subscriber, World
+from wonderful_team.interfaces import Act, Decision, Event, Policy, Situation, Subscriber, World
 from wonderful_team.runtime.optional import Accounting, Configured, NamedModel, Sourced
 from wonderful_team.types import GateReport, Observation, Plan, PlannedAction, StepReport, SubgoalRun, Trial, Verdict
 
@@ -48,10 +48,11 @@ class Progress:
     def observed(self, where: str, observation: Observation) -> None:
         self.tell("observe", where, observation)
 
-    def decided(self, decision: Decision) -> None:
-        """Note a decision and what it carries."""
+    def decided(self, decision: Decision, situation: Situation) -> None:
+        """Note a decision, what was asked, and what the decision carries."""
         name = type(decision).__name__
-        self.tell("decision", name, {"decision": name, "reason": getattr(decision, "reason", "")})
+        asked = {"attempt": situation.attempt, "replans_left": situation.replans_left, "advice": situation.advice}
+        self.tell("decision", name, {"decision": name, "reason": getattr(decision, "reason", ""), **asked})
         verdicts = tuple(getattr(decision, "verdicts", ()))
         if verdicts:
             self.verdicts += verdicts

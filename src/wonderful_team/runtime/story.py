@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -27,7 +28,9 @@ def situations(folder: Path, record: Record, setup: Setup) -> Iterator[Situation
     instruction = stored_instruction(folder, record)
     vocabulary, limits = Vocabulary(setup.vocabulary), same_limits(setup)
     before = _NOTHING
-    for attempt, decision in enumerate(record["planner"]["decisions"]):
+    for number, decision in enumerate(record["planner"]["decisions"]):
+        # Records of earlier releases do not say; they counted every question as a replan.
+        attempt = decision.get("attempt", number)
         now = decision["so_far"]
         # The last thing that happened before a decision is a look.
         observation = stored_observation(folder, record, now["observations"] - 1)
@@ -37,10 +40,11 @@ def situations(folder: Path, record: Record, setup: Setup) -> Iterator[Situation
             vocabulary,
             limits,
             attempt=attempt,
-            replans_left=setup.replans - attempt,
+            replans_left=decision.get("replans_left", setup.replans - attempt),
             executed=tuple(_runs(folder, record, before, now)),
             refused=_refusal(record["planner"]["gates"][before["gates"] : now["gates"]]),
-            plan=recorded_plan(folder, record, setup.plan) if attempt == 0 and setup.plan is not None else None,
+            plan=recorded_plan(folder, record, setup.plan) if number == 0 and setup.plan is not None else None,
+            advice=decision.get("advice", ""),
         )
         before = now
 
@@ -53,7 +57,8 @@ def recorded_plan(folder: Path, record: Record, plan_id: str) -> Plan:
     """
     for kept in record["planner"]["plans"]:
         if kept["id"] == plan_id:
-            return plan_from_json(kept, str(folder))
+            plan, instruction = plan_from_json(kept, str(folder), whole=False), stored_instruction(folder, record)
+            return replace(plan, instruction=instruction) if plan.instruction.text == instruction.text else plan
     known = ", ".join(str(kept["id"]) for kept in record["planner"]["plans"]) or "none"
     raise ConfigError(f"{folder}: the record does not hold the plan {plan_id}; it holds: {known}")
 
@@ -66,7 +71,7 @@ def _runs(folder: Path, record: Record, before: Mapping[str, int], now: Mapping[
         number = entry["plan"]
         if number is None:
             raise ConfigError(f"{folder}: subgoal {entry['subgoal']} belongs to no plan in the record")
-        plan = plan_from_json(planner["plans"][number], str(folder))
+        plan = plan_from_json(planner["plans"][number], str(folder), whole=False)
         first = done.get(number, 0)
         done[number] = last = first + entry["actions"]
         told = [

@@ -1,0 +1,58 @@
+"""Asking a person on the terminal whether a plan may run."""
+
+from __future__ import annotations
+
+import getpass
+import os
+import re
+
+import click
+
+from wonderful_team.cli.report import shown_path
+from wonderful_team.cli.wording import numbers_line
+from wonderful_team.runtime import Approval, Approver, Declined, Proposal
+
+TRIES = 3
+"""How often an answer that is neither yes nor no is asked for again."""
+_NO = re.compile(r"(?:n|no)\b[\s,;:.-]*(?:because\b)?[\s,;:.-]*(.*)", re.IGNORECASE | re.DOTALL)
+
+
+def ask_person() -> Approver:
+    """A function that shows what would be done, in numbers, and asks for consent; no answer is a no."""
+    return ask
+
+
+def ask(proposal: Proposal) -> Approval | Declined:
+    """Show the actions and the page, and ask."""
+    count = len(proposal.actions)
+    click.echo(
+        f"The gate admits {count} action{'s' * (count != 1)} ({len(proposal.gate.checks)} checks) of plan "
+        f"{proposal.id[:12]}:",
+        err=True,
+    )
+    for number, planned in enumerate(proposal.actions, start=1):
+        click.echo(f"  {number}  {numbers_line(planned)}", err=True)
+    if proposal.page is not None:
+        click.echo(f"page: {shown_path(proposal.page)}", err=True)
+    for _ in range(TRIES):
+        click.echo('Run this plan? [y / n / "n, because ..." for one new plan] ', nl=False, err=True)
+        try:
+            answer = input().strip()
+        except EOFError:
+            click.echo("no answer: declined", err=True)
+            return proposal.decline(who())
+        if answer.lower() in ("y", "yes"):
+            return proposal.approve(who())
+        no = _NO.fullmatch(answer or "n")
+        if no is not None:
+            return proposal.decline(who(), no[1].strip())
+        click.echo(f"{answer[:40]!r} is neither yes nor no", err=True)
+    return proposal.decline(who())
+
+
+def who() -> str:
+    """The user's name; a container may know its number alone."""
+    try:
+        return getpass.getuser()
+    except (KeyError, OSError):
+        return f"user {os.getuid()}"

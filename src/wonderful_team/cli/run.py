@@ -8,6 +8,7 @@ import click
 
 from wonderful_team.cli.options import PATH, Common, common
 from wonderful_team.runs import find_run
+from wonderful_team.text import counted
 
 LOOKS = 16
 """More pushes than any sweep of the suite may take."""
@@ -69,11 +70,14 @@ def command(
     from wonderful_team.cli.asking import ask_person
     from wonderful_team.cli.progress import Progress
     from wonderful_team.cli.report import report_trial
-    from wonderful_team.cli.video import Film, check_video_name
+    from wonderful_team.cli.video import FRAME_S, Film, check_video_name
+    from wonderful_team.errors import reading
+    from wonderful_team.interfaces import Filmed
     from wonderful_team.methods import Method
     from wonderful_team.photos import read_keep_out
     from wonderful_team.registry import scene_name, team_way
     from wonderful_team.runtime import read_run_plan
+    from wonderful_team.runtime.user_code import close_world
 
     if video is not None:
         check_video_name(video)
@@ -81,14 +85,17 @@ def command(
     if looks is None:
         looks = LOOKS if replans and plan is None else 0
     kind = Method if team_way(common.method) is None else Team
-    regions = read_keep_out(keep_out)
-    progress = Progress()
+    with reading("--keep-out", "[NAME=]x0,y0,x1,y1[px|m]"):
+        regions = read_keep_out(keep_out)
+    progress = Progress(live=not common.as_json)
     method = kind(**common.team_arguments(), subscribers=(progress,))
     place = make_world(world, seed, instruction, regions)
     try:
         film = Film() if video is not None else None
+        if film is not None and isinstance(place, Filmed):
+            place.film(film.motion, FRAME_S)
         progress.header(method)
-        progress.note(f"{scene_name(world, seed)}: {place.instruction.text}")
+        progress.task(scene_name(world, seed), place.instruction)
         trial = rollout(
             method,
             place,
@@ -101,8 +108,8 @@ def command(
             subscribers=() if film is None else (film,),
         )
     finally:
-        place.close()
+        close_world(place, progress.note)
     if film is not None and video is not None:
         film.write(video)
-        progress.note(f"video: {video} ({len(film.frames)} pictures)")
+        progress.note(f"video: {video} ({counted(len(film.frames), 'picture')})")
     return report_trial("run", trial, common, progress, {"video": None if video is None else str(video)})

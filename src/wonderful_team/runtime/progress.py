@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
+from wonderful_team.errors import WonderfulTeamError
 from wonderful_team.interfaces import Act, Decision, Event, Policy, Situation, Subscriber, World
 from wonderful_team.runtime.optional import Accounting, Configured, NamedModel, Sourced
 from wonderful_team.types import GateReport, Observation, Plan, PlannedAction, StepReport, SubgoalRun, Trial, Verdict
@@ -48,17 +49,28 @@ class Progress:
     def observed(self, where: str, observation: Observation) -> None:
         self.tell("observe", where, observation)
 
-    def decided(self, decision: Decision, situation: Situation) -> None:
-        """Note a decision, what was asked, and what the decision carries."""
+    def asking(self, situation: Situation) -> None:
+        """Note what a method is told beside pictures and reports, so that it can be asked so again."""
+        told = {name: getattr(situation, name) for name in ("attempt", "replans_left", "looks_left")}
+        if situation.advice:
+            told["advice"] = situation.advice
+        self.tell("asking", f"attempt {situation.attempt}", told)
+
+    def decided(self, decision: Decision) -> None:
+        """Note a decision and what it carries."""
         name = type(decision).__name__
-        asked = {"attempt": situation.attempt, "replans_left": situation.replans_left, "advice": situation.advice}
-        self.tell("decision", name, {"decision": name, "reason": getattr(decision, "reason", ""), **asked})
+        self.tell("decision", name, {"decision": name, "reason": getattr(decision, "reason", "")})
         verdicts = tuple(getattr(decision, "verdicts", ()))
         if verdicts:
             self.verdicts += verdicts
             self.tell("verdicts", "judge", verdicts)
         if isinstance(decision, Act) and decision.plan is not None:
             self.add_plan(decision.plan)
+
+    def traced(self, error: WonderfulTeamError) -> None:
+        """Tell the traceback of the user's own code, where that is what failed."""
+        if error.trace:
+            self.tell("crash", type(error).__name__, error)
 
     def add_plan(self, plan: Plan) -> None:
         if all(plan.id != known.id for known in self.plans):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 from wonderful_team.errors import (
     ConfigError,
@@ -14,7 +14,7 @@ from wonderful_team.errors import (
     WonderfulTeamError,
     WorldUnavailableError,
 )
-from wonderful_team.interfaces import Act, Decision, Done, GaveUp, Policy, Privileged, Situation, Subscriber, World
+from wonderful_team.interfaces import Act, Done, GaveUp, Policy, Privileged, Situation, Subscriber, World
 from wonderful_team.runtime.approval import Approval, Approver
 from wonderful_team.runtime.execute import Execution
 from wonderful_team.runtime.freshness import MAX_AGE_S
@@ -22,6 +22,7 @@ from wonderful_team.runtime.loop import Caller
 from wonderful_team.runtime.optional import ChunkPolicy, Horizon
 from wonderful_team.runtime.plan_scene import ReadPlan
 from wonderful_team.runtime.progress import Ending, Progress
+from wonderful_team.runtime.user_code import GuardedScorer, GuardedWorld, decision_of
 from wonderful_team.types import Observation, Plan, Trial
 
 MAX_ADVICE = 10
@@ -85,6 +86,7 @@ def rollout(
         raise ConfigError(
             f"looks is {looks}, but the plan was read (or approved) beforehand: it runs as it is, so looks must be 0"
         )
+    world = cast(World, GuardedWorld(world))
     progress = Progress(policy, scene, seed, tuple(subscribers))
     setup = {"method": policy.name, "seed": seed, "replans": replans, "looks": looks, **(configuration or {})}
     progress.tell("run", scene, {**setup, "task": world.instruction, "limits": world.limits})
@@ -137,11 +139,12 @@ def _attempts(
             looks_left=looks,
             advice=advice,
         )
-        decision: Decision = caller.wait_for(policy.decide(situation))
+        progress.asking(situation)
+        decision = decision_of(policy, situation, caller)
         if replanning and left == 0 and isinstance(decision, Act):
             # It was asked only for its judgement of what ran last.
             return halted or _ran_out()
-        progress.decided(decision, situation)
+        progress.decided(decision)
         if not isinstance(decision, Act):
             return _said(decision, progress)
         left -= replanning
@@ -184,13 +187,15 @@ def _halt(world: World, progress: Progress) -> None:
     """Stop what moves. That it cannot be stopped is told, and hides nothing of what happened before."""
     try:
         world.stop()
-    except Exception as error:  # noqa: BLE001  a driver's own error; the record must still be written
-        text = f"stop() failed ({type(error).__name__}: {error}): the robot may still be moving; a person must look"
-        progress.tell("warning", "halt", text)
+    except WonderfulTeamError as worse:
+        progress.tell("warning", "halt", f"{worse}: the robot may still be moving; a person must look")
+        progress.traced(worse)
 
 
 def _stop(progress: Progress, error: BaseException) -> Trial:
     """End a trial that an exception cut short; raises what is neither the method's, the provider's nor the robot's."""
+    if isinstance(error, WonderfulTeamError):
+        progress.traced(error)
     match error:
         case RobotFaultError() | SafetyStopError():
             progress.tell("warning", "halt", f"{error}. The run is halted; a person should look before it goes on.")
@@ -210,7 +215,11 @@ def _scored(progress: Progress, ending: Ending, scorer: Privileged | None) -> Tr
     """Let truth decide, now that nothing can learn from it any more."""
     if scorer is None:
         return progress.finish(Ending(ending.outcome or "unscored", ending.stage, ending.reason))
-    score = scorer.score()
+    try:
+        score = GuardedScorer(scorer).score()
+    except WonderfulTeamError as error:
+        progress.traced(error)
+        return progress.finish(Ending("error", error.stage or "world", str(error)))
     match score.success:
         case True:
             return progress.finish(Ending("success", None, score.reason or ending.reason))

@@ -8,9 +8,11 @@ import re
 
 import click
 
+from wonderful_team.cli.output import say
 from wonderful_team.cli.report import shown_path
 from wonderful_team.cli.wording import numbers_line
 from wonderful_team.runtime import Approval, Approver, Declined, Proposal
+from wonderful_team.text import counted
 
 TRIES = 3
 """How often an answer that is neither yes nor no is asked for again."""
@@ -24,29 +26,25 @@ def ask_person() -> Approver:
 
 def ask(proposal: Proposal) -> Approval | Declined:
     """Show the actions and the page, and ask."""
-    count = len(proposal.actions)
-    click.echo(
-        f"The gate admits {count} action{'s' * (count != 1)} ({len(proposal.gate.checks)} checks) of plan "
-        f"{proposal.id[:12]}:",
-        err=True,
-    )
+    actions, checks = counted(len(proposal.actions), "action"), counted(len(proposal.gate.checks), "check")
+    say(f"The gate admits {actions} ({checks}) of plan {proposal.id[:12]}:", err=True)
     for number, planned in enumerate(proposal.actions, start=1):
-        click.echo(f"  {number}  {numbers_line(planned)}", err=True)
+        say(f"  {number}  {numbers_line(planned)}", err=True)
     if proposal.page is not None:
-        click.echo(f"page: {shown_path(proposal.page)}", err=True)
+        say(f"page: {shown_path(proposal.page)}", err=True)
     for _ in range(TRIES):
         click.echo('Run this plan? [y / n / "n, because ..." for one new plan] ', nl=False, err=True)
         try:
             answer = input().strip()
-        except EOFError:
-            click.echo("no answer: declined", err=True)
+        except (EOFError, OSError, RuntimeError, UnicodeError):  # at its end, gone, closed, or no text
+            say("no answer: declined", err=True)
             return proposal.decline(who())
         if answer.lower() in ("y", "yes"):
             return proposal.approve(who())
         no = _NO.fullmatch(answer or "n")
         if no is not None:
             return proposal.decline(who(), no[1].strip())
-        click.echo(f"{answer[:40]!r} is neither yes nor no", err=True)
+        say(f"{answer[:40]!r} is neither yes nor no", err=True)
     return proposal.decline(who())
 
 

@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
 
+from wonderful_team.errors import ConfigError
 from wonderful_team.geometry import Box
 from wonderful_team.interfaces import Act, World
 from wonderful_team.runtime.approval import Approval, Approver, Declined, Proposal, file_hash
@@ -98,7 +99,12 @@ class Execution:
         page_file = self._page() if self._page is not None else None
         picture = (then or now).hash
         answer = self._approval(Proposal(decision.plan, decision.actions, report, picture, page_file))
-        said = answer if answer is not None else Declined()
+        said = Declined() if answer is None else answer
+        if not isinstance(said, Approval | Declined):
+            raise ConfigError(
+                f"the approval function returned a {type(said).__name__}; valid: proposal.approve(by), "
+                "proposal.decline(by, because) or None"
+            )
         self.declined = said if isinstance(said, Declined) else None
         # The scene may have changed while she was reading: it is looked at again.
         return self._check(decision, then, read, said, file_hash(page_file))

@@ -27,7 +27,7 @@ class Caller:
 
     def __enter__(self) -> Caller:
         self._loop = asyncio.new_event_loop()
-        self._thread = start_thread(self._loop.run_forever, name="rollout")
+        self._thread = start_thread(_run, self._loop, name="rollout")
         return self
 
     def __exit__(
@@ -53,6 +53,15 @@ class Caller:
         except BaseException:
             future.cancel()
             raise
+
+
+def _run(loop: asyncio.AbstractEventLoop) -> None:
+    """Until it is stopped: a method that raises SystemExit ends its own task, not the loop that others wait for."""
+    while True:
+        try:
+            return loop.run_forever()
+        except (SystemExit, KeyboardInterrupt):
+            continue
 
 
 async def _wind_up() -> None:

@@ -141,42 +141,24 @@ class Team(Method):
         make: Callable[[Recorder], _Work],
     ) -> MadePlan:
         """Make a plan in a run folder of its own, pass it through the gate, and write its page."""
-        folder = new_run_folder(instruction.plain_text, self.out)
-        recorder = Recorder(folder, command=self.command)
-        everyone = (recorder, *self.subscribers)
         started = time.monotonic()
-        told = {**self.configuration(), "task": instruction, "limits": limits, "setup": setup, "words": self.words()}
-        tell(everyone, "run", str(setup["entry"]), told)
-        for text in self.warnings:
-            tell(everyone, "warning", "setup", text)
-        tell(everyone, "observe", "start", observation)
-        if limits is NO_WORKSPACE and observation.main.camera is not None:
-            tell(everyone, "warning", "workspace", "no workspace is stated: the gate checks everything but that")
-        if observation.main.depth_m is None and _calibrated(observation):
-            tell(
-                everyone,
-                "warning",
-                "heights",
-                "no depth is given: every height is taken to be the table's (--depth FILE)",
-            )
-        work = make(recorder)
-        with ends_on_signal():
-            try:
-                with Caller() as caller:
-                    plan: Plan = caller.wait_for(work.plan)
+        with _recording(instruction.plain_text, self.out, self.command) as recorder:
+            everyone = (recorder, *self.subscribers)
+            told = {**self.configuration(), "task": instruction, "limits": limits, "setup": setup}
+            tell(everyone, "run", str(setup["entry"]), {**told, "words": self.words()})
+            tell(everyone, "observe", "start", observation)
+            for name, text in _cautions(self.warnings, observation, limits):
+                tell(everyone, "warning", name, text)
+            with _failing(recorder, everyone), Caller() as caller:
+                work = make(recorder)
+                plan: Plan = caller.wait_for(work.plan)
                 gate = plan_gate(plan, observation, vocabulary, limits)
                 if gate is not None:
                     tell(everyone, "gate", "before motion", gate)
                 status = plan.status if gate is None or gate.admitted else "refused"
                 tell(everyone, "done", status, plan)
-            except WonderfulTeamError as error:
-                tell_failure(everyone, error)
-                error.folder = folder
-                raise
-            finally:
-                _close(recorder)
         spent, seconds = dict(work.usage_by_role()), time.monotonic() - started
-        return MadePlan(plan, observation, gate, spent, seconds, folder, recorder.warnings)
+        return MadePlan(plan, observation, gate, spent, seconds, recorder.folder, recorder.warnings)
 
 
 def make_world(
@@ -245,11 +227,6 @@ def rollout(
     if isinstance(method, Method):
         method = method.in_world(world)
     named = method if isinstance(method, Method) else None
-    folder = new_run_folder(world.instruction.plain_text, out if out is not None else (named.out if named else None))
-    recorder = Recorder(folder, command=named.command if named else None)
-    if named is not None:
-        for text in named.warnings:
-            tell((recorder, *subscribers, *named.subscribers), "warning", "setup", text)
     scorer: Privileged | None = registry.privileged(world) if scored else None
     setup = setup_entry(
         "run",
@@ -263,34 +240,35 @@ def rollout(
         plan=None if read is None else read.plan.id,
         scored=scorer is not None,
     )
-    everyone = (recorder, *subscribers, *(named.subscribers if named else ()))
-    with ends_on_signal(), contextlib.ExitStack() as closing:
-        closing.callback(_close, recorder)
-        closing.enter_context(_failing(recorder, everyone))
-        policy: Policy = method.policy(recorder, *subscribers) if isinstance(method, Method) else method
-        trial = roll_out(
-            policy,
-            world,
-            plan=read,
-            replans=replans,
-            looks=looks,
-            scorer=scorer,
-            subscribers=everyone,
-            approval=approval,
-            seed=seed,
-            scene=scene,
-            configuration={
-                **(named.configuration() if named else {}),
-                "task": world.instruction,
-                "limits": world.limits,
-                "setup": setup,
-                "words": named.words() if named else {},
-            },
-            page=lambda: _page_of(folder),
-            strict=named.strict if named else False,
-        )
-    held = {item.name: getattr(trial, item.name) for item in fields(trial)}
-    return RecordedTrial(**held, folder=folder, warnings=recorder.warnings)
+    place, command = (out or named.out, named.command) if named else (out, None)
+    with _recording(world.instruction.plain_text, place, command) as recorder:
+        everyone = (recorder, *subscribers, *(named.subscribers if named else ()))
+        for text in named.warnings if named else ():
+            tell(everyone, "warning", "setup", text)
+        with _failing(recorder, everyone):
+            trial = roll_out(
+                method.policy(recorder, *subscribers) if isinstance(method, Method) else method,
+                world,
+                plan=read,
+                replans=replans,
+                looks=looks,
+                scorer=scorer,
+                subscribers=everyone,
+                approval=approval,
+                seed=seed,
+                scene=scene,
+                configuration={
+                    **(named.configuration() if named else {}),
+                    "task": world.instruction,
+                    "limits": world.limits,
+                    "setup": setup,
+                    "words": named.words() if named else {},
+                },
+                page=lambda: _page_of(recorder.folder),
+                strict=named.strict if named else False,
+            )
+    happened = {item.name: getattr(trial, item.name) for item in fields(trial)}
+    return RecordedTrial(**happened, folder=recorder.folder, warnings=recorder.warnings)
 
 
 def task(name: str, *, instruction: str, horizon: int = 1, **more: Any) -> Callable[[Callable[..., Any]], Any]:
@@ -326,6 +304,15 @@ def plan_gate(plan: Plan, observation: types.Observation, vocabulary: Vocabulary
     )
 
 
+def _cautions(told: Sequence[str], observation: types.Observation, limits: Limits) -> Iterator[tuple[str, str]]:
+    """What the user is warned of before a plan is made, by name."""
+    yield from (("setup", text) for text in told)
+    if limits is NO_WORKSPACE and observation.main.camera is not None:
+        yield "workspace", "no workspace is stated: the gate checks everything but that"
+    if observation.main.depth_m is None and _calibrated(observation):
+        yield "heights", "no depth is given: every height is taken to be the table's (--depth FILE)"
+
+
 def _calibrated(observation: types.Observation) -> bool:
     """Whether the main view's camera could turn depth into metres."""
     return observation.main.camera is not None and not isinstance(observation.main.camera, PlanarCamera)
@@ -350,6 +337,16 @@ def _read(plan: MadePlan | ReadPlan | Plan | str | Path | None) -> ReadPlan | No
     raise ConfigError(
         f"plan: a {type(plan).__name__} is no plan; valid: what team.plan returned, or the folder of the run that made it"
     )
+
+
+@contextlib.contextmanager
+def _recording(text: str, out: str | Path | None, command: str | None) -> Iterator[Recorder]:
+    """A run folder of its own, whose record and page are whole whatever ends the run: its end, an error, a signal."""
+    with ends_on_signal(), contextlib.ExitStack() as closing:
+        with held():
+            recorder = Recorder(new_run_folder(text, out), command=command)
+            closing.callback(_close, recorder)
+        yield recorder
 
 
 def _close(recorder: Recorder) -> None:

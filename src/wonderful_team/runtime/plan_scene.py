@@ -114,9 +114,9 @@ def read_plan_checks(read: ReadPlan, wanted: Instruction, now: Observation, stri
 
 
 def _same_instruction(planned: Instruction, wanted: Instruction) -> GateCheck:
-    name, limit = "instruction of the plan", f"as asked for: {wanted.text[:200]!r}"
+    name, limit = "instruction of the plan", f"as asked for: {wanted.plain_text[:200]!r}"
     if planned.text != wanted.text:
-        return GateCheck(None, name, False, repr(planned.text[:200]), limit)
+        return GateCheck(None, name, False, repr(planned.plain_text[:200]), limit)
     for slot in dict.fromkeys((*planned.slots, *wanted.slots)):
         ours, theirs = planned.slots.get(slot), wanted.slots.get(slot)
         if ours is None or theirs is None or list(ours.views) != list(theirs.views):

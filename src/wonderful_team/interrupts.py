@@ -131,6 +131,11 @@ def as_keyboard() -> Iterator[None]:
                 signal.signal(number, handler)
 
 
+def exit_code() -> int:
+    """128 + the number of the signal that came last; that of Ctrl-C where none is known."""
+    return 128 + (_state.came or signal.SIGINT)
+
+
 def _on_signal(number: int, frame: FrameType | None) -> None:
     if _state.came is not None and _state.force:
         os._exit(128 + number)

@@ -14,12 +14,12 @@ import click
 
 from wonderful_team.cli.options import PATH
 from wonderful_team.cli.output import finish
-from wonderful_team.interrupts import as_keyboard
+from wonderful_team.interrupts import as_keyboard, exit_code
 
 if TYPE_CHECKING:
     from wonderful_team.evals.study import Standing
 
-INTERRUPTED, BUDGET = 130, 5
+BUDGET = 5
 QUIET_S = 10.0
 
 
@@ -119,7 +119,7 @@ def command(**options: Any) -> int:
         return finish("bench", text=estimate.text(), result=estimate.to_json(), as_json=options["as_json"], code=0)
     with as_keyboard():
         ended = study.run(report=Teller())
-    code = 0 if not ended.why else BUDGET if "cap" in ended.why else INTERRUPTED
+    code = 0 if not ended.why else BUDGET if "cap" in ended.why else exit_code()
     lines = study.lines()
     if ended.why:
         lines.append(f"stopped: {ended.why}")

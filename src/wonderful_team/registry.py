@@ -351,6 +351,15 @@ def task_made_of(thing: Any) -> str | None:
     return next((name for name in _tabletop().task_names() if registering.find_task(name).set_table is thing), None)
 
 
+def made_in_main(name: str) -> bool:
+    """Whether a task of the tabletop was made in the script that is running: only that script can make it again."""
+    task = name.removeprefix("tabletop/").partition("@")[0]
+    if not name.startswith("tabletop/") or is_file_name(name):
+        return False
+    registering = importlib.import_module("wonderful_team.sims.tabletop.registering")
+    return str(registering.find_task(task).set_table.__module__) in ("__main__", "__mp_main__")
+
+
 def _tabletop() -> Any:
     return _simulator("tabletop")
 

@@ -11,6 +11,8 @@ from wonderful_team.interfaces import Act, Decision, Event, Policy, Situation, S
 from wonderful_team.runtime.optional import Accounting, Configured, NamedModel, Sourced
 from wonderful_team.types import GateReport, Observation, Plan, PlannedAction, StepReport, SubgoalRun, Trial, Verdict
 
+NOBODY_JUDGED = "; nobody judged the result: there is no scorer, and a method judges only where it may replan"
+
 
 @dataclass(frozen=True)
 class Ending:
@@ -35,6 +37,7 @@ class Progress:
     runs: list[SubgoalRun] = field(default_factory=list)
     verdicts: list[Verdict] = field(default_factory=list)
     executed: int = 0
+    last: Decision | None = None
 
     def tell(self, kind: str, name: str, content: Any = None) -> None:
         for subscriber in self.subscribers:
@@ -56,6 +59,7 @@ class Progress:
 
     def decided(self, decision: Decision) -> None:
         """Note a decision and what it carries."""
+        self.last = decision
         name = type(decision).__name__
         self.tell("decision", name, {"decision": name, "reason": getattr(decision, "reason", "")})
         verdicts = tuple(getattr(decision, "verdicts", ()))
@@ -90,6 +94,8 @@ class Progress:
     def finish(self, ending: Ending) -> Trial:
         """The trial as it stands; told to subscribers as the last event."""
         policy = self.policy
+        # A method that was not asked again after its actions, and no scorer: they ran, and that is all that is known.
+        judged = ending.outcome not in (None, "unscored") or not isinstance(self.last, Act)
         trial = Trial(
             scene=self.scene,
             seed=self.seed,
@@ -101,7 +107,8 @@ class Progress:
             verdicts=tuple(self.verdicts),
             outcome=ending.outcome or "unscored",
             stage=ending.stage,
-            reason=ending.reason,
+            reason=ending.reason if judged else f"{ending.reason}{NOBODY_JUDGED}",
+            judged=judged,
             usage_by_role=dict(policy.usage_by_role) if isinstance(policy, Accounting) else {},
             provenance=tuple(policy.provenance) if isinstance(policy, Sourced) else (),
             setting=dict(policy.setting) if isinstance(policy, Configured) else {},

@@ -1,11 +1,12 @@
-"""Other words for the tabletop's 17 VIMA tasks, and whether `offline` reads them as it reads the task's own words.
+"""Other words for the tabletop's 17 VIMA tasks and for plain instructions, and whether `offline` reads them as it reads the task's own words.
 
     python -m benchmarks.wordings benchmarks/wordings_first.txt          # what the words are read as
     python -m benchmarks.wordings benchmarks/wordings_first.txt --solve  # and whether that solves the task
 
-A file of wordings has a "## task" line before the wordings of a task, one a line. Words in capitals are the scene's own
-(ANGLE, NUMBER, ...); "[number=two]" at the front names what a wording presumes. The first figure compares readings with the
-reading of the task's own words in the same scene; the second is judged by the task's scorer.
+A file of wordings has a "## task" line before the wordings of a task, one a line; plain words in place of a task are an
+instruction without pictures. Words in capitals are the scene's own (ANGLE, NUMBER, ...); "[number=two]" at the front names
+what a wording presumes. The first figure compares readings with the reading of the task's own words in the same scene, or of
+the plain words; the second is judged by the task's scorer.
 """
 
 from __future__ import annotations
@@ -41,7 +42,7 @@ class Wording:
     """One way to put a task.
 
     Attributes:
-        task: Name of the task.
+        task: Name of the task, or the plain words that say the same.
         text: The words, with capitals and picture slots.
         presumes: Words of the scene that the text presumes.
     """
@@ -49,6 +50,11 @@ class Wording:
     task: str
     text: str
     presumes: tuple[tuple[str, str], ...] = ()
+
+    @property
+    def is_plain(self) -> bool:
+        """Whether the heading is an instruction of its own and no task."""
+        return " " in self.task
 
     def suits(self, words: Mapping[str, str]) -> bool:
         """Whether a scene has the words that are presumed."""
@@ -165,12 +171,15 @@ def _what(description: Any) -> Any:
 def judge(wording: Wording) -> str:
     """Nothing when a wording is read as the task's own words are; else what is amiss."""
     from wonderful_team.errors import NotUnderstoodError
+    from wonderful_team.models.offline.language import understand
 
-    scene = scene_for(wording)
-    text = filled(wording.text, scene.words)
     try:
-        own = gist(scene.read(scene.instruction))
-        read = gist(scene.read(text))
+        if wording.is_plain:
+            own, read = gist(understand(wording.task)), gist(understand(wording.text))
+        else:
+            scene = scene_for(wording)
+            own = gist(scene.read(scene.instruction))
+            read = gist(scene.read(filled(wording.text, scene.words)))
     except NotUnderstoodError as error:
         return f"refused: {str(error)[:400]}"
     return "" if read == own else f"read otherwise:\n        {read}\n        own {own}"
@@ -209,7 +218,7 @@ def solve(wordings: list[Wording], workers: int) -> None:
     from benchmarks.offline_success import Job, run_all
 
     jobs = []
-    for wording in wordings:
+    for wording in (wording for wording in wordings if not wording.is_plain):
         scene = scene_for(wording)
         jobs.append(Job(wording.task, scene.seed, instruction=filled(wording.text, scene.words)))
     results = run_all(jobs, workers)

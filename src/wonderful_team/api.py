@@ -14,6 +14,7 @@ from wonderful_team import registry, types
 from wonderful_team.actions import PICK_PLACE, VOCABULARIES, Vocabulary
 from wonderful_team.errors import ConfigError, UnknownNameError, WonderfulTeamError
 from wonderful_team.finding import find
+from wonderful_team.geometry import PlanarCamera
 from wonderful_team.interfaces import Decision, Event, Policy, Privileged, Situation, Subscriber, World
 from wonderful_team.made import MadePlan, RecordedTrial
 from wonderful_team.methods import Method
@@ -142,7 +143,7 @@ class Team(Method):
         make: Callable[[Recorder], _Work],
     ) -> MadePlan:
         """Make a plan in a run folder of its own, pass it through the gate, and write its page."""
-        folder = new_run_folder(instruction.text, self.out)
+        folder = new_run_folder(instruction.plain_text, self.out)
         recorder = Recorder(folder, command=self.command)
         everyone = (recorder, *self.subscribers)
         started = time.monotonic()
@@ -153,6 +154,13 @@ class Team(Method):
         tell(everyone, "observe", "start", observation)
         if limits is NO_WORKSPACE and observation.main.camera is not None:
             tell(everyone, "warning", "workspace", "no workspace is stated: the gate checks everything but that")
+        if observation.main.depth_m is None and _calibrated(observation):
+            tell(
+                everyone,
+                "warning",
+                "heights",
+                "no depth is given: every height is taken to be the table's (--depth FILE)",
+            )
         work = make(recorder)
         try:
             with Caller() as caller:
@@ -253,7 +261,7 @@ def rollout(
     if isinstance(method, Method):
         method = method.in_world(world)
     named = method if isinstance(method, Method) else None
-    folder = new_run_folder(world.instruction.text, out if out is not None else (named.out if named else None))
+    folder = new_run_folder(world.instruction.plain_text, out if out is not None else (named.out if named else None))
     recorder = Recorder(folder, command=named.command if named else None)
     if named is not None:
         for text in named.warnings:
@@ -355,7 +363,22 @@ def plan_gate(plan: Plan, observation: types.Observation, vocabulary: Vocabulary
     """What the gate says of a plan that is not run now; None without actions."""
     if plan.status != "planned" or not plan.actions:
         return None
-    return check_gate(plan.actions, vocabulary=vocabulary, limits=limits, plan=plan, then=observation, now=observation)
+    # A photo with a camera file says where the robot is, so its heights have to be known; a world's robot may find them.
+    photo = getattr(observation, "limits", None) is not None and _calibrated(observation)
+    return check_gate(
+        plan.actions,
+        vocabulary=vocabulary,
+        limits=limits,
+        plan=plan,
+        then=observation,
+        now=observation,
+        measured_heights=photo,
+    )
+
+
+def _calibrated(observation: types.Observation) -> bool:
+    """Whether the main view's camera could turn depth into metres."""
+    return observation.main.camera is not None and not isinstance(observation.main.camera, PlanarCamera)
 
 
 def _page_of(folder: Path) -> None:

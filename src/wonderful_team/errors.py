@@ -8,14 +8,30 @@ from __future__ import annotations
 
 import contextlib
 import difflib
+import shlex
+import sys
 import traceback
 from collections.abc import Iterable, Iterator
+from importlib import metadata
 from pathlib import Path
 from typing import ClassVar
 
 _PACKAGE = Path(__file__).parent
 MESSAGE_LIMIT = 2_000
 """Longest text of somebody else's exception that becomes part of ours [characters]."""
+
+
+def extra_command(extra: str) -> str:
+    """The command that installs an optional part: its packages by name, so that it works however this package was installed."""
+    mark = f'extra == "{extra}"'
+    try:
+        lines = metadata.requires("wonderful-team") or []
+    except metadata.PackageNotFoundError:
+        lines = []
+    needed = [line.partition(";")[0].strip() for line in lines if mark in line.replace("'", '"')]
+    return shlex.join([sys.executable, "-m", "pip", "install", *(needed or [f".[{extra}]"])]) + (
+        "" if needed else " (in a checkout)"
+    )
 
 
 class WonderfulTeamError(Exception):
@@ -133,7 +149,7 @@ class MissingExtraError(ConfigError):
     """An optional dependency is not installed; names the exact command that brings it."""
 
     def __init__(self, feature: str, extra: str) -> None:
-        super().__init__(f"{feature} needs an optional part: pip install 'wonderful-team[{extra}]'")
+        super().__init__(f"{feature} needs the optional part {extra!r}: {extra_command(extra)}")
 
 
 class BadPictureError(ConfigError):

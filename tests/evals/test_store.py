@@ -18,7 +18,7 @@ from tests.evals import runners
 from tests.evals.runners import toy_plan
 from tests.interrupting import listen
 from wonderful_team.errors import ConfigError
-from wonderful_team.evals.claims import Owner, is_free
+from wonderful_team.evals.claims import Owner, Surroundings
 from wonderful_team.evals.places import network_file_system
 from wonderful_team.evals.spending import CapReached, Likely, Spending, WaitForCost, allow
 from wonderful_team.evals.store import Store
@@ -50,16 +50,20 @@ def test_a_claim_goes_to_one_owner_and_is_written_once(tmp_path: Path) -> None:
 
 
 def test_a_claim_of_a_process_that_is_gone_is_free_and_of_a_living_one_is_not() -> None:
-    mine = Owner.this_process()
-    later = time.time() + 60
-    assert not is_free(str(mine), later)
-    assert is_free(str(mine), time.time() - 1)
+    here, mine = Surroundings(), Owner.this_process()
+    wall, steady = time.time() + 60, time.monotonic() + 60
+    assert not here.is_free(str(mine), wall, steady)
+    assert not here.is_free(str(mine), wall - 3600, steady), (
+        "the time of day says nothing about this machine's processes"
+    )
+    assert here.is_free(str(mine), wall, steady - 61)
     gone = subprocess.Popen([sys.executable, "-c", ""])
     gone.wait()
-    assert is_free(f"{mine.host}|{gone.pid}|0|0||x", later)
-    assert is_free(f"{mine.host}|{mine.pid}|1|0||x", later), "a later process took the number"
-    assert not is_free("elsewhere|1|0|0||x", later)
-    assert not is_free(f"{mine.host}|{gone.pid}|0|{mine.pid}|{mine.born}|x", later), (
+    assert here.is_free(f"{mine.host}|{gone.pid}|0|0||x", wall, steady)
+    assert here.is_free(f"{mine.host}|{mine.pid}|1|0||x", wall, steady), "a later process took the number"
+    assert not here.is_free("elsewhere|1|0|0||x", wall, steady)
+    assert here.is_free("elsewhere|1|0|0||x", wall - 61, steady)
+    assert not here.is_free(f"{mine.host}|{gone.pid}|0|{mine.pid}|{mine.born}|x", wall, steady), (
         "its parent lives and will see to it"
     )
 
@@ -164,11 +168,30 @@ def test_a_store_of_the_first_release_opens_and_goes_on(tmp_path: Path) -> None:
     base = sqlite3.connect(path)
     for column in ("how", "looks", "held_calls", "held_tokens", "held_usd"):
         base.execute(f"ALTER TABLE trials DROP COLUMN {column}")
+    _without_what_came_third(base)
     base.execute("UPDATE meta SET value='1'")
     base.commit()
     base.close()
     again = run_study(toy_plan(3), path, runners.quick, jobs=1)
     assert (again.standing.here, again.standing.done) == (4, 12)
+
+
+def test_a_store_of_the_second_schema_opens_and_goes_on(tmp_path: Path) -> None:
+    path = tmp_path / "s.db"
+    run_study(toy_plan(2), path, runners.quick, jobs=1)
+    base = sqlite3.connect(path)
+    _without_what_came_third(base)
+    base.execute("UPDATE meta SET value='2'")
+    base.commit()
+    base.close()
+    again = run_study(toy_plan(3), path, runners.quick, jobs=1)
+    assert (again.standing.here, again.standing.done) == (4, 12)
+
+
+def _without_what_came_third(base: sqlite3.Connection) -> None:
+    base.execute("ALTER TABLE trials DROP COLUMN lease_steady_s")
+    for column in ("owner", "allowed_calls", "allowed_tokens", "allowed_usd"):
+        base.execute(f"ALTER TABLE discarded DROP COLUMN {column}")
 
 
 def test_a_trial_that_kills_its_worker_becomes_an_error_and_the_sweep_goes_on(tmp_path: Path) -> None:

@@ -145,6 +145,17 @@ def test_text_of_instruction_and_model_stays_text(tmp_path):
     assert text.count(attack) >= 3
 
 
+def test_characters_that_hide_are_escapes_on_the_page_and_in_the_log(tmp_path):
+    hidden = "\x1b[2K\u202etxt\u200b"
+    world = world_with_pictures(f"put it away {hidden}")
+    with Recorder(tmp_path, command=hidden) as recorder:
+        rollout(TalkingPolicy([recorder], words=hidden), world, subscribers=[recorder], scene=hidden)
+    page = write_page(tmp_path).read_text(encoding="utf-8")
+    log = (tmp_path / "log.txt").read_text(encoding="utf-8")
+    assert not set(page + log) & set("\x1b\u202e\u200b")
+    assert page.count("\\x1b[2K\\u202etxt\\u200b") >= 3
+
+
 def test_a_half_finished_run_has_a_page(tmp_path):
     recorder = Recorder(tmp_path)
     _, text = read(write_page(tmp_path))

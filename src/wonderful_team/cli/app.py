@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from wonderful_team import __version__
-from wonderful_team.cli.output import Document, wants_json
+from wonderful_team.cli.output import Document, say, wants_json
 
 if TYPE_CHECKING:
     from wonderful_team.errors import WonderfulTeamError
@@ -23,7 +23,7 @@ CRASHED = 70
 COMMANDS: dict[str, tuple[str, str]] = {
     "demo": ("demo", "Watch the team plan, catch two planted mistakes, and act, on a rendered scene."),
     "doctor": ("doctor", "Check this machine: versions, rendering, disk, keys, and what is missing."),
-    "list": ("listing", "List models, worlds, tasks, suites, methods, prompts or runs."),
+    "list": ("listing", "List models, worlds, tasks, suites, methods, prompts, words or runs."),
     "plan": ("plan", "Plan from pictures and an instruction; nothing moves."),
     "ground": ("ground", "Find things in a picture: boxes and points."),
     "run": ("run", "Plan, pass the gate, act in a world, look, replan."),
@@ -147,8 +147,8 @@ def _fail(argv: list[str], name: str, message: str, code: int, error: WonderfulT
         from wonderful_team.cli.progress import trace_lines
 
         for line in trace_lines(error.trace):
-            click.echo(f"    {line}", err=True)
-    click.echo(f"error: {message}" if code != INTERRUPTED else message, err=True)
+            say(f"    {line}", err=True)
+    say(f"error: {message}" if code != INTERRUPTED else message, err=True)
     if page is not None:
-        click.echo(f"page: {page}", err=True)
+        say(f"page: {page}", err=True)
     return code

@@ -76,7 +76,7 @@ def command(
         instruction = instruction_with_pictures(text, read_pairs(picture, "--picture"))
     with reading("--keep-out", "[NAME=]x0,y0,x1,y1[px|m]"):
         regions = read_keep_out(keep_out)
-    progress = Progress()
+    progress = Progress(live=not common.as_json)
     team = Team(**common.team_arguments(), subscribers=(progress,))
     progress.header(team)
     made = team.plan(

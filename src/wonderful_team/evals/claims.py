@@ -6,11 +6,13 @@ import os
 import socket
 import time
 import uuid
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, field
 from pathlib import Path
 
-LEASE_S = 60.0
-"""A claim that nobody renewed for so long may be taken over [s]."""
+LEASE_S = 180.0
+"""A claim that nobody renewed for so long may be taken over [s]: three times the minute by which clocks of machines may differ or jump."""
+RENEW_EVERY_S = 30.0
 
 
 @dataclass(frozen=True)
@@ -38,15 +40,37 @@ class Owner:
         return f"{self.host}|{self.pid}|{self.born}|{self.parent}|{self.parent_born}|{self.token}"
 
 
-def is_free(owner: str, lease_until_s: float, now_s: float | None = None) -> bool:
-    """Whether a claim may be taken over: its lease ran out, or its process on this machine and who watched it are gone."""
-    if lease_until_s < (time.time() if now_s is None else now_s):
-        return True
-    host, pid, born, parent, parent_born, _ = owner.split("|")
-    if host != socket.gethostname() or _is(int(pid), born):
-        return False
-    # A watching parent counts the death of its worker before it frees the claim.
-    return not (int(parent) and _is(int(parent), parent_born))
+@dataclass(frozen=True)
+class Surroundings:
+    """What a store asks the machine: tests replace it.
+
+    Attributes:
+        host: Name of this machine.
+        wall_s: Time of day, which machines share more or less, and which may jump [s].
+        steady_s: A clock of this machine alone, which never jumps, and which its processes share [s].
+        lives: Whether the process with this number and birth is running.
+    """
+
+    host: str = field(default_factory=socket.gethostname)
+    wall_s: Callable[[], float] = time.time
+    steady_s: Callable[[], float] = time.monotonic
+    lives: Callable[[int, str], bool] = lambda pid, born: _is(pid, born)
+
+    def is_free(self, owner: str, lease_wall_s: float, lease_steady_s: float) -> bool:
+        """Whether a claim may be taken over.
+
+        On this machine: its process and the one that watched it are gone, or its lease ran out by the clock that does not jump.
+        On another machine: its lease ran out by the time of day.
+        """
+        host, pid, born, parent, parent_born, _ = owner.split("|")
+        if host != self.host:
+            return lease_wall_s < self.wall_s()
+        if lease_steady_s < self.steady_s():
+            return True
+        if self.lives(int(pid), born):
+            return False
+        # A watching parent counts the death of its worker before it frees the claim.
+        return not (int(parent) and self.lives(int(parent), parent_born))
 
 
 def _is(pid: int, born: str) -> bool:

@@ -10,7 +10,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from wonderful_team.errors import ConfigError, MissingExtraError
-from wonderful_team.evals.claims import LEASE_S, Owner
+from wonderful_team.evals.claims import RENEW_EVERY_S, Owner
 from wonderful_team.evals.spending import CapReached
 from wonderful_team.evals.store import Claim, Store
 from wonderful_team.evals.trials import RunSettings, TrialResult, TrialRunner, TrialSpec
@@ -178,7 +178,7 @@ class _Cluster:
             self._idle.append(self._make.remote(self._work.runner))
 
     def _renew(self) -> None:
-        if time.monotonic() - self._renewed_s >= LEASE_S / 4:
+        if time.monotonic() - self._renewed_s >= RENEW_EVERY_S:
             self._renewed_s = time.monotonic()
             for _, claim in self._running.values():
                 self._store.renew(claim.trial, self._owner)

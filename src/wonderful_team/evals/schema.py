@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import sqlite3
 
-SCHEMA_VERSION = 2
-"""1: first release. 2: `how` and `looks` of a condition, and what a trial in flight holds of the study's caps."""
+SCHEMA_VERSION = 3
+"""1: first release. 2: `how` and `looks` of a condition, and what a trial in flight holds of the study's caps. 3: leases by a clock that
+does not jump; whose a discarded attempt was, and what it was allowed."""
 SPEC = ("task", "seed", "repeat", "method", "model", "isolate", "perturb", "replans", "how", "looks")
 RESULT = (
     *("outcome", "stage", "reason", "calls", "tokens", "pictures", "usd", "seconds", "rounds"),
@@ -13,6 +14,7 @@ RESULT = (
 )
 JSON = ("provenance", "by_role", "versions", "facts")
 _HELD = ("held_calls", "held_tokens", "held_usd")
+_ALLOWED = ("allowed_calls", "allowed_tokens", "allowed_usd")
 _TABLES = f"""
 CREATE TABLE IF NOT EXISTS meta(name TEXT PRIMARY KEY, value TEXT NOT NULL);
 CREATE TABLE IF NOT EXISTS trials(
@@ -22,12 +24,14 @@ CREATE TABLE IF NOT EXISTS trials(
     state TEXT NOT NULL DEFAULT 'pending' CHECK(state IN ('pending', 'claimed', 'done')),
     owner TEXT NOT NULL DEFAULT '', lease_until_s REAL NOT NULL DEFAULT 0, crashes INTEGER NOT NULL DEFAULT 0,
     ended TEXT, {", ".join(RESULT)},
-    how TEXT NOT NULL DEFAULT '', looks INTEGER NOT NULL DEFAULT 0, {", ".join(f"{name} REAL NOT NULL DEFAULT 0" for name in _HELD)});
+    how TEXT NOT NULL DEFAULT '', looks INTEGER NOT NULL DEFAULT 0, {", ".join(f"{name} REAL NOT NULL DEFAULT 0" for name in _HELD)},
+    lease_steady_s REAL NOT NULL DEFAULT 0);
 CREATE INDEX IF NOT EXISTS trials_by_state ON trials(state, id);
 CREATE TABLE IF NOT EXISTS studies(name TEXT PRIMARY KEY, request TEXT NOT NULL, started TEXT NOT NULL);
 CREATE TABLE IF NOT EXISTS wanted(study TEXT NOT NULL, trial INTEGER NOT NULL, PRIMARY KEY(study, trial)) WITHOUT ROWID;
 CREATE TABLE IF NOT EXISTS discarded(
-    trial INTEGER NOT NULL, why TEXT NOT NULL, calls INTEGER, tokens INTEGER, usd REAL, reason TEXT, at TEXT NOT NULL);
+    trial INTEGER NOT NULL, why TEXT NOT NULL, calls INTEGER, tokens INTEGER, usd REAL, reason TEXT, at TEXT NOT NULL,
+    owner TEXT NOT NULL DEFAULT '', {", ".join(f"{name} REAL NOT NULL DEFAULT 0" for name in _ALLOWED)});
 """
 
 
@@ -38,11 +42,16 @@ def make_tables(base: sqlite3.Connection) -> str:
             base.execute(statement)
     base.execute("INSERT OR IGNORE INTO meta VALUES('schema_version', ?)", (str(SCHEMA_VERSION),))
     version = str(base.execute("SELECT value FROM meta WHERE name='schema_version'").fetchone()[0])
-    if version != "1":
-        return version
-    base.execute("ALTER TABLE trials ADD COLUMN how TEXT NOT NULL DEFAULT ''")
-    base.execute("ALTER TABLE trials ADD COLUMN looks INTEGER NOT NULL DEFAULT 0")
-    for name in _HELD:
-        base.execute(f"ALTER TABLE trials ADD COLUMN {name} REAL NOT NULL DEFAULT 0")
-    base.execute("UPDATE meta SET value=? WHERE name='schema_version'", (str(SCHEMA_VERSION),))
-    return str(SCHEMA_VERSION)
+    if version == "1":
+        base.execute("ALTER TABLE trials ADD COLUMN how TEXT NOT NULL DEFAULT ''")
+        base.execute("ALTER TABLE trials ADD COLUMN looks INTEGER NOT NULL DEFAULT 0")
+        for name in _HELD:
+            base.execute(f"ALTER TABLE trials ADD COLUMN {name} REAL NOT NULL DEFAULT 0")
+    if version in ("1", "2"):
+        base.execute("ALTER TABLE trials ADD COLUMN lease_steady_s REAL NOT NULL DEFAULT 0")
+        base.execute("ALTER TABLE discarded ADD COLUMN owner TEXT NOT NULL DEFAULT ''")
+        for name in _ALLOWED:
+            base.execute(f"ALTER TABLE discarded ADD COLUMN {name} REAL NOT NULL DEFAULT 0")
+        version = str(SCHEMA_VERSION)
+        base.execute("UPDATE meta SET value=? WHERE name='schema_version'", (version,))
+    return version

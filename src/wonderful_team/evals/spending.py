@@ -53,10 +53,12 @@ class Likely:
     Attributes:
         own: The dearest trial of the same condition, cut ones included; 0 for what costs nothing; None: none has run yet.
         others: The dearest trial of any condition; None: no trial has cost anything yet.
+        allowed: What this very trial was allowed when the study's cap last cut it; 0 when that never happened.
     """
 
     own: Costs = (None, None, None)
     others: Costs = (None, None, None)
+    allowed: tuple[float, float, float] = (0, 0, 0.0)
 
 
 @dataclass(frozen=True)
@@ -76,7 +78,9 @@ def allow(caps: SpendingCaps, spent: Spending, likely: Likely) -> Allowance:
     """
     left: dict[str, float | None] = {}
     held = []
-    for place, name in enumerate(UNITS):
+    # A trial that was cut gets at least twice as much the next time, so that attempts end after a few.
+    grows = not any(likely.allowed)
+    for place, (name, least) in enumerate(zip(UNITS, (1, 1, LEAST_USD), strict=True)):
         cap = getattr(caps, name)
         if cap is None:
             left[name] = None
@@ -93,9 +97,16 @@ def allow(caps: SpendingCaps, spent: Spending, likely: Likely) -> Allowance:
             if spent.held[place] > 0:
                 raise WaitForCost(f"what is left of {name} is held by trials in flight")
             raise CapReached(_reached(name, cap, getattr(spent, name), need))
+        before = likely.allowed[place]
         wanted = ROOM * own if own is not None else ROOM_OF_OTHERS * others if others else free
-        left[name] = min(free, wanted)
-        held.append(min(free, wanted))
+        given = min(free, max(wanted, ROOM * before, least))
+        grows = grows or given > before
+        left[name] = given
+        held.append(given)
+    if not grows:
+        if any(spent.held):
+            raise WaitForCost("the trial was cut, and trials in flight hold what it needs more")
+        raise CapReached("the study's cap is reached: a trial needs more than all that is left of it")
     calls, tokens, usd = left["calls"], left["tokens"], left["usd"]
     whole = SpendingCaps(
         None if calls is None else max(1, int(calls)),

@@ -15,13 +15,15 @@ from pathlib import Path
 from typing import Any
 
 from wonderful_team.errors import ConfigError, reading
-from wonderful_team.evals.claims import LEASE_S, Owner, is_free
+from wonderful_team.evals.claims import LEASE_S, Owner, Surroundings
 from wonderful_team.evals.names import NO_MODEL
 from wonderful_team.evals.places import network_file_system
 from wonderful_team.evals.schema import JSON, RESULT, SCHEMA_VERSION, SPEC, make_tables
 from wonderful_team.evals.spending import UNITS, Allowance, Costs, Likely, Spending, WaitForCost, allow
 from wonderful_team.evals.trials import CONDITION, Condition, Row, SpendingCaps, TrialResult, TrialSpec
 
+CUT = "cut by the study's cap"
+"""Why an attempt was discarded that had all it was allowed and wanted more."""
 MAX_CRASHES = 3
 """A trial whose worker process died so often is written as an error, ours, and not tried again."""
 
@@ -31,13 +33,16 @@ class Store:
 
     Args:
         path: The file; made if missing, unless `must_exist`.
+        must_exist: Refuse a path where no file is.
+        here: The machine's clocks and processes; tests give others.
 
     Raises:
         ConfigError: It cannot be opened, is no store of ours, or has another schema version.
     """
 
-    def __init__(self, path: str | Path, *, must_exist: bool = False) -> None:
+    def __init__(self, path: str | Path, *, must_exist: bool = False, here: Surroundings | None = None) -> None:
         self.path = Path(path)
+        self._here = here or Surroundings()
         self.warnings: list[str] = []
         if must_exist and not self.path.is_file():
             raise ConfigError(f"store {str(self.path)!r}: there is no such file")
@@ -123,6 +128,8 @@ class Store:
             CapReached: Another trial could pass a cap of the study.
         """
         # A claim that a loss of power undoes is only a trial that is run again.
+        # In a transaction of its own: it stands whether or not a trial is then taken.
+        self._free_abandoned(study)
         with self._writing(durable=False) as base:
             row = self._next(base, study)
             if row is None:
@@ -132,9 +139,9 @@ class Store:
             except WaitForCost:
                 return None
             base.execute(
-                "UPDATE trials SET state='claimed', owner=?, lease_until_s=?, held_calls=?, held_tokens=?, held_usd=? "
-                "WHERE id=?",
-                (str(owner), time.time() + LEASE_S, *allowance.held, row["id"]),
+                "UPDATE trials SET state='claimed', owner=?, lease_until_s=?, lease_steady_s=?, held_calls=?, held_tokens=?, "
+                "held_usd=? WHERE id=?",
+                (str(owner), *self._leases(), *allowance.held, row["id"]),
             )
         return Claim(int(row["id"]), _spec(row), allowance.caps)
 
@@ -144,6 +151,7 @@ class Store:
         Raises:
             CapReached: It may not.
         """
+        self._free_abandoned(study)
         row = self._next(self._base, study)
         if row is not None:
             with suppress(WaitForCost):
@@ -159,7 +167,7 @@ class Store:
         taken = (
             "SELECT COUNT(*), MAX(calls), MAX(tokens), MAX(COALESCE(usd, 0)) FROM ("
             "SELECT id, calls, tokens, usd FROM trials WHERE state='done' AND (calls > 0 OR outcome IN ('success', 'failure')) "
-            "UNION ALL SELECT trial, calls, tokens, usd FROM discarded WHERE calls > 0)"
+            "UNION ALL SELECT trial, calls, tokens, usd FROM discarded WHERE calls > 0 AND owner = '')"
         )
         if row["model"] == NO_MODEL:
             return Likely((0, 0, 0))
@@ -168,28 +176,46 @@ class Store:
             f"{taken} WHERE id IN (SELECT id FROM trials WHERE {alike})", [row[name] for name in CONDITION]
         ).fetchone()
         others = self._base.execute(taken).fetchone()
-        return Likely(_costs(own), _costs(others))
+        cut = self._base.execute(
+            "SELECT allowed_calls, allowed_tokens, allowed_usd FROM discarded WHERE trial=? AND why=? ORDER BY rowid DESC LIMIT 1",
+            (row["id"], CUT),
+        ).fetchone()
+        return Likely(_costs(own), _costs(others), (0, 0, 0.0) if cut is None else tuple(cut))
 
     def _next(self, base: sqlite3.Connection, study: str) -> sqlite3.Row | None:
         mine = "SELECT t.* FROM trials t JOIN wanted w ON w.trial = t.id AND w.study = ?"
         row = base.execute(f"{mine} WHERE t.state = 'pending' ORDER BY t.id LIMIT 1", (study,)).fetchone()
-        if row is not None:
-            return row  # type: ignore[no-any-return]
-        claimed = base.execute(f"{mine} WHERE t.state = 'claimed' ORDER BY t.id", (study,)).fetchall()
-        return next((one for one in claimed if is_free(one["owner"], one["lease_until_s"])), None)
+        return row  # type: ignore[no-any-return]
+
+    def _free_abandoned(self, study: str) -> None:
+        """Make the claims of processes that are gone pending again, before anything is counted: they hold part of the caps."""
+        mine = "SELECT t.* FROM trials t JOIN wanted w ON w.trial = t.id AND w.study = ? WHERE t.state = 'claimed'"
+
+        def abandoned() -> list[sqlite3.Row]:
+            rows: list[sqlite3.Row] = self._base.execute(mine, (study,)).fetchall()
+            return [
+                row for row in rows if self._here.is_free(row["owner"], row["lease_until_s"], row["lease_steady_s"])
+            ]
+
+        if abandoned():
+            with self._writing(durable=False) as base:
+                for row in abandoned():
+                    _lose(base, row, "its process ended")
+
+    def _leases(self) -> tuple[float, float]:
+        return self._here.wall_s() + LEASE_S, self._here.steady_s() + LEASE_S
 
     def renew(self, trial: int, owner: Owner) -> bool:
         """Extend a lease; False when the claim was lost to somebody else."""
         with self._writing(durable=False) as base:
-            until = time.time() + LEASE_S
             done = base.execute(
-                "UPDATE trials SET lease_until_s=? WHERE id=? AND owner=? AND state='claimed'",
-                (until, trial, str(owner)),
+                "UPDATE trials SET lease_until_s=?, lease_steady_s=? WHERE id=? AND owner=? AND state='claimed'",
+                (*self._leases(), trial, str(owner)),
             )
             return done.rowcount == 1
 
     def finish(self, trial: int, owner: Owner, result: TrialResult) -> bool:
-        """Write a result; False (and nothing is written) when the claim was lost and another process has the trial."""
+        """Write a result; False when the claim was lost: then only what it cost is booked, in place of what it held."""
         values = ((name, getattr(result, name)) for name in RESULT)
         texts = [json.dumps(value, default=dict) if name in JSON else value for name, value in values]
         sets = ", ".join(f"{name}=?" for name in RESULT)
@@ -198,18 +224,20 @@ class Store:
                 f"UPDATE trials SET state='done', owner='', ended=?, {sets} WHERE id=? AND owner=? AND state='claimed'",
                 (_now(), *texts, trial, str(owner)),
             )
+            if done.rowcount != 1:
+                _correct(base, trial, owner, result)
             return done.rowcount == 1
 
-    def give_back(self, trial: int, owner: Owner, why: str = "", spent: TrialResult | None = None) -> None:
-        """Let somebody else run a claimed trial; what it cost so far is booked."""
+    def give_back(self, trial: int, owner: Owner, why: str = "interrupted", spent: TrialResult | None = None) -> None:
+        """Let somebody else run a claimed trial; what it cost is booked, or what it held where that is not known."""
         with self._writing() as base:
-            base.execute(
-                "UPDATE trials SET state='pending', owner='' WHERE id=? AND owner=? AND state='claimed'",
-                (trial, str(owner)),
-            )
+            row = base.execute(
+                "SELECT * FROM trials WHERE id=? AND owner=? AND state='claimed'", (trial, str(owner))
+            ).fetchone()
+            if row is not None:
+                _lose(base, row, why)
             if spent is not None:
-                cost = (spent.calls, spent.tokens, spent.usd, spent.reason)
-                base.execute("INSERT INTO discarded VALUES(?, ?, ?, ?, ?, ?, ?)", (trial, why, *cost, _now()))
+                _correct(base, trial, owner, spent)
 
     def crashed(self, pid: int, host: str) -> list[str]:
         """Free the claims of a worker process that died; a trial that keeps killing workers becomes an error.
@@ -223,7 +251,8 @@ class Store:
             for row in base.execute(held, (f"{host}|{pid}|%",)).fetchall():
                 scenes.append(_spec(row).scene)
                 crashes = row["crashes"] + 1
-                base.execute("UPDATE trials SET state='pending', owner='', crashes=? WHERE id=?", (crashes, row["id"]))
+                _lose(base, row, "its process died")
+                base.execute("UPDATE trials SET crashes=? WHERE id=?", (crashes, row["id"]))
                 if crashes >= MAX_CRASHES:
                     reason = f"the worker process died {crashes} times while it ran this trial"
                     base.execute(
@@ -239,7 +268,7 @@ class Store:
         chosen = "state='done' AND outcome='error' AND id IN (SELECT trial FROM wanted WHERE study=?)"
         with self._writing() as base:
             base.execute(
-                "INSERT INTO discarded SELECT id, 'error retried', calls, tokens, usd, reason, ? "
+                "INSERT INTO discarded(trial, why, calls, tokens, usd, reason, at) SELECT id, 'error retried', calls, tokens, usd, reason, ? "
                 f"FROM trials WHERE {chosen}",
                 (_now(), study),
             )
@@ -303,6 +332,28 @@ class Store:
         with reading(f"store {str(self.path)!r}", "a store that bench wrote and nothing changed"):
             found: Sequence[sqlite3.Row] = self._base.execute(query, {"study": study}).fetchall()
             return [Row(_spec(row), _result(row) if row["state"] == "done" else None, row["lost"]) for row in found]
+
+
+def _lose(base: sqlite3.Connection, row: sqlite3.Row, why: str) -> None:
+    """Make a claimed trial pending. What it held counts as spent, until its owner says what it was: money may have gone."""
+    held = (row["held_calls"], row["held_tokens"], row["held_usd"])
+    base.execute(
+        "INSERT INTO discarded(trial, why, calls, tokens, usd, reason, at, owner, allowed_calls, allowed_tokens, allowed_usd) "
+        "VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
+        (row["id"], why, *held, "what it held; at most this was spent", _now(), row["owner"], *held),
+    )
+    base.execute(
+        "UPDATE trials SET state='pending', owner='', held_calls=0, held_tokens=0, held_usd=0 WHERE id=?", (row["id"],)
+    )
+
+
+def _correct(base: sqlite3.Connection, trial: int, owner: Owner, spent: TrialResult) -> None:
+    """Book what an attempt cost in place of what it held; once."""
+    base.execute(
+        "UPDATE discarded SET calls=?, tokens=?, usd=?, reason=?, owner='' WHERE rowid = "
+        "(SELECT MAX(rowid) FROM discarded WHERE trial=? AND owner=?)",
+        (spent.calls, spent.tokens, spent.usd, spent.reason, trial, str(owner)),
+    )
 
 
 class Claim:

@@ -13,9 +13,9 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from wonderful_team.evals.claims import LEASE_S, Owner
+from wonderful_team.evals.claims import RENEW_EVERY_S, Owner
 from wonderful_team.evals.spending import CapReached
-from wonderful_team.evals.store import Claim, Store
+from wonderful_team.evals.store import CUT, Claim, Store
 from wonderful_team.evals.trials import RunSettings, SpendingCaps, TrialResult, TrialRunner, TrialSpec
 
 POLL_S = 0.2
@@ -100,7 +100,7 @@ def settle(store: Store, owner: Owner, claim: Claim, own: SpendingCaps, result: 
         Whether it was written.
     """
     if result.stage == "budget" and result.outcome != "success" and cut_by_study(own, claim.left, result):
-        store.give_back(claim.trial, owner, "cut by the study's cap", result)
+        store.give_back(claim.trial, owner, CUT, result)
         return False
     return store.finish(claim.trial, owner, result)
 
@@ -153,7 +153,7 @@ async def _kept(store: Store, claim: Claim, owner: Owner) -> AsyncIterator[None]
 
     async def renew() -> None:
         while True:
-            await asyncio.sleep(LEASE_S / 4)
+            await asyncio.sleep(RENEW_EVERY_S)
             store.renew(claim.trial, owner)
 
     renewing = asyncio.create_task(renew())

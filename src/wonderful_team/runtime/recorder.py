@@ -6,7 +6,7 @@ import json
 import os
 import threading
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from datetime import UTC, datetime
 from pathlib import Path
 from types import TracebackType
@@ -23,6 +23,7 @@ from wonderful_team.runtime.plan_file import plan_to_json
 from wonderful_team.runtime.record_schema import RECORD_SCHEMA_VERSION
 from wonderful_team.runtime.redact import redact, redact_all, secrets_of_environment
 from wonderful_team.runtime.versions import versions
+from wonderful_team.text import counted, picture_names, spoken, visible
 from wonderful_team.types import Instruction, Limits, Observation, Plan, Request, Trial
 
 _REWRITE_EVERY_S = 0.3
@@ -54,6 +55,7 @@ class Recorder:
         self._observations: dict[str, Observation] = {}
         self._seen: Observation | None = None
         self._limits: Limits | None = None
+        self._pictures: dict[str, str] = {}
         self._planner: dict[str, Any] = {"instruction": None, "outlines": []}
         for key in ("observations", "stages", "plans", "decisions", "gates", "executions", "subgoals", "verdicts"):
             self._planner[key] = []
@@ -131,6 +133,7 @@ class Recorder:
         task, limits = content.pop("task", None), content.pop("limits", None)
         if isinstance(task, Instruction):
             self._planner["instruction"] = entries.instruction_entry(task, self._store)
+            self._pictures = picture_names(task.text, task.slots)
         if isinstance(limits, Limits):
             self._limits = limits
             self._planner["limits"] = to_jsonable(limits)
@@ -214,8 +217,14 @@ class Recorder:
         view = observation.main
         regions = (*plan.keep_out, *(self._limits.keep_out if self._limits is not None else ()))
         self._planner["outlines"] = outlines(dict.fromkeys(regions), self._limits, view.camera)
+        said = plan.instruction
         rgb = overview(
-            view, plan.grounded, arrows=action_arrows(plan.actions), keep_out=plan.keep_out, workspace=self._limits
+            view,
+            plan.grounded,
+            names=picture_names(said.text, said.slots),
+            arrows=action_arrows(plan.actions),
+            keep_out=plan.keep_out,
+            workspace=self._limits,
         )
         (self.folder / "final.png").write_bytes(to_png(rgb))
 
@@ -232,6 +241,8 @@ class Recorder:
     def _on_gate(self, event: Event) -> None:
         self._planner["gates"].append({"plan": self._plan_number, **entries.gate_entry(event.name, event.content)})
         self._stamp("gates")
+        checks = counted(len(event.content.checks), "check")
+        self._log("gate", f"{event.name}: " + gate_words(event.content.admitted, checks, event.content.reasons))
 
     def _on_subgoal(self, event: Event) -> None:
         entry = entries.subgoal_entry(event.content, self._store)
@@ -314,7 +325,7 @@ class Recorder:
     def _log(self, name: str, text: str) -> None:
         line = redact(f"{self._elapsed_s():6.1f} s  {name:10s} {text}", self._secrets)
         with (self.folder / "log.txt").open("a", encoding="utf-8", errors="backslashreplace") as log:
-            log.write(line.replace("\n", " ") + "\n")
+            log.write(visible(spoken(line.replace("\n", " "), self._pictures)) + "\n")
 
     def _write(self) -> None:
         planner = {**self._planner, "requests": [self._requests[key] for key in sorted(self._requests)]}
@@ -332,6 +343,11 @@ def _write_whole(path: Path, text: str) -> None:
     # Half of a character (a lone surrogate) becomes its JSON escape, which reads back as what it was.
     part.write_text(text, encoding="utf-8", errors="backslashreplace")
     os.replace(part, path)
+
+
+def gate_words(admitted: bool, checks: str, reasons: Sequence[str]) -> str:
+    """One passage through the gate in a line."""
+    return f"admitted ({checks})" if admitted else f"refused ({checks}): " + "; ".join(reasons)
 
 
 def _now() -> str:

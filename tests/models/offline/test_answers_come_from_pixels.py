@@ -123,7 +123,7 @@ def test_a_team_that_is_shown_noise_finds_nothing_and_moves_nothing(world):
         {name: replace(view, rgb=noise_like_view(view), depth_m=None) for name, view in seen.views.items()}
     )
     plan = asyncio.run(Team(OfflineModel()).make_plan(noisy, world.instruction, PICK_PLACE, world.limits))
-    assert plan.status == "not_found"
+    assert plan.status == "needs_clarification"
     assert plan.actions == ()
 
 

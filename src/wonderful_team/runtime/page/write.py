@@ -9,10 +9,11 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
 from wonderful_team.errors import reading
-from wonderful_team.runtime.page import cost, requests, sections
-from wonderful_team.runtime.page.pictures import Album
+from wonderful_team.runtime.page import cost, planted, requests, sections
+from wonderful_team.runtime.page.pictures import Album, pictured
 from wonderful_team.runtime.page.words import clock_time, money, pretty, pretty_name, seconds
 from wonderful_team.runtime.record_schema import read_record
+from wonderful_team.text import counted, visible
 
 PAGE_NAME = "page.html"
 _HERE = Path(__file__).parent
@@ -32,7 +33,7 @@ def write_page(folder: Path) -> Path:
     with reading(f"{folder}: the record"):
         html = _html(folder, record)
     path = folder / PAGE_NAME
-    path.write_text(html, encoding="utf-8", errors="xmlcharrefreplace")
+    path.write_text(visible(html, layout=True), encoding="utf-8", errors="xmlcharrefreplace")
     return path
 
 
@@ -46,6 +47,8 @@ def _html(folder: Path, record: dict[str, Any]) -> str:
         lstrip_blocks=True,
     )
     environment.filters.update(pretty=pretty, seconds=seconds, money=money, title=pretty_name, clock=clock_time)
+    environment.filters["counted"] = counted
+    environment.filters["pictured"] = lambda text: pictured(text, record, album)
     content = _content(record, album)
     style = Markup((_HERE / "page.css").read_text(encoding="utf-8"))
     # The body comes first: it decides which pictures the page has to hold.
@@ -60,11 +63,13 @@ def _html(folder: Path, record: dict[str, Any]) -> str:
 
 def _content(record: dict[str, Any], album: Album) -> dict[str, Any]:
     asked = requests.in_order(record, album)
+    cards = planted.planted(record, album, asked)
     return {
         "title": sections.title(record),
         "record": record,
         "album": album,
-        "head": sections.head(record, album, asked),
+        "head": sections.head(record, asked, planted.sentence(cards)),
+        "planted": cards,
         "instruction": sections.instruction(record, album),
         "ends": sections.before_after(record, album),
         "overviews": sections.overviews(record, album),

@@ -61,12 +61,18 @@ def test_each_to_its_colour_leaves_out_what_is_there_and_what_has_no_place() -> 
 
 def test_nothing_to_do_is_an_empty_plan() -> None:
     view = table(("square", "blue", 300, 160, 70), ("disc", "yellow", 300, 160, 26))
-    assert draft("put the yellow ball onto the blue square", view).subgoals == []
+    plan = draft("put the yellow ball onto the blue square", view)
+    assert plan.subgoals == []
+    assert plan.clarification is None
+    assert "already on blue square" in plan.reasoning
 
 
-def test_an_absent_thing_is_drafted_from_the_words() -> None:
+def test_what_is_absent_is_asked_about_by_name() -> None:
     plan = draft("put the purple star onto the blue square", SCENE)
-    assert plan.targets[0].words == "purple star"
+    assert plan.subgoals == []
+    assert plan.clarification is not None
+    assert "No purple star is in the picture" in plan.clarification.question
+    assert "the green object (top right)" in plan.clarification.choices
 
 
 def test_then_orders_subgoals() -> None:
@@ -83,15 +89,11 @@ def test_stacking_puts_the_lower_one_first() -> None:
     assert plan.subgoals[1].after == ["G1"]
 
 
-def test_advice_changes_the_description_or_says_that_it_cannot() -> None:
+def test_advice_never_drops_a_stated_word() -> None:
     text = "put the dark striped green star onto the blue square"
-    changed = draft(text, SCENE, advice=("T1 (dark green striped star) was not found in the picture.",))
-    assert changed.targets[0].words == "green star"
-    kept = draft(
-        "put the purple star onto the blue square", SCENE, advice=("T1 (purple star) was not found in the picture.",)
-    )
-    assert kept.targets[0].words == "purple star"
-    assert "the plan stands" in kept.reasoning
+    plan = draft(text, SCENE, advice=("T1 (dark green striped star) was not found in the picture.",))
+    assert plan.clarification is not None
+    assert "No dark green striped star is in the picture" in plan.clarification.question
 
 
 def test_without_targets_the_lists_stay_empty() -> None:
@@ -128,6 +130,6 @@ def test_a_right_doubt_changes_the_plan_and_a_wrong_one_does_not() -> None:
 
 def test_what_shows_through_a_hole_is_not_brought_away() -> None:
     held = table(("square", "blue", 300, 160, 70), ("ring", "red", 300, 160, 36), ("disc", "green", 520, 160, 50))
-    texts = [subgoal.text for subgoal in draft("put the red ring into the green circle", held).subgoals]
+    texts = [subgoal.text for subgoal in draft("put the red circle into the green circle", held).subgoals]
     assert len(texts) == 1
     assert "red" in texts[0]

@@ -106,7 +106,7 @@ def test_each_to_its_colour_however_it_is_put(text: str) -> None:
     [
         ("Put all blocks except the red one into the bowl.", ("red block",)),
         ("Put every fruit but not the banana on the plate.", ("banana",)),
-        ("The blocks, apart from the blue one, go into the bowl.", ("blue object",)),
+        ("The blocks, apart from the blue one, go into the bowl.", ("blue block",)),
         ("Put all fruits but the lime into the bowl.", ("lime",)),
     ],
 )
@@ -145,7 +145,7 @@ def test_a_thing_that_must_stay_is_kept_in_mind() -> None:
     ],
 )
 def test_incomplete_commands_say_what_is_missing(text: str, missing: str) -> None:
-    with pytest.raises(NotUnderstoodError, match=f"I used: .*I do not know: .*{missing}.*I know: "):
+    with pytest.raises(NotUnderstoodError, match=f"I used: .*I do not know: .*{missing}.*I understand: "):
         understand(text)
 
 

@@ -12,11 +12,12 @@ from wonderful_team.models.offline.answers.eyes import (
     Eyes,
     as_pictured,
     one_of,
-    place_words,
+    side_words,
+    told_apart,
     unique_words,
 )
 from wonderful_team.models.offline.description import Description
-from wonderful_team.models.offline.language import Command, Destination, Understood, render
+from wonderful_team.models.offline.language import Command, Destination, Understood, describe, render
 from wonderful_team.models.offline.vision import Match, Thing
 from wonderful_team.models.offline.vision.relations import superlative_key
 from wonderful_team.models.offline.vision.things import covers
@@ -27,6 +28,8 @@ SAME_SHAPE = 0.85
 """A thing has a shape when it fits at least this share as well as its best one."""
 LARGER = 1.3
 """A thing goes into another that is at least so many times its area."""
+HOLDERS = ("container", "area")
+"""Kinds that are larger than what goes onto them."""
 
 
 @dataclass(frozen=True)
@@ -90,13 +93,35 @@ class Aim:
 
 @dataclass
 class Aims:
-    """Everything an instruction comes to, and what was left out on purpose."""
+    """Everything an instruction comes to, and what was left out on purpose.
+
+    Attributes:
+        absent: What the words presume and the picture does not show, each by name.
+        settled: What was seen in its place already; without any of it, nothing is fulfilled.
+    """
 
     aims: list[Aim] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
     question: str = ""
     choices: tuple[str, ...] = ()
     literal: bool = False
+    absent: list[str] = field(default_factory=list)
+    settled: list[str] = field(default_factory=list)
+
+    def misses(self, description: Description, eyes: Eyes) -> None:
+        """Note that nothing fits a description."""
+        said = f"no {_absent_part(description, eyes)} is in the picture"
+        if said not in self.absent:
+            self.absent.append(said)
+
+    @property
+    def unfounded(self) -> str:
+        """What keeps the words from being carried out or fulfilled, or ""."""
+        if self.absent:
+            return "; ".join(self.absent)
+        if not self.aims and not self.settled:
+            return "; ".join(["nothing that the words speak of is seen in its place", *self.notes])
+        return ""
 
 
 def derive(understood: Understood, eyes: Eyes, *, strict: bool = True, literal: bool = False) -> Aims:
@@ -110,7 +135,7 @@ def derive(understood: Understood, eyes: Eyes, *, strict: bool = True, literal: 
     """
     result = Aims(literal=literal)
     moved: dict[int, int] = {}
-    stay = _staying(understood, eyes)
+    stay = _staying(understood, eyes, result)
     for command in understood.commands:
         first = len(result.aims)
         for aim in _of_command(command, eyes, result, strict):
@@ -130,18 +155,24 @@ def derive(understood: Understood, eyes: Eyes, *, strict: bool = True, literal: 
     return result
 
 
-def _staying(understood: Understood, eyes: Eyes) -> frozenset[int]:
+def _staying(understood: Understood, eyes: Eyes, result: Aims) -> frozenset[int]:
     """Numbers of the things that the words say must not be moved."""
-    return frozenset(number for what in understood.spared for number in _numbers(what, eyes))
+    return frozenset(number for what in understood.spared for number in _numbers(what, eyes, result))
 
 
-def _numbers(description: Description, eyes: Eyes) -> list[int]:
+def _numbers(description: Description, eyes: Eyes, result: Aims) -> list[int]:
     """Numbers of the things that a description means."""
-    if description.quantity == "one":
-        number = eyes.number(description)
-        return [] if number is None else [number]
-    found = eyes.find(replace(description, quantity="all"))
-    return [match.thing.number for match in found if match.thing is not None]
+    found = [match.thing.number for match in eyes.find(one_of(description)) if match.thing is not None]
+    if not found:
+        result.misses(description, eyes)
+    return found[:1] if description.quantity == "one" else found
+
+
+def _absent_part(description: Description, eyes: Eyes) -> str:
+    """Words for what does not show: a thing that others are told by, or else the thing itself."""
+    others = (to for related in description.related for to in related.to)
+    gone = next((to for to in others if not eyes.find(one_of(to))), None)
+    return render(one_of(description)) if gone is None else _absent_part(gone, eyes)
 
 
 def _of_command(command: Command, eyes: Eyes, result: Aims, strict: bool) -> list[Aim]:
@@ -160,8 +191,6 @@ def _of_command(command: Command, eyes: Eyes, result: Aims, strict: bool) -> lis
     assert goal is not None  # the grammar gives every put and push a goal
     if goal.how == "matching":
         return [aim for thing in things for aim in _matching_aim(command, goal, thing, eyes, result)]
-    many = command.thing.quantity != "one"
-    taken = frozenset(thing.number for thing in things if thing.number is not None) if not many else frozenset()
     if pushed and goal.what is not None:
         from wonderful_team.models.offline.answers.sweeps import swept_aims
 
@@ -169,15 +198,13 @@ def _of_command(command: Command, eyes: Eyes, result: Aims, strict: bool) -> lis
         if aims is not None:
             return aims
         things = things[: command.thing.number] if command.thing.quantity == "number" else things
-    moved = eyes.thing(things[0].number) if len(things) == 1 and into else None
-    to = _one(goal.what, eyes, result, strict, taken=taken, holds=moved) if goal.what is not None else None
-    other = _one(goal.other, eyes, result, strict, taken=taken) if goal.other is not None else None
+    if goal.what is not None and command.conditional and not eyes.find(one_of(goal.what)):
+        result.notes.append(f"there is no {render(one_of(goal.what))}")
+        return []
+    to, other = _places(goal, command.thing, things, eyes, result, strict)
     aims = []
     for thing in things:
-        if to is not None and many and thing.number == to.number:
-            continue
-        if to is not None and command.conditional and to.number is None:
-            result.notes.append(f"there is no {to.words}")
+        if to is not None and command.thing.quantity != "one" and thing.number == to.number:
             continue
         moved_before = any(aim.thing.number == thing.number for aim in result.aims if thing.number is not None)
         if (
@@ -186,10 +213,23 @@ def _of_command(command: Command, eyes: Eyes, result: Aims, strict: bool) -> lis
             and not (result.literal or moved_before)
             and already(eyes, thing, to)
         ):
-            result.notes.append(f"{thing.words} is already {goal.how} {to.words}")
+            result.settled.append(f"{thing.words} is already {goal.how} {to.words}")
             continue
         aims.append(Aim(command.kind, thing, goal.how, to, other, goal.side))
     return aims
+
+
+def _places(
+    goal: Destination, moved: Description, things: list[Named], eyes: Eyes, result: Aims, strict: bool
+) -> tuple[Named | None, Named | None]:
+    """The references of a destination; what is moved cannot be one, and what goes into something is smaller than it."""
+    if goal.how == "side" and not eyes.find(spot := describe(f"free area {side_words(goal.side)}")):
+        result.misses(spot, eyes)
+    taken = frozenset(item.number for item in things if item.number is not None and moved.quantity == "one")
+    fits = goal.how == "in" or (goal.how == "on" and goal.what is not None and goal.what.noun in HOLDERS)
+    held = eyes.thing(things[0].number) if len(things) == 1 and fits else None
+    to = None if goal.what is None else _one(goal.what, eyes, result, strict, taken=taken, holds=held)
+    return to, None if goal.other is None else _one(goal.other, eyes, result, strict, taken=taken)
 
 
 def _things(
@@ -202,7 +242,7 @@ def _things(
     order = wanted.superlative if description.quantity == "number" and description.number > 1 else None
     if order is not None:
         wanted = replace(wanted, superlative=None)
-    left_out = {number for item in description.excluded for number in _numbers(item, eyes)}
+    left_out = {number for item in description.excluded for number in _numbers(item, eyes, result)}
     matches = [match for match in eyes.find(wanted) if match.thing is not None and match.thing.number not in left_out]
     if wanted.shape is not None:
         # Of all that resemble it, those of that very shape: a disc is no square, though it comes near.
@@ -213,10 +253,14 @@ def _things(
     if place is not None:
         # What goes into something is neither that thing itself nor larger than it.
         matches = [m for m in matches if m.thing is not None and m.thing.number != place.number] or matches
+    if matches and len(matches) < description.number:
+        result.absent.append(f"{description.number} are asked for, but only {len(matches)} fit '{description.text}'")
+    elif description.quantity == "all" and 1 < description.number < len(matches):
+        result.absent.append(f"'both' is said of {len(matches)} things that fit '{description.text}'")
     if description.quantity == "number" and not every:
         matches = matches[: description.number]
     if not matches:
-        result.notes.append(f"no {one_of(description).noun} of that kind is in the picture")
+        result.misses(description, eyes)
     noun = description.noun if description.noun != "thing" else "object"
     named = []
     for match in matches:
@@ -257,12 +301,16 @@ def _one(
     everything = eyes.find(single)
     matches = [match for match in everything if match.thing is None or match.thing.number not in taken]
     matches = as_pictured(single, matches, eyes)
+    if holds is not None and single.noun in HOLDERS:
+        matches = [m for m in matches if m.thing is None or m.thing.area_px > LARGER * holds.area_px]
     equal = _equal(single, matches)
     if len(equal) > 1:
         equal = _by_size(equal, holds, fits_in) or equal
     if strict and not result.question and len(equal) > 1:
         _ask(single, equal, eyes, result)
     best = equal[0] if equal else next(iter(matches), None)
+    if best is None:
+        result.misses(single, eyes)
     if best is None or best.thing is None:
         return Named(single, None)
     plain = not (single.superlative or single.like or single.related)
@@ -309,8 +357,7 @@ def _ask(description: Description, equal: list[Match], eyes: Eyes, result: Aims)
     places = []
     for match in equal:
         assert match.thing is not None  # filtered by _equal
-        words = unique_words(eyes, match.thing, description.noun, description.name, description.shape).text
-        places.append(f"the {words} ({place_words(match.thing, eyes.scene.size_px)})")
+        places.append(told_apart(eyes, match.thing, description.noun, description.name, description.shape))
     result.question = f"Which one is meant by 'the {description.text}'? {len(equal)} things fit equally well."
     result.choices = tuple(places)
 
@@ -320,7 +367,6 @@ def _matching_aim(command: Command, goal: Destination, thing: Named, eyes: Eyes,
     seen = eyes.thing(thing.number)
     assert goal.what is not None  # the grammar gives matching a kind of thing
     if seen is None:
-        result.notes.append(f"{thing.words} is not in the picture")
         return []
     wanted = _sharing(one_of(goal.what), goal.aspect or "colour", seen)
     matches = [match for match in eyes.find(wanted) if match.thing is not None and match.thing.number != seen.number]
@@ -331,7 +377,7 @@ def _matching_aim(command: Command, goal: Destination, thing: Named, eyes: Eyes,
     assert there is not None  # filtered above
     to = Named(replace(wanted, text=render(wanted)), there.number)
     if not result.literal and already(eyes, thing, to):
-        result.notes.append(f"the {thing.words} is already in the {to.words}")
+        result.settled.append(f"the {thing.words} is already in the {to.words}")
         return []
     return [Aim("push" if command.kind == "push" else "put", thing, "in", to)]
 

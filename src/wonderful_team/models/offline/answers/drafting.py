@@ -20,8 +20,8 @@ from wonderful_team.contracts import (
 )
 from wonderful_team.contracts.shown import ShownTask
 from wonderful_team.errors import NotUnderstoodError
-from wonderful_team.models.offline.answers.aims import Aim, Aims, Named, derive
-from wonderful_team.models.offline.answers.eyes import Eyes, eyes_of_task
+from wonderful_team.models.offline.answers.aims import Aim, Aims, derive
+from wonderful_team.models.offline.answers.eyes import Eyes, eyes_of_task, side_words, told_apart
 from wonderful_team.models.offline.answers.instruction import read_task
 from wonderful_team.models.offline.answers.sweeping import place_words
 from wonderful_team.models.offline.answers.sweeps import way_places
@@ -32,8 +32,8 @@ from wonderful_team.types import PointRole
 
 _SIDE_WORDS = {"left": "to the left of", "right": "to the right of", "above": "above", "below": "below",
                "near": "next to", "in": "into", "on": "onto"}  # fmt: skip
-_PICTURE_SIDES = {"leftmost": "on the left", "rightmost": "on the right", "topmost": "at the top",
-                  "bottommost": "at the bottom", "middle": "in the middle"}  # fmt: skip
+MOST_NAMED = 8
+"""Things of a picture that are named when the words fit none."""
 
 
 @dataclass
@@ -75,7 +75,7 @@ def aim_text(aim: Aim) -> str:
     if aim.how == "origin":
         return f"{verb} {thing} " + (f"to where the {aim.to.words} was" if aim.to else "back to its original place")
     if aim.how == "side":
-        return f"{verb} {thing} {_side_words(aim.side)}"
+        return f"{verb} {thing} {side_words(aim.side)}"
     assert aim.to is not None  # every other destination has a reference
     if aim.kind == "push" and (aim.off or aim.limit):
         kept = f" without touching the {aim.off.words}" if aim.off else ""
@@ -84,13 +84,6 @@ def aim_text(aim: Aim) -> str:
     if aim.how == "between" and aim.other is not None:
         return f"{verb} {thing} between the {aim.to.words} and the {aim.other.words}"
     return f"{verb} {thing} {_SIDE_WORDS[aim.how]} the {aim.to.words}"
-
-
-def _side_words(side: str) -> str:
-    if " " in side:
-        row, column = side.split()
-        return f"in the {'top' if row == 'topmost' else 'bottom'} {'left' if column == 'leftmost' else 'right'} corner"
-    return _PICTURE_SIDES[side]
 
 
 def write_plan(aims: Sequence[Aim], slots: tuple[str, ...], with_targets: bool, reasoning: str) -> PlanDraft:
@@ -129,7 +122,7 @@ def aim_targets(aim: Aim, writer: _Writer) -> list[str]:
     end: PointRole = "push_end" if aim.kind == "push" else "place"
     ids = [writer.target(aim.thing.description, start)]
     if aim.how == "side":
-        spot = describe(f"free area {_side_words(aim.side)}")
+        spot = describe(f"free area {side_words(aim.side)}")
         ids.append(writer.target(spot, end, "area"))
     elif aim.how == "between" and aim.to is not None and aim.other is not None:
         spot = describe(f"free area between the {aim.to.words} and the {aim.other.words}")
@@ -154,6 +147,9 @@ def draft(task: ShownTask, with_targets: bool, advice: Sequence[str] = ()) -> tu
         )
     eyes = eyes_of_task(task)
     result = derive(understood, eyes)
+    if result.unfounded:
+        result.question = f"{result.unfounded[:1].upper()}{result.unfounded[1:]}. What is meant?"
+        result.choices = tuple(told_apart(eyes, thing, "object") for thing in eyes.scene.things[:MOST_NAMED])
     if result.question:
         asked = ClarificationDraft(question=result.question, choices=list(result.choices))
         return (
@@ -165,8 +161,7 @@ def draft(task: ShownTask, with_targets: bool, advice: Sequence[str] = ()) -> tu
         result.notes.append("nothing else is moved, as asked")
     reasoning = _reasoning(understood.used, result, eyes)
     if advice:
-        result.aims, told = _advised(result.aims, advice, eyes)
-        reasoning = f"{told} {reasoning}"
+        reasoning = f"The advice changes nothing that the words say; the plan follows them. {reasoning}"
     return write_plan(result.aims, task.slot_names, with_targets, reasoning), result
 
 
@@ -194,51 +189,7 @@ def _reasoning(used: Sequence[str], result: Aims, eyes: Eyes) -> str:
         text += f"{len(found)} of {len(result.aims)} things to act on were seen among {len(eyes.scene.things)}. "
     else:
         text += "Nothing is left to do. "
-    return text + "; ".join(result.notes)
-
-
-def _advised(aims: list[Aim], advice: Sequence[str], eyes: Eyes) -> tuple[list[Aim], str]:
-    """Describe what was not found in another way where the picture offers one."""
-    told = " ".join(advice)
-    ids = (
-        set(re.findall(r"\bT\d+\b", told))
-        if re.search(r"not (?:found|there|here|in the picture)|absent|missing", told)
-        else set()
-    )
-    changed: list[str] = []
-    writer = _Writer(tuple(eyes.examples))
-    out = []
-    for aim in aims:
-        names = aim_targets(aim, writer)
-        thing, to = aim.thing, aim.to
-        if names and names[0] in ids:
-            thing = _otherwise(thing, eyes, changed)
-        if to is not None and len(names) > 1 and names[1] in ids:
-            to = _otherwise(to, eyes, changed)
-        out.append(replace(aim, thing=thing, to=to))
-    if changed:
-        return out, f"After the advice, described otherwise: {'; '.join(changed)}."
-    return (
-        aims,
-        "The advice names nothing that the picture or the words would let me describe otherwise; the plan stands.",
-    )
-
-
-def _otherwise(named: Named, eyes: Eyes, changed: list[str]) -> Named:
-    """The same thing in looser words, if those lead to something."""
-    full = named.description
-    looser = [
-        replace(full, dark=None, pattern=None, material=None),
-        replace(full, dark=None, pattern=None, material=None, shape=None, noun="object"),
-        replace(full, dark=None, pattern=None, material=None, shape=None, noun="thing", related=()),
-    ]
-    for description in looser:
-        worded = replace(description, text=render(description))
-        best = eyes.best(worded)
-        if worded.text != full.text and best is not None and best.thing is not None:
-            changed.append(f"{full.text} -> {worded.text}")
-            return Named(worded, best.thing.number)
-    return named
+    return text + "; ".join((*result.settled, *result.notes))
 
 
 def answer_draft(question: DraftPlan) -> PlanDraft:

@@ -21,6 +21,7 @@ from wonderful_team.models.offline.vision import (
     study_example,
     with_heights,
 )
+from wonderful_team.models.offline.vision.relations import is_at, shares_from
 from wonderful_team.pictures import Picture
 from wonderful_team.types import Target
 
@@ -93,15 +94,13 @@ class Eyes:
 
     def _spots_at(self, description: Description) -> list[Match]:
         """Free spots towards a side or corner of the picture, best first."""
-        wishes = description.name.split() if " " in description.name else [str(description.superlative)]
-        width, height = self.scene.size_px
+        wishes = description.name if " " in description.name else str(description.superlative)
 
         def away(match: Match) -> float:
-            x, y = match.point[0] / width, match.point[1] / height
-            wanted = {"leftmost": x, "rightmost": 1 - x, "topmost": y, "bottommost": 1 - y}
-            return sum(wanted.get(wish, abs(x - 0.5) + abs(y - 0.5)) for wish in wishes)
+            return sum(shares_from(self.scene, match.point, wishes)) - 0.1 * match.score
 
-        return sorted(free_spots(self.scene, count=60), key=lambda match: round(away(match) - 0.1 * match.score, 6))
+        spots = [spot for spot in free_spots(self.scene, count=60) if is_at(self.scene, spot.point, wishes)]
+        return sorted(spots, key=lambda match: round(away(match), 6))
 
     def best(self, description: Description) -> Match | None:
         """The best match, or None."""
@@ -273,6 +272,23 @@ def _by_place(eyes: Eyes, thing: Thing, base: Description) -> Description:
 
 def _worded(description: Description) -> Description:
     return replace(description, text=render(description))
+
+
+_PICTURE_SIDES = {"leftmost": "on the left", "rightmost": "on the right", "topmost": "at the top",
+                  "bottommost": "at the bottom", "middle": "in the middle"}  # fmt: skip
+
+
+def side_words(side: str) -> str:
+    """Such as "on the left", "in the top left corner"."""
+    if " " in side:
+        row, column = side.split()
+        return f"in the {'top' if row == 'topmost' else 'bottom'} {'left' if column == 'leftmost' else 'right'} corner"
+    return _PICTURE_SIDES[side]
+
+
+def told_apart(eyes: Eyes, thing: Thing, noun: str, name: str = "", shape: str | None = None) -> str:
+    """Words for a thing in a choice: what it looks like and where it lies."""
+    return f"the {unique_words(eyes, thing, noun, name, shape).text} ({place_words(thing, eyes.scene.size_px)})"
 
 
 def place_words(thing: Thing, size_px: tuple[int, int]) -> str:

@@ -54,7 +54,8 @@ def findings(
     wanted = derive(read_task(task), eyes, strict=False)
     wanted.aims = cleared(wanted.aims, eyes)
     read = [read_subgoal(subgoal, targets, eyes) for subgoal in subgoals]
-    found = _cannot_be_done(read, step_kinds)
+    found = [Finding(subgoals[-1].id if subgoals else "plan", "ambiguity", f"{text}; is it?") for text in wanted.absent]
+    found += _cannot_be_done(read, step_kinds)
     found += _differences(wanted, read)
     found += [item for subgoal in read for item in _wrong_targets(subgoal)]
     found += _order(wanted.aims, read)

@@ -97,7 +97,9 @@ def _arranged(name: str, eyes: Eyes, result: Aims) -> list[Aim]:
     """Every thing that a picture shows goes to where it is there; what lies on such a place is brought away first."""
     shifts = _shifts(name, eyes)
     moves = [shift for shift in shifts if _away(shift) > STAYED * shift.thing.radius_px or result.literal]
-    result.notes += [f"the {shift.placed.text} is where {{{name}}} shows it" for shift in shifts if shift not in moves]
+    result.settled += [
+        f"the {shift.placed.text} is where {{{name}}} shows it" for shift in shifts if shift not in moves
+    ]
     ordered = _in_free_order(moves)
     first = len(result.aims)
     known = {shift.thing.number for shift in shifts}

@@ -16,11 +16,8 @@ def swept_aims(command: Command, what: Description, things: list[Named], eyes: E
 
     Exactly so many are pushed as are asked for: those that lie there already count.
     """
-    to, off, limit = (_named(item, eyes) for item in (what, command.off, command.limit))
+    to, off, limit = (_named(item, eyes, result) for item in (what, command.off, command.limit))
     sweep = sweep_by_numbers(to, off, limit)
-    if to is not None and sweep is None and (off or limit):
-        # What must be kept off does not show: the place on the way is not found either, and the plan says so.
-        return [Aim("push", item, "in", to, off=off, limit=limit, legs=("inside",)) for item in things]
     if to is None or sweep is None or not is_walled(eyes.scene, sweep):
         return None
     named = {sweep.into, *sweep.lines}
@@ -31,7 +28,7 @@ def swept_aims(command: Command, what: Description, things: list[Named], eyes: E
     there = swept(eyes.scene, sweep, numbers)
     wanted = command.thing.number if command.thing.quantity == "number" else len(numbers)
     if there:
-        result.notes.append(f"{len(there)} of them lie in the {to.words} already")
+        result.settled.append(f"{len(there)} of them lie in the {to.words} already")
     left = tuple(number for number in numbers if number not in there)
     count = max(0, min(wanted, len(numbers)) - len(there))
     words = {item.number: item for item in things}
@@ -81,8 +78,11 @@ def way_places(aim: Aim) -> list[Description]:
     return places
 
 
-def _named(description: Description | None, eyes: Eyes) -> Named | None:
+def _named(description: Description | None, eyes: Eyes, result: Aims) -> Named | None:
     if description is None:
         return None
     single = one_of(description)
-    return Named(replace(single, text=render(single)), eyes.number(single))
+    number = eyes.number(single)
+    if number is None:
+        result.misses(single, eyes)
+    return Named(replace(single, text=render(single)), number)

@@ -6,6 +6,8 @@ A plan that passes over a picture, a colour, an angle or "and back" is worse tha
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from itertools import pairwise
+from typing import Any
 
 from wonderful_team.models.offline.description import Description
 from wonderful_team.models.offline.language.commands import Command
@@ -14,21 +16,39 @@ from wonderful_team.models.offline.language.tokens import Token
 _PLACES = ("IN", "INTO", "ON", "ONTO", "TO", "NEAR", "LEFT_OF", "RIGHT_OF", "ABOVE", "BELOW")
 
 
+_SIDES = ("left", "right")
+"""Words for a side that are said of no place ("on its right"); before a place they say nothing ("right into the bowl")."""
+_END = Token("SEP", ".", ".")
+
+
 def passed_over(tokens: Sequence[Token], commands: Sequence[Command]) -> list[str]:
     """The words of a text that its commands say nothing of."""
     things = [item for command in commands for item in _all_things(command)]
     shown = {item.like for item in things} | {item.since for item in things}
     shown |= {name for command in commands for name in command.pictures}
-    said: dict[str, set[str | None]] = {
+    places = {command.to.how for command in commands if command.to is not None}
+    relations = {related.relation for item in things for related in item.related}
+    sides = {word for item in things for word in (item.superlative, *item.name.split())}
+    sides |= {word for command in commands if command.to is not None for word in command.to.side.split()}
+    turned = any(command.kind == "rotate" for command in commands)
+    said: dict[str, set[Any]] = {
         "SLOT": shown,
         "COLOUR": {*(colour for item in things for colour in item.colours)},
         "PATTERN": {item.pattern for item in things},
         "MATERIAL": {item.material for item in things},
         "LETTER": {item.name for item in things},
         "SUPER": {item.superlative for item in things},
+        "DARK": {item.dark for item in things},
     }
+    for side in ("left", "right", "above", "below", "between"):
+        relation = side if side in ("above", "below", "between") else f"{side}_of"
+        if side not in places and relation not in relations:
+            said[relation.upper()] = set()
     lost = [token.text for token in tokens if token.kind in said and token.value not in said[token.kind]]
+    lost += [token.text for token in tokens if token.kind in ("NOUN", "SHAPE") and not _is_meant(token, things)]
     lost += [token.text for token in tokens if token.kind == "ASPECT" and not _has_aspect(things, commands)]
+    lost += [token.text for token, after in pairwise([*tokens, _END]) if token.text in _SIDES and not (
+        token.value in sides or turned or relations or after.kind in _PLACES)]  # fmt: skip
     kinds = {command.kind for command in commands}
     hows = {command.to.how for command in commands if command.to is not None}
     for at, token in enumerate(tokens):
@@ -41,6 +61,18 @@ def passed_over(tokens: Sequence[Token], commands: Sequence[Command]) -> list[st
         ):
             lost.append(token.text)
     return lost
+
+
+def _is_meant(token: Token, things: Sequence[Description]) -> bool:
+    """Whether a noun or a shape that says what a thing is belongs to one of the things."""
+    value = token.value
+    assert isinstance(value, tuple)  # of every noun and shape
+    if token.kind == "SHAPE":
+        return any(item.shape == value[0] or item.noun == "letter" for item in things)
+    kind, name = value[0], value[1]
+    if name:
+        return any(item.name == name for item in things)
+    return kind not in ("block", "letter", "ball") or any(item.noun == kind for item in things)
 
 
 def _has_aspect(things: Sequence[Description], commands: Sequence[Command]) -> bool:

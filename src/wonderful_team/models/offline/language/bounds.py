@@ -15,7 +15,7 @@ _TOOL = r"(?:with|using|by means of)\s+(?:the|a|your|its)\s+(?:tool|spatula|swee
 _THEM = r"(?:them|it|they|the (?:blocks|objects|things)|any of (?:them|these)|these)"
 _NEG = (
     rf"(?:without(?:\s+(?:ever|any|making|any|letting|having))*|(?:so\s+as\s+)?(?:do\s+not|don't|never|not|{_THEM}\s+(?:must|may|should|can|shall)\s*(?:not|never)|"
-    rf"(?:nothing|none(?:\s+of\s+(?:them|these))?|no\s+[a-z]+)\s+(?:may|must|should|can|is\s+to)|keep(?:ing)?\s+{_THEM}\s+from|(?:tak(?:e|ing)|with)\s+care\s+not\s+to|"
+    rf"(?:nothing|none(?:\s+of\s+(?:them|these))?|no\s+[a-z]+)\s+(?:may|must|should|can|is\s+(?:allowed\s+)?to)|keep(?:ing)?\s+{_THEM}\s+from|(?:tak(?:e|ing)|with)\s+care\s+not\s+to|"
     rf"mak(?:e|ing)\s+sure\s+(?:that\s+)?(?:not\s+to|{_THEM}\s+(?:do\s+not|don't|never)))(?:\s+(?:ever|let|letting|allow|to))*(?:\s+{_THEM})?(?:\s+to)?)"
 )
 _LEAD = r"(?:\s*[,;:.]?\s*(?:(?:and|but|while|so\s+that|also)\s+)*(?:please\s+)?)"

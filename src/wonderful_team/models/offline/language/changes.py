@@ -16,6 +16,8 @@ Change: TypeAlias = Callable[[Description], Description]
 _RELATIONS = {"LEFT_OF": "left_of", "RIGHT_OF": "right_of", "ABOVE": "above", "BELOW": "below", "NEAR": "near",
               "BY": "near", "FAR": "far_from", "ON": "on", "IN": "inside"}  # fmt: skip
 _SAME = {"colour": "same_colour", "texture": "same_pattern", "shape": "same_shape"}
+ONE = "one"
+"""Name of a description whose noun is one that was said before: "the green one"."""
 PRONOUN = "it"
 """Name of a description that stands for something said before."""
 
@@ -30,15 +32,23 @@ def thing_of(tree: Tree[Token]) -> Description:
             description = CHANGES[str(child.data)](child)(description)
     if _is_bare_one(tree, description):
         description = replace(description, noun="thing", name=PRONOUN)
-    if description.quantity == "all" and any(token.type == "OF_TWO" for token in tokens_in(tree)):
-        description = replace(description, quantity="one")
+    some = {token.type for adj in trees(tree, "adj") for token in tokens_in(adj)} & {"OF_TWO", "OF", "ONE_OF"}
+    both_of_a_list = description.number > 1 and not any(_is_many(head) for head in trees(tree, "head"))
+    if description.quantity == "all" and (both_of_a_list or some):
+        description = replace(description, quantity="one", number=1)
     return replace(description, text=render(description))
+
+
+def _is_many(head: Tree[Token]) -> bool:
+    """Whether a head is no noun in the singular: "both the red block and the green one" speaks of one each."""
+    values = [value_of(token) for token in tokens_in(head) if token.type in ("NOUN", "SHAPE")]
+    return not values or bool(values[-1][-1])
 
 
 def _is_bare_one(tree: Tree[Token], description: Description) -> bool:
     """Whether the words are "this one" or "that one" alone."""
     heads = [token.type for head in trees(tree, "head") for token in tokens_in(head)]
-    return heads == ["ONE"] and description == Description(noun="object", text="")
+    return heads == ["ONE"] and description == Description(noun="object", text="", name=ONE)
 
 
 def _place_of(tree: Tree[Token]) -> Description:
@@ -71,7 +81,8 @@ def _quantity(tree: Tree[Token]) -> Change:
         return lambda d: replace(d, quantity="one" if number == 1 else "number", number=number)
     if "EACH" in kinds:
         return lambda d: replace(d, quantity="each")
-    return lambda d: replace(d, quantity="all")
+    counted = 2 if any(value_of(token) == 2 for token in kinds.values()) else 1  # noqa: PLR2004  "both"
+    return lambda d: replace(d, quantity="all", number=counted)
 
 
 def _head(tree: Tree[Token]) -> Change:
@@ -110,6 +121,8 @@ def _head_word(description: Description, token: Token) -> Description:
             return replace(description, noun="thing", name=token.type.lower())
         case "TABLE":
             return replace(description, noun="area", name="table")
+        case "ONE":
+            return replace(description, name=description.name or ONE)
         case _:
             return description
     return replace(description, quantity="all") if many and description.quantity == "one" else description
@@ -217,22 +230,14 @@ def _post_part(child: Token | Tree[Token], kinds: list[str], description: Descri
         return replace(description, like_only=only) if "SLOT" in kinds else description
     if child.type == "SLOT":
         return replace(description, like=value_of(child))
+    if child.type == "NOUN":
+        return replace(description, noun=value_of(child)[0], name=value_of(child)[1])
     return _adjective(description, child)
 
 
 def _except(tree: Tree[Token], description: Description) -> Description:
-    spared = tuple(_of_kind(np, description) for np in trees(tree, "np"))
+    spared = tuple(thing_of(np) for np in trees(tree, "np"))
     return replace(description, excluded=(*description.excluded, *spared))
-
-
-def _of_kind(tree: Tree[Token], whole: Description) -> Description:
-    """What "except the red one" leaves out is of the kind that it is left out of."""
-    spared = thing_of(tree)
-    heads = [token.type for head in trees(tree, "head") for token in tokens_in(head)]
-    if heads == ["ONE"]:
-        spared = replace(spared, noun=whole.noun, name=whole.name, shape=spared.shape or whole.shape)
-        spared = replace(spared, text=render(spared))
-    return spared
 
 
 def _post(tree: Tree[Token]) -> Change:

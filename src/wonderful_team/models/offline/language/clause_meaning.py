@@ -34,7 +34,9 @@ def _things(parts: Parts, meaning: Meaning) -> list[Description]:
 
 def read_swap(parts: Parts, meaning: Meaning) -> None:
     """Two things change places."""
-    things = [item for item in parts.of("np") if item.name != "table"]
+    things = [part for item in parts.of("np") if item.name != "table" for part in split_colours(item)]
+    if len(things) == _TWO:
+        things = [replace(item, quantity="one", number=1) for item in things]
     if len(things) == 1 and (things[0].quantity == "number" and things[0].number == _TWO):
         raise Unclear("name the two things to be swapped, each by its own words")
     if len(things) != _TWO:
@@ -311,10 +313,12 @@ def _away(things: list[Description], source: Description | None, meaning: Meanin
 
 def _without_place(parts: Parts, things: list[Description], meaning: Meaning, goes: bool) -> None:
     """Only names things, or goes on from the clause before."""
-    if goes and meaning.last_goal is None:
-        raise Unclear("it is not said where to put it")
     if not things:
         raise Unclear("it names nothing to be moved")
+    if goes and meaning.last_goal is None and len(things) == 1 and things[0].name != PRONOUN:
+        meaning.pending_put = things[0]  # "move the block: it belongs in the bowl"
+    elif goes and meaning.last_goal is None:
+        raise Unclear("it is not said where to put it")
     meaning.mentioned = [thing for thing in things if thing.name not in (PRONOUN, "table")]
     if meaning.last_thing is not None:
         things = meaning.or_last(things)
@@ -329,7 +333,7 @@ def _without_place(parts: Parts, things: list[Description], meaning: Meaning, go
         if last.to is not None and last.to.what is not None and _alike_kind(things[0], last.to.what):
             meaning.put(last.thing, replace(last.to, what=things[0]), last.kind)
             return
-    if goes and things[0].name != PRONOUN:
+    if goes and things[0].name != PRONOUN and meaning.pending_put is None:
         raise Unclear("it is not said where to put it")
 
 

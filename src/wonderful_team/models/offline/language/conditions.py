@@ -10,10 +10,10 @@ _CONDITION_WORDS = frozenset(
     can be the that matching match matches its same colour color of with in it fruit fruits for them each on table scene
     possible ones has have corresponding where provided picture spot place places block blocks object objects container
     bowl bowls their actually which was were fits and also they patch patches paper papers sheet mat pad section sections location none
-    pieces piece""".split()
+    pieces piece those these any do""".split()
 )  # fmt: skip
 _LEAVE = re.compile(
-    r"(?:[.,;]|\band\b|\bbut\b|\botherwise\b|\belse\b)\s*(?:and |but |please |otherwise,? |if not,? |else |"
+    r"(?:[.,;!?]|\band\b|\bbut\b|\botherwise\b|\belse\b)\s*(?:and |but |please |otherwise,? |if not,? |else |"
     r"(?:if|when|where) (?:there (?:is|are) (?:none|no [a-z ]+|not)|none (?:exists?|is there)|no such [a-z]+ exists?),? )*"
     r"(?:(?:leave|ignore|skip|keep)\b[^.;{}]*|(?:do not|don't) (?:move|touch) (?:the )?(?:others?|rest|it|them)\b[^.;{}]*"
     r"|(?:the )?(?:others|rest|other fruits?|remaining [a-z]+)\b[^.;{}]*\b(?:stays?|remains?|where)\b[^.;{}]*"

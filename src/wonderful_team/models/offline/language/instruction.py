@@ -17,10 +17,11 @@ from wonderful_team.models.offline.language.pictured import (
     unknown_in_pictured,
     without_mentions,
 )
-from wonderful_team.models.offline.language.reading import try_describe, understand
+from wonderful_team.models.offline.language.reading import try_describe, understand, unframed
 from wonderful_team.models.offline.language.shown_turns import define_turns
 from wonderful_team.models.offline.language.shows import Shows
 from wonderful_team.models.offline.language.tokens import refusal
+from wonderful_team.models.offline.language.turns_of_phrase import in_full
 
 
 def read_instruction(text: str, shows: Shows) -> Understood:
@@ -29,7 +30,11 @@ def read_instruction(text: str, shows: Shows) -> Understood:
     Raises:
         NotUnderstoodError: A word is unknown, a new word is not shown clearly, or the words do not make an instruction.
     """
-    plain = without_mentions(define_words(define_turns(text, shows, try_describe), shows), shows)
+    return unframed(text, lambda words: _read(words, shows))
+
+
+def _read(text: str, shows: Shows) -> Understood:
+    plain = without_mentions(define_words(define_turns(in_full(text), shows, try_describe), shows), shows)
 
     told: list[Understood] = []
 

@@ -40,6 +40,7 @@ class Meaning:
     last_angle: float | None = None
     pending_turn: list[Description] = field(default_factory=list)
     pending_sign: float = 1.0
+    pending_put: Description | None = None
     mentioned: list[Description] = field(default_factory=list)
     tentative: int | None = None
 
@@ -192,6 +193,7 @@ class Meaning:
     def put(self, thing: Description, goal: Destination, kind: str = "put") -> None:
         """Bring a thing to a place, and remember both for pronouns."""
         self.last_thing = thing
+        self.pending_put = None if self.pending_put == thing else self.pending_put
         if goal.how != "origin":
             self.last_goal = goal
         self._add(Command(kind, thing, goal))  # type: ignore[arg-type]

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from wonderful_team.models.offline.language.vocabulary import ARTICLES, Entry
 
 
@@ -32,6 +34,17 @@ def _origin_phrases() -> list[str]:
     return phrases
 
 
+_ROWS = {"topmost": ("top", "upper", "back", "far"), "bottommost": ("bottom", "lower", "front", "near")}
+_COLUMNS = {"leftmost": ("left", "left hand"), "rightmost": ("right", "right hand")}
+
+
+def _corner_phrases(rows: Sequence[str], columns: Sequence[str]) -> list[str]:
+    """Ways of naming one corner."""
+    named = [name for row in rows for column in columns for name in (f"{row} {column}", f"{column} {row}")]
+    ends = [f"{name} {end}" for name in named for end in ("corner", "hand corner")]
+    return [*named, *ends, *(f"corner {at} {name}" for name in named for at in ("at", "in", "on", "to"))]
+
+
 PHRASES: dict[tuple[str, ...], Entry] = {
     tuple(word for word in words.split() if word not in ARTICLES): entry
     for entry, listing in (
@@ -59,11 +72,11 @@ PHRASES: dict[tuple[str, ...], Entry] = {
         (("IN", "in"), ("inside of", "in the middle of", "in the centre of",
                         "in the center of", "at the centre of", "at the center of", "at the middle of")),
         (("SIDE_POST", "leftmost"), ("on the left", "at the left", "on the far left", "at the far left", "to the left",
-                                     "on the left side", "on the left hand side", "at the very left", "far left",
+                                     "to the left side", "on the left side", "on the left hand side", "at the very left", "far left",
                                      "furthest left", "furthest to the left", "farthest to the left", "leftwards",
                                      "at the left edge")),
         (("SIDE_POST", "rightmost"), ("on the right", "at the right", "on the far right", "at the far right",
-                                      "to the right", "on the right side", "on the right hand side", "far right",
+                                      "to the right", "to the right side", "on the right side", "on the right hand side", "far right",
                                       "at the very right", "furthest right", "furthest to the right",
                                       "farthest to the right", "at the right edge")),
         (("SIDE_POST", "topmost"), ("at the top", "on the top", "at the back", "in the back", "at the very top",
@@ -84,7 +97,9 @@ PHRASES: dict[tuple[str, ...], Entry] = {
         (("SUPER", "rightmost"), ("right most",)),
         (("SUPER", "topmost"), ("top most",)),
         (("SUPER", "bottommost"), ("bottom most",)),
-        (("TAKE", "take"), ("pick up", "take hold of", "look for", "take up", "get hold of", "lift up")),
+        (("BETWEEN", "between"), ("in between", "in the gap between", "in the space between", "into the gap between",
+                                  "into the space between", "halfway between", "midway between")),
+        (("TAKE", "take"), ("pick up", "take hold of", "look for", "take up", "get hold of", "lift up", "start with", "begin with")),
         (("WANT", "want"), ("i want", "i would like", "i d like", "i want you to have", "see to it that",
                             "make sure that", "make sure", "ensure that", "ensure", "i wish", "we want", "i need",
                             "we need", "i would love", "be sure that", "i d love")),
@@ -108,6 +123,7 @@ PHRASES: dict[tuple[str, ...], Entry] = {
                             "keeping it in place", "without moving it away", "keeping its position")),
         (("BY", "by"), ("by an angle of", "through an angle of", "by angle of", "by a total of")),
         (("ROTATE", "rotate"), ("change the orientation of", "change orientation of", "re orient")),
+        (("NOUN", ("area", "", False)), ("sheet of paper", "piece of paper", "patch of paper")),
         (("NOUN", ("fruit", "", False)), ("piece of fruit",)),
         (("NOUN", ("fruit", "", True)), ("pieces of fruit",)),
         (("ROTATE", "rotate"), ("turn around", "turn round", "rotate around", "spin around")),
@@ -159,7 +175,7 @@ PHRASES: dict[tuple[str, ...], Entry] = {
         (("ON_TABLE", "table"), ("on the wrong place", "in the wrong place", "at the wrong place", "in a wrong place",
                                  "at a wrong place", "in the wrong spot", "not where it should be")),
         (("EXCEPT", "except"), ("except for", "apart from", "other than", "but not", "with the exception of", "save for",
-                                "aside from", "all but not", "not including", "leaving out", "without counting",
+                                "aside from", "all but not", "not including", "leaving out", "leave out", "without counting",
                                 "though not", "not counting", "but for")),
         (("OFF", "off"), ("out of", "off of", "away off", "from out of", "off from")),
         (("ONE_OF", 1.0), ("one of", "any one of", "any of", "a single one of", "either of", "just one of",
@@ -204,7 +220,8 @@ PHRASES: dict[tuple[str, ...], Entry] = {
                             "illustrated in", "visible in")),
         (("EACH", "each"), ("each of", "every one of", "each one of", "every single", "each single", "every single one of",
                             "any")),
-        (("ALL", "all"), ("all of", "both of", "all those", "all existing")),
+        (("ALL", "all"), ("all of", "all those", "all existing")),
+        (("ALL", 2), ("both of", "both those")),
         (("EVERYTHING", "everything"), ("every thing", "all things")),
         (("THEN", "then"), ("and then", "after that", "and after that", "next", "followed by", "and afterwards",
                             "and finally", "finally", "before you", "and subsequently", "once that is done",
@@ -214,12 +231,8 @@ PHRASES: dict[tuple[str, ...], Entry] = {
                                  "on the tabletop", "from the table", "in view", "in the view", "off the table",
                                  "on the work surface", "on the work area", "in front of you", "you see", "you can see",
                                  "you find", "that you see", "that you can see", "there is", "there are")),
-        (("CORNER", ("topmost", "leftmost")), ("top left corner", "upper left corner", "top left", "upper left")),
-        (("CORNER", ("topmost", "rightmost")), ("top right corner", "upper right corner", "top right", "upper right")),
-        (("CORNER", ("bottommost", "leftmost")), ("bottom left corner", "lower left corner", "bottom left",
-                                                  "lower left")),
-        (("CORNER", ("bottommost", "rightmost")), ("bottom right corner", "lower right corner", "bottom right",
-                                                   "lower right")),
+        *((("CORNER", (row, column)), _corner_phrases(rows, columns)) for row, rows in _ROWS.items()
+          for column, columns in _COLUMNS.items()),
     )
     for words in listing
 }  # fmt: skip

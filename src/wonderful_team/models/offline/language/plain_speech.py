@@ -52,7 +52,6 @@ _ASIDES = (
     (rf"(?P<w>\b(?:into|in|to)) {_PAIR},? in (?:this|that) order\b", r"into \g<a>, then into \g<b>"),
     (r"\b(?P<w>into|in|to) (?P<a>(?:the )?\{[^{}]+\})\s*,?\s*(?:and )?then (?=(?:the )?\{[^{}]+\}\s*(?:[.,;]|and\b|$))", r"into \g<a>, then into "),
     (r"(?P<a>\{[^{}]+\}|\bit|\bthere) (?:second|third|last|secondly|lastly)(?=\s*[.,;]|\s*$)", r"\g<a>"),
-    (r"\b(?:after|once|when|as soon as) (?P<a>(?:the )?\{[^{}]+\}) (?:is|lies|sits|has been put|has been placed) (?P<w>in|inside|on|into) (?P<b>(?:the )?\{[^{}]+\})\s*,", r"put \g<a> \g<w> \g<b>, then "),
     (r"\bin this order\s*,?", " "),
     (r"\bin (?:this|that|the given) order\b", " "),
     (r"\bto (?:change|adjust) the (?:heading|orientation|direction) of\b", "to rotate"),

@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from dataclasses import replace
 from functools import lru_cache
 
@@ -15,17 +16,20 @@ from wonderful_team.models.offline.language.accounting import passed_over
 from wonderful_team.models.offline.language.asides import set_aside, without_reasons
 from wonderful_team.models.offline.language.bounds import Bounds, set_bounds
 from wonderful_team.models.offline.language.changes import related_of, thing_of
-from wonderful_team.models.offline.language.clause_parts import VERBS, Unclear
+from wonderful_team.models.offline.language.clause_parts import PLACES, VERBS, Unclear
 from wonderful_team.models.offline.language.commands import Command, Understood
 from wonderful_team.models.offline.language.conditions import open_conditions
+from wonderful_team.models.offline.language.framing import without_frames
 from wonderful_team.models.offline.language.gists import gist_of_gathering, whole_gist
 from wonderful_team.models.offline.language.grammar import parse
 from wonderful_team.models.offline.language.meaning import Meaning
 from wonderful_team.models.offline.language.ordering import in_order
 from wonderful_team.models.offline.language.plain_speech import put_plainly
+from wonderful_team.models.offline.language.references import with_noun, with_nouns
 from wonderful_team.models.offline.language.slots import BY_PARTS, gist_of_matching, read_clauses
 from wonderful_team.models.offline.language.tokens import Token, refusal, tokenise
-from wonderful_team.models.offline.language.vocabulary import known_words
+from wonderful_team.models.offline.language.turns_of_phrase import turned
+from wonderful_team.models.offline.language.vocabulary import nearest_words
 
 
 @lru_cache(maxsize=512)
@@ -35,14 +39,31 @@ def understand(text: str) -> Understood:
     Raises:
         NotUnderstoodError: A word is unknown, or the words do not make an instruction; says which.
     """
+    return unframed(text, _understand)
+
+
+def unframed(text: str, read: Callable[[str], Understood]) -> Understood:
+    """A text read as it stands; where that fails, without the sentences that ask for nothing."""
+    try:
+        return read(text)
+    except NotUnderstoodError:
+        plain, nothing_else = without_frames(text)
+        if plain == text:
+            raise
+    understood = read(plain)
+    return replace(understood, text=text, nothing_else=understood.nothing_else or nothing_else)
+
+
+def _understand(text: str) -> Understood:
     later = _LATER.search(text)
     if later is not None:
         raise NotUnderstoodError(refusal([], [later.group(0)]))
-    bounds = set_bounds(put_plainly(without_reasons(_ACCORDINGLY.sub("", text))), try_describe)
+    bounds = set_bounds(put_plainly(turned(without_reasons(_ACCORDINGLY.sub("", text)))), try_describe)
     asides = set_aside(in_order(bounds.text), try_describe)
     plain, conditional = open_conditions(asides.text)
-    tokens = _joined(tokenise(plain))
+    tokens = _turns(_joined(tokenise(plain)))
     commands = _with_what_is_shared(_commands(tokens, asides.text, text), tokens, asides.text, text)
+    commands = with_nouns(commands)
     if conditional or asides.others_without:
         commands = tuple(replace(command, conditional=True) for command in commands)
     if bounds.off is not None or bounds.limit is not None:
@@ -150,7 +171,7 @@ def describe(words: str, where: str = "") -> Description:
     description = thing_of(tree)
     if where.strip():
         description = _with_where(description, where)
-    return description
+    return with_noun(description, None)
 
 
 def try_understand(text: str) -> Understood | None:
@@ -201,6 +222,7 @@ def _noun_words(words: str) -> str:
 def _joined(tokens: list[Token]) -> list[Token]:
     """Runs of commas, stops, "and" and "then" become one; none at either end."""
     tokens = _without_and(tokens)
+    tokens = _listed(tokens)
     rank = {"COMMA": 0, "AND": 1, "SEP": 2, "THEN": 3}
     joined: list[Token] = []
     for token in tokens:
@@ -214,6 +236,39 @@ def _joined(tokens: list[Token]) -> list[Token]:
     while joined and joined[-1].kind in rank:
         joined.pop()
     return joined
+
+
+_WAYS = {"to left": -1.0, "leftwards": -1.0, "to right": 1.0, "rightwards": 1.0}
+
+
+def _turns(tokens: list[Token]) -> list[Token]:
+    """The words "turn the star to the left by 90 degrees" say which way, not which star."""
+    out: list[Token] = []
+    for at, token in enumerate(tokens):
+        after = next((item.kind for item in tokens[at + 1 :] if item.kind in ("ANGLE", *VERBS, "SEP", "THEN")), "")
+        before = next((item.kind for item in reversed(tokens[:at]) if item.kind in VERBS), "")
+        turned = token.kind == "SIDE_POST" and before == "ROTATE" and after == "ANGLE" and token.text in _WAYS
+        out.append(Token("TURN", _WAYS[token.text], token.text) if turned else token)
+    return out
+
+
+def _listed(tokens: list[Token]) -> list[Token]:
+    """The words "the red block and then the green block go into the bowl" list things; "then" starts no clause."""
+    out: list[Token] = []
+    started = False
+    for at, token in enumerate(tokens):
+        if token.kind == "SEP":
+            started = False
+        elif token.kind == "THEN" and not started and out and not _verb_follows(tokens, at + 1):
+            token = Token("AND", "and", token.text)
+        elif token.kind in (*VERBS, *PLACES, "AUX", "WANT", "GIVE", "ANGLE", "ORIGIN", "CONTAIN", "FILL"):
+            started = True
+        out.append(token)
+    return out
+
+
+def _verb_follows(tokens: list[Token], at: int) -> bool:
+    return at < len(tokens) and tokens[at].kind in (*VERBS, "WANT", "GIVE")
 
 
 def _without_and(tokens: list[Token]) -> list[Token]:
@@ -243,7 +298,7 @@ def _no_sentence(text: str, tokens: list[Token], missing: str) -> str:
         f"I used: {', '.join(token.text for token in tokens)}. I do not know: what {text.strip()!r} asks for ({missing}). "
         "The words are known, but they do not make an instruction for me. I understand: put X into/onto/left of/beside Y, "
         "rotate X by N degrees, stack X on Y, push X to Y, swap X and Y, sort or put each X into the Y of the same colour. "
-        f"I know: {known_words()}. For other wordings name a vision-language model: --model anthropic:..., or probe your "
+        f"For other wordings name a vision-language model: --model anthropic:..., or probe your "
         "own server."
     )
 
@@ -251,6 +306,6 @@ def _no_sentence(text: str, tokens: list[Token], missing: str) -> str:
 def _no_noun_phrase(words: str, tokens: list[Token]) -> str:
     return (
         f"I know every word of {words.strip()!r}, but they do not name a thing for me. "
-        f"I used: {', '.join(token.text for token in tokens) or 'nothing'}. I know: {known_words()}. "
+        f"I used: {', '.join(token.text for token in tokens) or 'nothing'}. {nearest_words(())} "
         "For photos like this name a vision-language model: --model anthropic:..., or probe your own server."
     )

@@ -78,6 +78,8 @@ def read_clauses(tokens: Sequence[Token], meaning: Meaning) -> tuple[Command, ..
             meaning.done[before] = replace(meaning.done[before], after_last=True)
     if meaning.pending_turn:
         raise Unclear("it is not said by how much to turn it")
+    if meaning.pending_put is not None:
+        raise Unclear("it is not said where to put it")
     return tuple(meaning.done)
 
 

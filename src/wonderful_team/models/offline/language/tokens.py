@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from wonderful_team.errors import NotUnderstoodError
 from wonderful_team.models.offline.language.phrases import PHRASES
-from wonderful_team.models.offline.language.vocabulary import ARTICLES, FILLERS, NUMBERS, WORDS, known_words
+from wonderful_team.models.offline.language.vocabulary import ARTICLES, FILLERS, NUMBERS, WORDS, nearest_words
 
 _PIECE = re.compile(r"\{[^{}]+\}|beside_[a-z]+|\d+(?:\.\d+)?(?:nd|rd|th)?|°|[^\W\d_]+|[,;.:!?()]", re.UNICODE)
 _LONGEST = max(len(phrase) for phrase in PHRASES)
@@ -51,6 +51,14 @@ def tokenise(text: str) -> list[Token]:
     Raises:
         NotUnderstoodError: A word is not in the vocabulary; says which were used and which are unknown.
     """
+    tokens, unknown = cut(text)
+    if unknown:
+        raise NotUnderstoodError(refusal(tokens, unknown))
+    return tokens
+
+
+def cut(text: str) -> tuple[list[Token], list[str]]:
+    """Tokens of a text in order, and the words that are not in the vocabulary."""
     pieces = [piece for piece in _with_heads(_PIECE.findall(_plain(text))) if piece not in ARTICLES]
     tokens: list[Token] = []
     unknown: list[str] = []
@@ -62,9 +70,7 @@ def tokenise(text: str) -> list[Token]:
         elif length == 0:
             unknown.append(pieces[position])
         position += max(length, 1)
-    if unknown:
-        raise NotUnderstoodError(refusal(tokens, unknown))
-    return tokens
+    return tokens, unknown
 
 
 _BEFORE_HEAD = ("COLOUR", "ORANGE", "PATTERN", "MATERIAL", "LOOK", "SUPER", "SIDE", "DARK", "ORDINAL", "LETTER", "SLOT")
@@ -107,7 +113,7 @@ def refusal(tokens: list[Token], unknown: list[str]) -> str:
         or "nothing"
     )
     return (
-        f"I used: {used}. I do not know: {', '.join(dict.fromkeys(unknown))}. I know: {known_words()}. "
+        f"I used: {used}. I do not know: {', '.join(dict.fromkeys(unknown))}. {nearest_words(unknown)} "
         "For photos like this name a vision-language model: --model anthropic:..., or probe your own server."
     )
 

@@ -6,6 +6,9 @@ by name. The canonical values are those of `description.py`.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+from difflib import get_close_matches
+
 Entry = tuple[str, object]
 """Kind of token (a terminal of the grammar) and its value."""
 
@@ -18,7 +21,7 @@ FILLERS = frozenset(
     currently once so task job goal your my our   safely properly correctly respective
     entire whole  own real alone picture image shown displayed pictured seen visible workspace scene desk
     surface tabletop here away down up overall around bright vivid suitable appropriate proper  individual
-    desktop single mind actually then able nice happy glad shall perhaps maybe kind happily yes well quite
+    desktop single mind actually then able nice happy glad shall perhaps maybe kind happily yes well quite midway halfway whichever
     simple simply current presently""".split()
 )
 """Words that are skipped: politeness, addressing the robot, and words that do not change what is asked."""
@@ -86,7 +89,7 @@ _VERBS: dict[str, str] = {
     "PUT": "put place move bring drop set lay transfer relocate deposit shift position carry deliver insert load placed "
     "moved brought dropped laid transferred relocated deposited shifted carried delivered inserted loaded putting "
     "placing moving bringing dropping transferring stick store throw toss slot pop stow stash dump "
-    "plop tuck add hand send haul release convey transport lower slip pass stored thrown",
+    "plop tuck serve tidy add hand send haul release convey transport lower slip pass stored thrown",
     "TAKE": "take grab pick get lift fetch find locate grasp identify seize collect gather see spot notice consider taking "
     "picking grabbing choose select look use",
     "ROTATE": "rotate turn spin rotated turned rotates turns spins spun rotation twist rotating turning spinning revolve swivel reorient orient pivot",
@@ -98,7 +101,7 @@ _VERBS: dict[str, str] = {
     "PUSH": "push slide pushed slid shove nudge pushing sliding drag sweep swept sweeping shoved shoving brush wipe",
     "SORT": "sort distribute pair unite combine couple  group sorted distributed sorting allocate assign organise organize arrange",
     "GIVE": "give perform apply make do execute undergo undergoes receive receives does makes",
-    "WANT": "want wish",
+    "WANT": "want wish prefer",
     "LEAVE": "leave ignore skip keep",
 }
 _SMALL: dict[str, str] = {
@@ -118,7 +121,7 @@ _SMALL: dict[str, str] = {
     "AS": "as",
     "AND": "and but",
     "CONTAIN": "contain hold",
-    "FILL": "fill",
+    "FILL": "fill cover",
     "THEN": "then afterwards afterward subsequently thereafter",
     "THAT": "that which until till",
     "WHOSE": "whose",
@@ -132,7 +135,7 @@ _SMALL: dict[str, str] = {
     "SHARE": "shares share sharing has have shows contains holds",
     "AUX": "should must shall be is are been being goes go belongs belong was were stood ends end ought gets lies lie stands stand sits sit rests wants wait comes come going",
     "EACH": "each every",
-    "ALL": "all both",
+    "ALL": "all",
     "ONE": "one ones",
     "RESPECTIVELY": "respectively",
     "EVERYTHING": "everything",
@@ -169,7 +172,7 @@ _LOOKS: dict[str, tuple[str, tuple[str, ...]]] = {
 """Surfaces named after something else: pattern and colours."""
 _SUPERLATIVES: dict[str, str] = {
     "largest": "largest biggest large big bigger larger huge",
-    "smallest": "smallest littlest small little tiny smaller",
+    "smallest": "smallest littlest small little tiny tiniest smaller",
     "leftmost": "leftmost",
     "rightmost": "rightmost",
     "topmost": "topmost uppermost",
@@ -209,7 +212,7 @@ _OTHERS: dict[str, Entry] = {
     "clockwise": ("TURN", 1.0), "rightwards": ("TURN", 1.0), "cw": ("TURN", 1.0), "counterclockwise": ("TURN", -1.0),
     "anticlockwise": ("TURN", -1.0), "ccw": ("TURN", -1.0), "free": ("FREE", "free"), "empty": ("FREE", "free"),
     "clear": ("FREE", "free"), "open": ("FREE", "free"), "vacant": ("FREE", "free"), "unoccupied": ("FREE", "free"),
-    "back": ("ORIGIN", "origin"),
+    "back": ("ORIGIN", "origin"), "both": ("ALL", 2),
 }  # fmt: skip
 
 
@@ -260,12 +263,22 @@ WORDS: dict[str, Entry] = _words()
 """Single words."""
 
 
-def known_words() -> str:
-    """What the model knows, in one line for a refusal."""
-    nouns = sorted({word for word, (kind, value) in WORDS.items() if kind == "NOUN" and not value[2]})  # type: ignore[index]
-    return (
-        f"colours ({', '.join((*_COLOURS, 'orange'))}), patterns ({', '.join(_PATTERNS)}), "
-        f"materials ({', '.join(_MATERIALS)}), shapes ({', '.join(_SHAPES)}, "
-        f"l-shape, letters), nouns ({', '.join(nouns)}), left of, right of, above, below, beside, between, in, on, "
-        "largest, smallest, leftmost, rightmost, middle, put, rotate, stack, push, sort, each, all"
-    )
+_LISTED = {"COLOUR": "colours", "PATTERN": "patterns", "MATERIAL": "materials", "SHAPE": "shapes", "NOUN": "nouns",
+           "SUPER": "which of several", "ORDINAL": "which of several", "PUT": "put", "TAKE": "take", "ROTATE": "rotate", "STACK": "stack",
+           "SWAP": "swap", "RETURN": "put back", "REMOVE": "remove", "PUSH": "push", "SORT": "sort"}  # fmt: skip
+
+
+def known_words() -> dict[str, str]:
+    """The words that name things and ask for something, by kind; the small words of a sentence are left out."""
+    kinds: dict[str, list[str]] = {}
+    for word, (kind, _) in WORDS.items():
+        if kind in _LISTED:
+            kinds.setdefault(_LISTED[kind], []).append(word)
+    return {kind: ", ".join(sorted(words)) for kind, words in kinds.items()}
+
+
+def nearest_words(unknown: Iterable[str]) -> str:
+    """The known words nearest to unknown ones, and how to see all: a sentence for a refusal."""
+    near = [word for item in unknown for word in get_close_matches(item, WORDS, n=2, cutoff=0.75)]
+    known = f"{', '.join(dict.fromkeys(near))} (the nearest)" if near else "no word like that"
+    return f"I know: {known}; `wonderful-team list words` shows all that I know."

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from wonderful_team.models.offline.description import Description
-from wonderful_team.models.offline.vision.things import Look, Thing
+from wonderful_team.models.offline.vision.things import Look, Scene, Thing
 
 FRUITS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
     "apple": (("red", "green"), ("round",)),
@@ -37,6 +37,8 @@ FRUITS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
 """Everyday looks of fruit: colours and outlines."""
 
 
+FITS_ROUND = 0.6
+"""Fit of a circle from which something is round."""
 RIVAL_FRUIT = 0.5
 """A fruit that fits at most this share as well as another fruit is that other one: a green round fruit is a lime, no apple."""
 
@@ -106,6 +108,20 @@ def container_score(thing: Thing) -> float:
     hollow = float(np.clip(look.outline.hole_share / 0.1, 0, 1))
     form = max(look.shapes[name] for name in ("square", "rectangle", "frame", "circle", "ring", "oval"))
     return float(0.45 + 0.55 * max(hollow, 0.8 * form))
+
+
+ROOMY = 0.3
+"""What holds things is at least this share of the largest object of its table."""
+BLOCKS = 4.0
+"""A round object more than so many times the smallest of its table is no block."""
+
+
+def is_kind_here(thing: Thing, noun: str, scene: Scene) -> bool:
+    """Whether a thing is of a kind beside what else is there: next to a bowl, a block of a tenth of its size is no bowl."""
+    sizes = [other.area_px for other in scene.objects] or [thing.area_px]
+    if noun == "container":
+        return thing.area_px >= ROOMY * max(sizes)
+    return noun != "block" or thing.look.shapes["circle"] < FITS_ROUND or thing.area_px <= BLOCKS * min(sizes)
 
 
 def kind_score(thing: Thing, description: Description) -> float:

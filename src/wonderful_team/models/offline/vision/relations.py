@@ -12,6 +12,7 @@ from wonderful_team.geometry.arrays import Array
 from wonderful_team.models.offline.vision.examples import alike_colour, alike_pattern
 from wonderful_team.models.offline.vision.outlines import filled, largest_contour, same_form, study_outline
 from wonderful_team.models.offline.vision.things import Match, Scene, Thing, covers
+from wonderful_team.pictures import Point
 
 DIRECTIONS = {"left_of": (-1.0, 0.0), "right_of": (1.0, 0.0), "above": (0.0, -1.0), "below": (0.0, 1.0)}
 """Unit vectors in the picture: x right, y down."""
@@ -122,6 +123,35 @@ def pick_superlative(scene: Scene, matches: list[Match], superlative: str, ordin
     best = placed[chosen]
     sure = float(np.clip(0.5 + 5 * lead, 0, 1))
     return [replace(best, score=best.score * sure, why=f"{best.why}, {superlative} {sure:.2f}")]
+
+
+OUTER = 1 / 3
+"""A side or corner of the table is the part nearer to its edges than this share of the table's width and height."""
+
+
+def shares_from(scene: Scene, point: Point, wishes: str) -> list[float]:
+    """How far a point is from a side, both sides of a corner or the middle of the table, as shares of its extent."""
+    table = scene.table
+    x, y = (point[0] - table.x0) / table.width, (point[1] - table.y0) / table.height
+    shares = {
+        "leftmost": x,
+        "rightmost": 1 - x,
+        "topmost": y,
+        "bottommost": 1 - y,
+        "middle": max(abs(x - 0.5), abs(y - 0.5)),
+    }
+    return [shares[wish] for wish in wishes.split()]
+
+
+def is_at(scene: Scene, point: Point, wishes: str) -> bool:
+    """Whether a point lies at that side, corner or middle of the table."""
+    return max(shares_from(scene, point, wishes)) <= OUTER
+
+
+def pick_in_corner(scene: Scene, matches: list[Match], corner: str) -> list[Match]:
+    """What lies in a corner of the table, the nearest to it first."""
+    there = [match for match in matches if is_at(scene, match.box.centre, corner)]
+    return sorted(there, key=lambda match: sum(shares_from(scene, match.box.centre, corner)))[:1]
 
 
 def superlative_key(thing: Thing, superlative: str) -> float:

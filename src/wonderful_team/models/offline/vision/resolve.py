@@ -9,9 +9,9 @@ import numpy as np
 
 from wonderful_team.models.offline.description import Description
 from wonderful_team.models.offline.vision.examples import alike
-from wonderful_team.models.offline.vision.kinds import kind_score, named_score
+from wonderful_team.models.offline.vision.kinds import is_kind_here, kind_score, named_score
 from wonderful_team.models.offline.vision.materials import material_score
-from wonderful_team.models.offline.vision.relations import pick_superlative, relation_score
+from wonderful_team.models.offline.vision.relations import pick_in_corner, pick_superlative, relation_score
 from wonderful_team.models.offline.vision.spots import free_spots
 from wonderful_team.models.offline.vision.things import Example, Look, Match, NotSeen, Scene, Thing
 from wonderful_team.pictures import Point
@@ -53,7 +53,12 @@ def resolve(scene: Scene, description: Description, examples: Mapping[str, Examp
             # "the taller {thing}": only what is really like it is compared.
             top = max(match.score for match in matches)
             matches = [match for match in matches if match.score >= NEAR_BEST * top]
-        matches = pick_superlative(scene, matches, description.superlative, description.ordinal)
+        corner = " " in description.name
+        matches = (
+            pick_in_corner(scene, matches, description.name)
+            if corner
+            else pick_superlative(scene, matches, description.superlative, description.ordinal)
+        )
     matches.sort(key=lambda match: -match.score)
     return _with_margins(matches)
 
@@ -210,7 +215,7 @@ def _fitting(scene: Scene, description: Description, examples: Mapping[str, Exam
     out = []
     for thing in scene.things:
         score, parts = suits(thing, description, examples, scene.view_scale)
-        if score < FITS:
+        if score < FITS or not is_kind_here(thing, description.noun, scene):
             continue
         why = f"{thing.look.words}: " + ", ".join(f"{name} {value:.2f}" for name, value in parts.items())
         out.append(Match(thing, thing.box, _point_on(scene, thing), score, score, why, parts))

@@ -140,6 +140,15 @@ class Scene:
     has_depth: bool
 
     @property
+    def table(self) -> Box:
+        """The part of the picture in which free table shows [picture px]; all of it when none does."""
+        rows, columns = np.nonzero(~self.occupied)
+        if not len(rows):
+            return self.valid
+        (x0, x1), (y0, y1) = (np.percentile(places, (2, 98)) * self.zoom for places in (columns, rows))
+        return Box(float(x0), float(y0), float(x1) + self.zoom, float(y1) + self.zoom)
+
+    @property
     def objects(self) -> tuple[Thing, ...]:
         """Things that are not flat areas."""
         return tuple(thing for thing in self.things if not thing.flat)

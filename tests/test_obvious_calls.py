@@ -15,7 +15,11 @@ from PIL import Image
 import wonderful_team as wt
 from wonderful_team.cli.app import run
 from wonderful_team.errors import ConfigError, UnknownNameError
+from wonderful_team.interfaces import Filmed, Privileged, SceneTruth, offers
 from wonderful_team.models.offline import OfflineModel
+from wonderful_team.registry import privileged
+from wonderful_team.runtime.optional import Accounting, ChunkPolicy, Configured, Horizon, NamedModel, Sourced
+from wonderful_team.simulated_models import scene_truth
 
 DESK = Path(__file__).parents[1] / "examples" / "desk.png"
 WORDS = "put the red block into the blue bowl"
@@ -191,6 +195,40 @@ def test_messages_hold_png_bytes_when_asked():
     assert pictures[0]["data"].startswith(b"\x89PNG")
     with pytest.raises(ConfigError, match="valid: data_url, png"):
         model.sent[0][0].messages("jpeg")
+
+
+class Leaving:
+    name, model_name = "leaving", "a model of mine"
+
+    def decide(self, situation):
+        return wt.GaveUp("nothing to do", "plan")
+
+
+class Forwarding:
+    """A wrapper of a user."""
+
+    def __init__(self, inner):
+        self.inner = inner
+
+    def __getattr__(self, name):
+        return getattr(self.inner, name)
+
+
+def test_a_wrapper_that_forwards_loses_nothing():
+    """From Python 3.12 on isinstance with a protocol would miss it; asked so, it fails on every Python."""
+    inner = wt.make_world("tabletop/rotate", seed=3)
+    world = Forwarding(inner)
+    assert privileged(world) is not None
+    assert offers(world, Horizon)
+    assert offers(world, Filmed)
+    assert scene_truth(Forwarding(inner), "simulated:perfect") is inner.privileged
+    assert not offers(Forwarding(object()), Horizon)
+    for protocol in (Horizon, Filmed, Privileged, SceneTruth, Accounting, NamedModel, Sourced, Configured, ChunkPolicy):
+        with pytest.raises(TypeError, match="runtime_checkable"):
+            isinstance(world, protocol)
+    trial = wt.rollout(Forwarding(Leaving()), world, seed=3)
+    assert (trial.stage, trial.model) == ("plan", "a model of mine")
+    inner.close()
 
 
 def test_a_pose_is_public():

@@ -19,7 +19,7 @@ from wonderful_team.errors import (
     WorldUnavailableError,
     code_of,
 )
-from wonderful_team.interfaces import Model, Policy, Privileged, World
+from wonderful_team.interfaces import Model, Policy, Privileged, World, offers
 from wonderful_team.loading import check_names_no_code, is_file_name, load_from_file, make_from_file
 from wonderful_team.own_world import OwnWorld
 from wonderful_team.simulated_models import SIMULATED, simulated_model
@@ -278,7 +278,7 @@ def make_world(
         raise ConfigError(
             f'world {name!r} brings no instruction: say one, as in: run {name} "put the red cup on the tray"'
         )
-    if isinstance(world, World) and wanted is own and not keep_out:
+    if offers(world, World) and wanted is own and not keep_out:
         return world
     return cast(World, OwnWorld(world, wanted, tuple(keep_out)))
 
@@ -291,7 +291,7 @@ def scene_name(name: str, seed: int) -> str:
 def privileged(world: World) -> Privileged | None:
     """The truth behind a simulator, for its scorer; None for real robots, own worlds without one, and changed instructions."""
     truth = getattr(world, "privileged", None)
-    return truth if isinstance(truth, Privileged) else None
+    return truth if offers(truth, Privileged) else None
 
 
 def _take_none(name: str, arguments: Mapping[str, Any]) -> None:

@@ -7,11 +7,9 @@ from dataclasses import dataclass, field
 from typing import Any, Literal
 
 from wonderful_team.errors import WonderfulTeamError
-from wonderful_team.interfaces import Act, Decision, Event, Policy, Situation, Subscriber, World
+from wonderful_team.interfaces import Act, Decision, Event, Policy, Situation, Subscriber, World, offers
 from wonderful_team.runtime.optional import Accounting, Configured, NamedModel, Sourced
 from wonderful_team.types import GateReport, Observation, Plan, PlannedAction, StepReport, SubgoalRun, Trial, Verdict
-
-NOBODY_JUDGED = "; nobody judged the result: there is no scorer, and a method judges only where it may replan"
 
 
 @dataclass(frozen=True)
@@ -91,27 +89,30 @@ class Progress:
         self.runs.append(run)
         self.tell("subgoal", run.subgoal, run)
 
+    @property
+    def unasked(self) -> bool:
+        """Whether actions were the method's last word: it was not asked what came of them."""
+        return isinstance(self.last, Act)
+
     def finish(self, ending: Ending) -> Trial:
         """The trial as it stands; told to subscribers as the last event."""
         policy = self.policy
-        # A method that was not asked again after its actions, and no scorer: they ran, and that is all that is known.
-        judged = ending.outcome not in (None, "unscored") or not isinstance(self.last, Act)
         trial = Trial(
             scene=self.scene,
             seed=self.seed,
             method=policy.name,
-            model=policy.model_name if isinstance(policy, NamedModel) else "",
+            model=policy.model_name if offers(policy, NamedModel) else "",
             plans=tuple(self.plans),
             gates=tuple(self.gates),
             runs=tuple(self.runs),
             verdicts=tuple(self.verdicts),
             outcome=ending.outcome or "unscored",
             stage=ending.stage,
-            reason=ending.reason if judged else f"{ending.reason}{NOBODY_JUDGED}",
-            judged=judged,
-            usage_by_role=dict(policy.usage_by_role) if isinstance(policy, Accounting) else {},
-            provenance=tuple(policy.provenance) if isinstance(policy, Sourced) else (),
-            setting=dict(policy.setting) if isinstance(policy, Configured) else {},
+            reason=ending.reason,
+            judged=ending.outcome not in (None, "unscored") or not self.unasked,
+            usage_by_role=dict(policy.usage_by_role) if offers(policy, Accounting) else {},
+            provenance=tuple(policy.provenance) if offers(policy, Sourced) else (),
+            setting=dict(policy.setting) if offers(policy, Configured) else {},
         )
         self.tell("done", trial.outcome, trial)
         return trial

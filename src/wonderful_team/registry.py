@@ -81,7 +81,9 @@ def make_model(
         ModelUnavailableError: A server that was to be asked for its models does not answer.
     """
     if not isinstance(model, str):
-        if not callable(getattr(model, "answer", None)):
+        with code_of(f"model {type(model).__name__}", ModelCodeError):
+            answers = callable(getattr(model, "answer", None))
+        if not answers:
             raise ConfigError(f"a model needs a method answer(request); {type(model).__name__} has none")
         return model
     if model.startswith(SIMULATED):
@@ -273,12 +275,17 @@ def make_world(
             world = _named_world(name, seed, harder)
     with code_of(f"instruction of world {name!r}", WorldUnavailableError):
         own = getattr(world, "instruction", None)
+        whole = offers(world, World)
+    if own is not None and not isinstance(own, Instruction):
+        raise WorldUnavailableError(
+            f"instruction of world {name!r} is a {type(own).__name__}; valid: a wt.Instruction, or None"
+        )
     wanted = _worded(instruction, own) if instruction is not None else own
     if wanted is None:
         raise ConfigError(
             f'world {name!r} brings no instruction: say one, as in: run {name} "put the red cup on the tray"'
         )
-    if offers(world, World) and wanted is own and not keep_out:
+    if whole and wanted is own and not keep_out:
         return world
     return cast(World, OwnWorld(world, wanted, tuple(keep_out)))
 

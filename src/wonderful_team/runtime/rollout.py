@@ -13,7 +13,7 @@ from wonderful_team.errors import (
     WonderfulTeamError,
     WorldUnavailableError,
 )
-from wonderful_team.interfaces import Act, Done, GaveUp, Policy, Privileged, Situation, Subscriber, World
+from wonderful_team.interfaces import Act, Done, GaveUp, Policy, Privileged, Situation, Subscriber, World, offers
 from wonderful_team.runtime.approval import Approval, Approver
 from wonderful_team.runtime.execute import Execution
 from wonderful_team.runtime.freshness import MAX_AGE_S
@@ -22,6 +22,8 @@ from wonderful_team.runtime.optional import ChunkPolicy, Horizon
 from wonderful_team.runtime.progress import Ending, Progress
 from wonderful_team.runtime.user_code import GuardedScorer, GuardedWorld, decision_of
 from wonderful_team.types import Observation, Plan, Trial
+
+NOBODY_JUDGED = "; nobody judged the result: there is no scorer, and a method judges only where it may replan"
 
 MAX_DECISIONS = 500
 """Most times a chunk policy is asked in a world without a horizon."""
@@ -101,8 +103,8 @@ def _attempts(
     looks: int,
 ) -> Ending:
     """Ask, gate, execute, until the policy or a bound ends it."""
-    chunks = isinstance(policy, ChunkPolicy) and policy.chunks
-    horizon = world.horizon if isinstance(world, Horizon) else None
+    chunks = offers(policy, ChunkPolicy) and policy.chunks
+    horizon = world.horizon if offers(world, Horizon) else None
     attempt, refused, first_run = 0, None, 0
     observation = progress.observe(world, "start")
     for _ in range(MAX_DECISIONS):
@@ -180,7 +182,8 @@ def _stop(world: World, progress: Progress, error: BaseException) -> Trial:
 def _scored(progress: Progress, ending: Ending, scorer: Privileged | None) -> Trial:
     """Let truth decide, now that nothing can learn from it any more."""
     if scorer is None:
-        return progress.finish(Ending(ending.outcome or "unscored", ending.stage, ending.reason))
+        unjudged = NOBODY_JUDGED if ending.outcome is None and progress.unasked else ""
+        return progress.finish(Ending(ending.outcome or "unscored", ending.stage, f"{ending.reason}{unjudged}"))
     try:
         score = GuardedScorer(scorer).score()
     except WonderfulTeamError as error:

@@ -193,7 +193,6 @@ class Meaning:
     def put(self, thing: Description, goal: Destination, kind: str = "put") -> None:
         """Bring a thing to a place, and remember both for pronouns."""
         self.last_thing = thing
-        self.pending_put = None if self.pending_put == thing else self.pending_put
         if goal.how != "origin":
             self.last_goal = goal
         self._add(Command(kind, thing, goal))  # type: ignore[arg-type]
@@ -314,6 +313,7 @@ class Meaning:
             # "take it out of the box and put it …": one move, not two.
             del self.done[self.tentative :]
         self.tentative = None
+        self.pending_put = None if self.pending_put == command.thing else self.pending_put
         same = self.done and replace(self.done[-1], after_last=False) == command and command.kind != "rotate"
         if not same:
             self.done.append(command)

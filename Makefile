@@ -6,46 +6,38 @@
 
 VENV   := .venv
 PYTHON := $(VENV)/bin/python
-READY  := $(VENV)/.ready
 
 .DEFAULT_GOAL := all
 .PHONY: all setup demo test lint types format lock images clean
 
 all: lint types test
 
-setup: $(READY)
+# Installs exactly what requirements.lock names; says nothing and does nothing when that is there already.
+setup:
+	@python=$$(bash tools/find_python.sh) && "$$python" tools/install.py $(VENV)
 
-$(READY): requirements.lock pyproject.toml tools/find_python.sh
-	@found=$$(bash tools/find_python.sh) && \
-	{ [ -x $(PYTHON) ] || "$$found" -m venv $(VENV); } && \
-	echo "installing into $(VENV) with $$($(PYTHON) --version) (a few minutes the first time)" && \
-	$(PYTHON) -m pip install -qq --disable-pip-version-check -r requirements.lock && \
-	$(PYTHON) -m pip install -qq --disable-pip-version-check --no-deps --editable . && \
-	touch $(READY)
-
-demo: $(READY)
+demo: setup
 	@$(VENV)/bin/wonderful-team demo
 
-test: $(READY)
+test: setup
 	$(PYTHON) -m pytest -n auto --dist worksteal
 
-lint: $(READY)
+lint: setup
 	$(VENV)/bin/ruff check .
 	$(VENV)/bin/ruff format --check .
 
-types: $(READY)
+types: setup
 	$(VENV)/bin/mypy
 
-format: $(READY)
+format: setup
 	$(VENV)/bin/ruff check --fix .
 	$(VENV)/bin/ruff format .
 
-lock: $(READY)
-	$(PYTHON) -m pip install -qq --disable-pip-version-check uv
+lock: setup
 	$(VENV)/bin/uv pip compile --quiet --universal --extra dev --generate-hashes --no-emit-index-url --no-annotate --custom-compile-command "make lock" \
 		pyproject.toml -o requirements.lock
 
-images: $(READY)
+images: setup
 	$(PYTHON) docs/make_images.py
 
 clean:

@@ -31,7 +31,7 @@ def main() -> None:
                 ("after the Mover: the Checker takes it and stops", _sent(record, folder, "after")),
             ),
             (
-                ("the plan: targets, boxes, points, the action", folder / "final.png"),
+                ("the plan: targets, boxes, points, the actions", folder / "final.png"),
                 ("after the robot ran it", folder / record["files"][_last_view(record)]),
             ),
         )

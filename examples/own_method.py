@@ -22,9 +22,13 @@ class Stirring:
         """The next actions, or that it is done."""
         if situation.executed:
             return wt.Done("stirred once")
+        view = situation.observation.main
         low, high = np.array(situation.limits.low_m), np.array(situation.limits.high_m)
-        pick, place = ((0.9 * self.rng.random(3) + 0.05) * (high - low) + low for _ in range(2))
-        pick[2] = place[2] = 0.0
+        ends = (0.9 * self.rng.random((2, 3)) + 0.05) * (high - low) + low
+        # The height of an action is that of the surface it touches: what depth shows at that pixel.
+        pixels = view.camera.project(ends * (1.0, 1.0, 0.0))
+        depths_m = [view.depth_m[int(v), int(u)] for u, v in pixels]
+        pick, place = np.clip(view.camera.deproject(pixels, depths_m), low, high)
         step = wt.PickPlaceStep("G1", pick="somewhere", place=wt.At("elsewhere"))
         return wt.Act((wt.PlannedAction(step, wt.PickPlace(pick, place)),))
 

@@ -44,3 +44,18 @@ def runs_folder(monkeypatch: pytest.MonkeyPatch, tmp_path_factory: pytest.TempPa
     # Kept answers of one test must never answer for another.
     monkeypatch.setenv(FILE_VARIABLE, str(folder.with_name(f"{folder.name}-answers.sqlite")))
     return folder
+
+
+@pytest.fixture(autouse=True)
+def _records_fit_their_schema(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Every record that any test writes is what the published schema says."""
+    from wonderful_team.runtime.record_schema import read_record
+    from wonderful_team.runtime.recorder import Recorder
+
+    close = Recorder.close
+
+    def checked(recorder: Recorder) -> None:
+        close(recorder)
+        read_record(recorder.folder)
+
+    monkeypatch.setattr(Recorder, "close", checked)

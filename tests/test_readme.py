@@ -47,7 +47,7 @@ def test_python_of_the_docs_runs(
 
 def test_command_lines_of_the_readme_run(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     monkeypatch.chdir(ROOT)
-    assert len(LINES) >= 6
+    assert len(LINES) == 5
     for line in LINES:
         code = run(shlex.split(line)[1:])
         told = capsys.readouterr()
@@ -79,9 +79,16 @@ def test_make_demo_runs_the_demo_and_the_team_catches_both_mistakes(capsys: pyte
     assert run(["demo"]) == 0
     told = capsys.readouterr()
     assert told.out.count("INJECTED") == 2
-    assert "CAUGHT    Verification" in told.out
-    assert "CAUGHT    T1: Checker" in told.out
+    assert "CAUGHT    Verification, G1: Should it not be 'put the red block into the blue bowl'" in told.out
+    assert "CAUGHT    T1 red block: Checker: revise" in told.out
+    assert "{" not in told.out + told.err
     assert "SUCCESS" in told.out
     assert "not a vision-language model" in told.err
     page = Path(told.out.splitlines()[-1].removeprefix("page: "))
-    assert "INJECTED" in page.read_text(encoding="utf-8").upper()
+    text = page.read_text(encoding="utf-8")
+    assert "2 planted mistakes, both caught" in text
+    cards = text[text.index('id="planted"') : text.index('id="picture"')]
+    assert cards.count("card caught") == 2
+    assert "<del>green</del> <ins>blue</ins>" in cards
+    # Only the box that was replaced is called injected.
+    assert text[text.index('id="targets"') : text.index('id="actions"')].count("badge injected") == 1

@@ -1,21 +1,31 @@
 #!/usr/bin/env bash
-# Print the path of a Python that can run the project: 3.11 or newer, with venv. Says what is missing otherwise.
+# Print the path of a Python that can run the project, with venv. WONDERFUL_TEAM_PYTHON names one. Says what was looked for otherwise.
 set -u
-found_old=""
-for name in ${WONDERFUL_TEAM_PYTHON:-} python3 python3.13 python3.12 python3.11 python3.14; do
-    path=$(command -v "$name" 2>/dev/null) || continue
+OLDEST=11 # as in pyproject.toml: Python 3.11 ...
+NEWEST=14 # ... to 3.14, the newest that every locked package has a wheel for
+PROBE="import sys; a, b = sys.version_info[:2]; print('%d.%d' % (a, b)); sys.exit((a, b) < (3, $OLDEST) or (a, b) > (3, $NEWEST))"
+
+rejected=""
+if [ -n "${WONDERFUL_TEAM_PYTHON:-}" ]; then
+    names=("$WONDERFUL_TEAM_PYTHON")
+else
+    names=(python3)
+    for minor in 13 12 11 14; do names+=("python3.$minor"); done
+fi
+for name in "${names[@]}"; do
+    path=$(command -v "$name" 2>/dev/null) || { rejected="${rejected:+$rejected, }$name (not on the PATH)"; continue; }
     # Some tools put stand-ins on the path that only say that a version is not installed: run it to find out.
-    version=$("$path" -c 'import sys; print("%d.%d" % sys.version_info[:2])' 2>/dev/null) || continue
-    if ! "$path" -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null; then
-        found_old="$found_old $name=$version"
-        continue
+    version=$("$path" -c "$PROBE" 2>/dev/null) && usable=yes || usable=no
+    if [ -z "$version" ]; then
+        rejected="${rejected:+$rejected, }$name (does not run)"
+    elif [ $usable = no ]; then
+        rejected="${rejected:+$rejected, }$name ($version)"
+    elif ! "$path" -c 'import venv, ensurepip' 2>/dev/null; then
+        rejected="${rejected:+$rejected, }$name ($version without venv; on Debian and Ubuntu: the package python$version-venv)"
+    else
+        echo "$path"
+        exit 0
     fi
-    if ! "$path" -c 'import venv, ensurepip' 2>/dev/null; then
-        echo "$name is Python $version but has no venv module (on Debian and Ubuntu: the package python$version-venv)" >&2
-        continue
-    fi
-    echo "$path"
-    exit 0
 done
-echo "No usable Python: 3.11 or newer with venv is needed; found:${found_old:- none}. Set WONDERFUL_TEAM_PYTHON to name one." >&2
+echo "No usable Python: 3.$OLDEST to 3.$NEWEST with venv is needed. Looked for: $rejected. WONDERFUL_TEAM_PYTHON=/path/to/python names one." >&2
 exit 1

@@ -17,6 +17,7 @@ from wonderful_team.geometry.arrays import Array, frozen_array
 Side: TypeAlias = Literal["left", "right", "above", "below"]
 """A side of an object as the picture shows it: above is towards the picture's top edge."""
 Height: TypeAlias = Literal["above", "at", "clear"]
+GRIPPER_STATES: tuple[Literal["open", "close", "tight"], ...] = ("open", "close", "tight")
 SIDES: tuple[Side, ...] = ("left", "right", "above", "below")
 
 
@@ -213,6 +214,10 @@ class Gripper:
     kind: ClassVar[str] = "gripper"
     state: Literal["open", "close", "tight"]
 
+    def __post_init__(self) -> None:
+        if self.state not in GRIPPER_STATES:
+            raise ValueError(f"state: expected {', '.join(GRIPPER_STATES)}, got {self.state!r}")
+
 
 @dataclass(frozen=True)
 class RotateGripper:
@@ -294,6 +299,13 @@ _STEPS_FOR_ACTION: dict[str, tuple[str, ...]] = {
     "navigate": ("navigate",),
     "end_effector_delta": (),
 }
+
+
+def steps_for(action_kind: str) -> tuple[str, ...]:
+    """The kinds of step that an action of that kind carries out; none where a learned policy acts without steps."""
+    # A method of one's own may make a move of many waypoints; a planner's move has one.
+    also = ("move",) if action_kind == "trajectory" else ()
+    return (*_STEPS_FOR_ACTION.get(action_kind, ()), *also)
 
 
 @dataclass(frozen=True)

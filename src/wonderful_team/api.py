@@ -12,8 +12,9 @@ from typing import Any
 
 from wonderful_team import registry, types
 from wonderful_team.actions import PICK_PLACE, VOCABULARIES, Vocabulary
-from wonderful_team.errors import ConfigError, UnknownNameError
+from wonderful_team.errors import ConfigError, UnknownNameError, WonderfulTeamError
 from wonderful_team.finding import find
+from wonderful_team.geometry import PlanarCamera
 from wonderful_team.interfaces import Decision, Event, Policy, Privileged, Situation, Subscriber, World
 from wonderful_team.made import MadePlan, RecordedTrial
 from wonderful_team.methods import Method
@@ -138,7 +139,7 @@ class Team(Method):
         make: Callable[[Recorder], _Work],
     ) -> MadePlan:
         """Make a plan in a run folder of its own, pass it through the gate, and write its page."""
-        folder = new_run_folder(instruction.text, self.out)
+        folder = new_run_folder(instruction.plain_text, self.out)
         recorder = Recorder(folder, command=self.command)
         everyone = (recorder, *self.subscribers)
         started = time.monotonic()
@@ -149,6 +150,13 @@ class Team(Method):
         tell(everyone, "observe", "start", observation)
         if limits is NO_WORKSPACE and observation.main.camera is not None:
             tell(everyone, "warning", "workspace", "no workspace is stated: the gate checks everything but that")
+        if observation.main.depth_m is None and _calibrated(observation):
+            tell(
+                everyone,
+                "warning",
+                "heights",
+                "no depth is given: every height is taken to be the table's (--depth FILE)",
+            )
         work = make(recorder)
         try:
             with Caller() as caller:
@@ -157,14 +165,23 @@ class Team(Method):
             if gate is not None:
                 tell(everyone, "gate", "before motion", gate)
             tell(everyone, "done", plan.status, plan)
+        except WonderfulTeamError as error:
+            tell_failure(everyone, error)
+            error.folder = folder
+            raise
         finally:
             recorder.close()
             _page_of(folder)
-        return MadePlan(plan, observation, gate, dict(work.usage_by_role()), time.monotonic() - started, folder)
+        spent, seconds = dict(work.usage_by_role()), time.monotonic() - started
+        return MadePlan(plan, observation, gate, spent, seconds, folder, recorder.warnings)
 
 
 def make_world(
-    name: str | Any, seed: int = 0, instruction: str | Instruction | None = None, keep_out: Sequence[KeepOut] = ()
+    name: str | Any,
+    seed: int = 0,
+    instruction: str | Instruction | None = None,
+    keep_out: Sequence[KeepOut] = (),
+    **arguments: Any,
 ) -> World:
     """A world with one scene set up in it, such as `make_world("tabletop/rotate", seed=3)`.
 
@@ -173,11 +190,14 @@ def make_world(
         seed: Of the scene.
         instruction: Instead of the world's own; its scorer is then dropped.
         keep_out: Regions nothing may enter, beside the world's own.
+        **arguments: For the constructor of a world of FILE.py:NAME, such as a robot's address:
+            `make_world("arm.py:Arm", address="10.0.0.5")`; in a name they stand as "arm.py:Arm?address=10.0.0.5".
 
     Raises:
         ConfigError: An unknown name, or a world without an instruction.
+        WorldUnavailableError: The world's own code raised.
     """
-    return registry.make_world(name, seed, instruction, keep_out)
+    return registry.make_world(name, seed, instruction, keep_out, **arguments)
 
 
 def rollout(
@@ -215,12 +235,11 @@ def rollout(
     if isinstance(method, Method):
         method = method.in_world(world)
     named = method if isinstance(method, Method) else None
-    folder = new_run_folder(world.instruction.text, out if out is not None else (named.out if named else None))
+    folder = new_run_folder(world.instruction.plain_text, out if out is not None else (named.out if named else None))
     recorder = Recorder(folder, command=named.command if named else None)
     if named is not None:
         for text in named.warnings:
             tell((recorder, *subscribers, *named.subscribers), "warning", "setup", text)
-    policy: Policy = method.policy(recorder, *subscribers) if isinstance(method, Method) else method
     made = plan if isinstance(plan, MadePlan) else None
     scorer: Privileged | None = registry.privileged(world) if scored else None
     given = made.plan if made is not None else plan
@@ -236,7 +255,9 @@ def rollout(
         plan=None if given is None else given.id,
         scored=scorer is not None,
     )
+    everyone = (recorder, *subscribers, *(named.subscribers if named else ()))
     try:
+        policy: Policy = method.policy(recorder, *subscribers) if isinstance(method, Method) else method
         trial = roll_out(
             policy,
             world,
@@ -245,7 +266,7 @@ def rollout(
             replans=replans,
             looks=looks,
             scorer=scorer,
-            subscribers=(recorder, *subscribers, *(named.subscribers if named else ())),
+            subscribers=everyone,
             approval=approval,
             seed=seed,
             scene=scene,
@@ -257,11 +278,16 @@ def rollout(
                 "words": named.words() if named else {},
             },
         )
+    except WonderfulTeamError as error:
+        if not recorder.ended:
+            tell_failure(everyone, error)
+        error.folder = folder
+        raise
     finally:
         recorder.close()
         _page_of(folder)
     held = {item.name: getattr(trial, item.name) for item in fields(trial)}
-    return RecordedTrial(**held, folder=folder)
+    return RecordedTrial(**held, folder=folder, warnings=recorder.warnings)
 
 
 def task(name: str, *, instruction: str, horizon: int = 1, **more: Any) -> Callable[[Callable[..., Any]], Any]:
@@ -284,7 +310,22 @@ def plan_gate(plan: Plan, observation: types.Observation, vocabulary: Vocabulary
     """What the gate says of a plan that is not run now; None without actions."""
     if plan.status != "planned" or not plan.actions:
         return None
-    return check_gate(plan.actions, vocabulary=vocabulary, limits=limits, plan=plan, then=observation, now=observation)
+    # A photo with a camera file says where the robot is, so its heights have to be known; a world's robot may find them.
+    photo = getattr(observation, "limits", None) is not None and _calibrated(observation)
+    return check_gate(
+        plan.actions,
+        vocabulary=vocabulary,
+        limits=limits,
+        plan=plan,
+        then=observation,
+        now=observation,
+        measured_heights=photo,
+    )
+
+
+def _calibrated(observation: types.Observation) -> bool:
+    """Whether the main view's camera could turn depth into metres."""
+    return observation.main.camera is not None and not isinstance(observation.main.camera, PlanarCamera)
 
 
 def _page_of(folder: Path) -> None:
@@ -299,3 +340,10 @@ def tell(subscribers: Sequence[Subscriber], kind: str, name: str, content: Any) 
     """Pass an event on."""
     for subscriber in subscribers:
         subscriber.on_event(Event(kind, name, content))
+
+
+def tell_failure(subscribers: Sequence[Subscriber], error: WonderfulTeamError) -> None:
+    """End a run that an error ended, with the traceback of the user's own code where there is one."""
+    if error.trace:
+        tell(subscribers, "crash", type(error).__name__, error)
+    tell(subscribers, "done", "error", error)

@@ -16,6 +16,7 @@ from wonderful_team.evals.trials import Condition, RunSettings, TrialResult, Tri
 from wonderful_team.evals.workers import run_safely
 from wonderful_team.loading import load_from_file
 from wonderful_team.methods import Method
+from wonderful_team.text import counted
 from wonderful_team.trial_runs import run_trial
 
 TRIED_IN = "tabletop/rotate"
@@ -79,8 +80,8 @@ def _check_thinking(kind: str, name: str, seeds: Sequence[int], findings: Findin
     broken = [one for one in results if one.outcome == "error"]
     findings.add(
         not broken,
-        f"{len(results)} trials in {TRIED_IN} without an error",
-        f"{len(broken)} of {len(results)} trials broke: {broken[0].reason if broken else ''}",
+        f"{counted(len(results), 'trial')} in {TRIED_IN} without an error",
+        f"{len(broken)} of {counted(len(results), 'trial')} broke: {broken[0].reason if broken else ''}",
     )
     refused = [one for one in results if one.stage == "gate"]
     findings.add(
@@ -90,10 +91,12 @@ def _check_thinking(kind: str, name: str, seeds: Sequence[int], findings: Findin
     )
     scored = [one for one in results if one.outcome in ("success", "failure")]
     won = sum(one.outcome == "success" for one in scored)
-    findings.notes.append(f"{TRIED_IN}: {Rate(won, len(scored))}, {sum(one.calls for one in results)} model calls")
+    findings.notes.append(
+        f"{TRIED_IN}: {Rate(won, len(scored))}, {counted(sum(one.calls for one in results), 'model call')}"
+    )
     if kind == "model":
         asked = sum(one.calls for one in results)
-        findings.add(asked > 0, f"it answered {asked} questions", "it was asked nothing")
+        findings.add(asked > 0, f"it answered {counted(asked, 'question')}", "it was asked nothing")
     elif seeds:
         first, again = results[0], _run(TRIED_IN, condition, seeds[:1])[0]
         same = (first.outcome, first.stage) == (again.outcome, again.stage)

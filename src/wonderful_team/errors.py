@@ -6,21 +6,127 @@ Messages name the value, the limit and what would be valid; they are built here 
 
 from __future__ import annotations
 
+import contextlib
 import difflib
-from collections.abc import Iterable
+import shlex
+import sys
+import traceback
+from collections.abc import Iterable, Iterator
+from importlib import metadata
+from pathlib import Path
 from typing import ClassVar
+
+_PACKAGE = Path(__file__).parent
+MESSAGE_LIMIT = 2_000
+"""Longest text of somebody else's exception that becomes part of ours [characters]."""
+
+
+def extra_command(extra: str) -> str:
+    """The command that installs an optional part: its packages by name, so that it works however this package was installed."""
+    mark = f'extra == "{extra}"'
+    try:
+        lines = metadata.requires("wonderful-team") or []
+    except metadata.PackageNotFoundError:
+        lines = []
+    needed = [line.partition(";")[0].strip() for line in lines if mark in line.replace("'", '"')]
+    return shlex.join([sys.executable, "-m", "pip", "install", *(needed or [f".[{extra}]"])]) + (
+        "" if needed else " (in a checkout)"
+    )
 
 
 class WonderfulTeamError(Exception):
-    """Base of every error that this package raises on purpose."""
+    """Base of every error that this package raises on purpose.
+
+    Attributes:
+        stage: Where a method failed; None where the error is not a method's.
+        trace: The traceback of the user's own code that raised; empty where there is none.
+        folder: The run folder that holds what had happened by then; None where nothing was recorded.
+    """
 
     exit_code: ClassVar[int] = 1
     stage: str | None = None
+    trace: str = ""
+    folder: Path | None = None
 
-    def __init__(self, message: str, *, stage: str | None = None) -> None:
-        super().__init__(message)
+    def __init__(self, message: str, *, stage: str | None = None, cause: BaseException | None = None) -> None:
+        super().__init__(message if cause is None else f"{message} {raised(cause)}")
         if stage is not None:
             self.stage = stage
+        if cause is not None:
+            self.trace = own_trace(cause)
+
+
+def raised(error: BaseException) -> str:
+    """What somebody else's code raised and where, in one line: `raised KeyError: 'x' (mine.py:12, in decide)`."""
+    try:
+        text = str(error)
+    except Exception:  # noqa: BLE001  an exception of somebody else's whose own text cannot be made
+        text = "(its text cannot be shown)"
+    text = text if len(text) <= MESSAGE_LIMIT else f"{text[:MESSAGE_LIMIT]}…"
+    frames = traceback.extract_tb(error.__traceback__)
+    where = f" ({Path(frames[-1].filename).name}:{frames[-1].lineno}, in {frames[-1].name})" if frames else ""
+    return f"raised {type(error).__name__}{': ' if text else ''}{text}{where}"
+
+
+def own_trace(error: BaseException) -> str:
+    """The traceback of an exception without our own frames above the user's code."""
+    frames = list(traceback.walk_tb(error.__traceback__))
+    skipped = 0
+    while skipped < len(frames) - 1 and Path(frames[skipped][0].f_code.co_filename).is_relative_to(_PACKAGE):
+        skipped += 1
+    trace = error.__traceback__
+    for _ in range(skipped):
+        trace = None if trace is None else trace.tb_next
+    return "".join(traceback.format_exception(type(error), error, trace, limit=40))[-20 * MESSAGE_LIMIT :]
+
+
+@contextlib.contextmanager
+def code_of(whose: str, error_class: type[WonderfulTeamError]) -> Iterator[None]:
+    """Run somebody else's code: whatever it raises becomes `error_class`, with its own traceback.
+
+    Errors that say already whose fault they are pass unchanged.
+
+    Args:
+        whose: Begins the message, as in "observe() of world Desk".
+        error_class: Whose fault it is.
+    """
+    try:
+        yield
+    except WonderfulTeamError:
+        raise
+    except (Exception, SystemExit) as error:
+        raise error_class(whose, cause=error) from error
+
+
+@contextlib.contextmanager
+def reading(what: str, valid: str = "", error_class: type[WonderfulTeamError] | None = None) -> Iterator[None]:
+    """Read what somebody else wrote (a file, an option): whatever is wrong with it becomes one error that names it.
+
+    This is for readers alone: what fails in here fails because of what was read.
+
+    Args:
+        what: Which file or option, as it begins the message.
+        valid: What would be valid.
+        error_class: ConfigError, or one of its kind.
+    """
+    kind = error_class or ConfigError
+    try:
+        yield
+    except WonderfulTeamError:
+        raise
+    except RecursionError as error:
+        raise kind(f"{what} is nested too deeply{_valid(valid)}") from error
+    except MemoryError as error:
+        raise kind(f"{what} is too large for this machine's memory{_valid(valid)}") from error
+    except OSError as error:
+        raise kind(f"{what} cannot be read: {error.strerror or error}{_valid(valid)}") from error
+    except Exception as error:
+        said = str(error) if type(error) is ValueError else f"{type(error).__name__}: {error}"
+        raise kind(f"{what} cannot be read: {said[:MESSAGE_LIMIT]}{_valid(valid)}") from error
+
+
+def _valid(text: str) -> str:
+    return f"; valid: {text}" if text else ""
 
 
 class ConfigError(WonderfulTeamError):
@@ -43,7 +149,7 @@ class MissingExtraError(ConfigError):
     """An optional dependency is not installed; names the exact command that brings it."""
 
     def __init__(self, feature: str, extra: str) -> None:
-        super().__init__(f"{feature} needs an optional part: pip install 'wonderful-team[{extra}]'")
+        super().__init__(f"{feature} needs the optional part {extra!r}: {extra_command(extra)}")
 
 
 class BadPictureError(ConfigError):
@@ -65,6 +171,10 @@ class WorldUnavailableError(WonderfulTeamError):
 
     exit_code = 6
     stage = "world"
+
+
+class ModelCodeError(ModelUnavailableError):
+    """The code of a model raised something of its own; its traceback is kept."""
 
 
 class CacheMissError(ModelUnavailableError):
@@ -153,6 +263,12 @@ class NotFoundError(WonderfulTeamError):
     """A target is not in the picture, or could not be grounded within the bounds."""
 
     stage = "grounding"
+
+
+class MethodCodeError(WonderfulTeamError):
+    """The code of a method raised something of its own, or decided what is no decision; its traceback is kept."""
+
+    stage = "method"
 
 
 class ActionRefusedError(WonderfulTeamError):

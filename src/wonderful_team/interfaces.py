@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Awaitable, Mapping, Sequence
+from collections.abc import Awaitable, Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Protocol, TypeAlias, runtime_checkable
 
 from wonderful_team.actions import Action, Vocabulary
+from wonderful_team.geometry.arrays import Array
 from wonderful_team.types import (
     Answer,
     GateReport,
@@ -48,6 +49,15 @@ class World(Protocol):
     def stop(self) -> None: ...
 
     def close(self) -> None: ...
+
+
+@runtime_checkable
+class Filmed(Protocol):
+    """A world that can show its motion while an action runs: for people's films only, never for a planner."""
+
+    def film(self, each: Callable[[Mapping[str, Array]], None] | None, every_s: float = 0.1) -> None:
+        """Hand pictures by camera name, shape (H, W, 3), uint8, to `each`; None stops it."""
+        ...
 
 
 @dataclass(frozen=True)
@@ -173,7 +183,7 @@ class Event:
     """Something that happened.
 
     Attributes:
-        kind: request | answer | invalid | stage | decision | observe | gate | execute | verdict | warning | done.
+        kind: request | answer | invalid | stage | decision | observe | gate | execute | verdict | warning | crash | done.
         name: Which one, such as the request's id or the stage's name.
         content: The value itself (a Request, an Answer, a Plan, a GateReport, …) or a small mapping.
         round: Number of waiting rounds on the main line so far, where known.

@@ -2,11 +2,41 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping
 from dataclasses import fields, is_dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
+
+from wonderful_team.errors import ConfigError, reading
+
+JSON_LIMIT_BYTES = 1_000_000_000
+"""Largest JSON file that is read."""
+
+
+def read_json(path: Path, what: str, valid: str = "") -> Any:
+    """What a JSON file holds.
+
+    Args:
+        path: The file.
+        what: What it is, for messages, such as "camera file".
+        valid: What would be valid, for messages.
+
+    Raises:
+        ConfigError: Missing, unreadable, too large, nested too deeply, or not JSON in UTF-8.
+    """
+    name = f"{what} {str(path)!r}"
+    with reading(name, valid):
+        size = path.stat().st_size
+        if size > JSON_LIMIT_BYTES:
+            raise ConfigError(f"{name} has {size} bytes; at most {JSON_LIMIT_BYTES} are read")
+        text = path.read_text(encoding="utf-8")
+        try:
+            return json.loads(text)
+        except ValueError as error:
+            raise ConfigError(f"{name} is not JSON: {error}{'; valid: ' + valid if valid else ''}") from error
 
 
 def to_jsonable(value: Any) -> Any:

@@ -11,12 +11,26 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-from wonderful_team.errors import ConfigError, UnknownNameError
+from wonderful_team.errors import ConfigError, UnknownNameError, WonderfulTeamError, code_of
 
 
 def is_file_name(name: str) -> bool:
     """Whether a name has the form `FILE.py:Name` (a lone `FILE.py` counts too, so that its error can say what is missing)."""
     return name.endswith(".py") or ".py:" in name
+
+
+def check_names_no_code(name: str, whose: str) -> str:
+    """A name out of a file (a record, a store, a profile), which may name what is built in and never code that runs.
+
+    Raises:
+        ConfigError: It has the form FILE.py:NAME.
+    """
+    if is_file_name(name):
+        raise ConfigError(
+            f"{whose} names code: {name!r}. Code runs only when it is named on the command line or by the caller; "
+            "files name what is built in"
+        )
+    return name
 
 
 def load_from_file(name: str, what: str) -> Any:
@@ -31,9 +45,10 @@ def load_from_file(name: str, what: str) -> Any:
     Raises:
         ConfigError: No such file, the file fails when run, or it does not define the name.
     """
+    name, _ = split_arguments(name)
     file_text, _, attribute = name.rpartition(":") if ".py:" in name else (name, "", "")
     path = Path(file_text).expanduser()
-    if not path.is_file():
+    if "\0" in file_text or not path.is_file():
         raise ConfigError(f"{what} {name!r}: there is no file {str(path)!r}; valid: FILE.py:NAME")
     module = _run_file(path.resolve(), what)
     offered = [key for key in vars(module) if not key.startswith("_")]
@@ -47,26 +62,88 @@ def load_from_file(name: str, what: str) -> Any:
     return getattr(module, attribute)
 
 
-def build(thing: Any, offers: Mapping[str, Any], what: str) -> Any:
-    """Call a class or function with those of `offers` that its parameters ask for by name; return other objects as they are.
+def split_arguments(name: str) -> tuple[str, dict[str, str]]:
+    """`FILE.py:NAME?address=10.0.0.5&speed=0.2` in two: what is loaded, and arguments for its constructor.
 
     Raises:
-        ConfigError: It needs a parameter that is not offered.
+        ConfigError: What stands behind the question mark is not NAME=VALUE.
     """
+    file, colon, rest = name.partition(".py:")
+    attribute, mark, words = rest.partition("?")
+    if not (colon and mark):
+        return name, {}
+    pairs = [word.partition("=") for word in words.split("&")]
+    for key, equals, _ in pairs:
+        if not (key.isidentifier() and equals):
+            raise ConfigError(f"{name!r}: {words!r} is not NAME=VALUE; valid: FILE.py:NAME?address=10.0.0.5&speed=0.2")
+    return f"{file}.py:{attribute}", {key: value for key, _, value in pairs}
+
+
+def make_from_file(
+    name: str,
+    what: str,
+    offers: Mapping[str, Any],
+    fault: type[WonderfulTeamError],
+    arguments: Mapping[str, Any] | None = None,
+) -> Any:
+    """What `FILE.py:NAME?ARGUMENTS` names: a class or function is called, any other object is returned as it is.
+
+    Args:
+        name: Such as "arm.py:Arm?address=10.0.0.5".
+        what: "model", "method" or "world".
+        offers: Given to parameters that ask for them by name, such as `seed`.
+        fault: Whose fault it is when the code raises something of its own.
+        arguments: For the constructor, beside those in the name.
+
+    Raises:
+        ConfigError: It cannot be loaded, needs a parameter that nobody gives, or has none of that name.
+        WonderfulTeamError: Of the class `fault`.
+    """
+    thing = load_from_file(name, what)
+    given = {**split_arguments(name)[1], **(arguments or {})}
+    whose = f"{what} {name!r}"
     if not (inspect.isclass(thing) or inspect.isfunction(thing)):
+        if given:
+            raise ConfigError(f"{whose}: arguments ({', '.join(given)}) are for a class or a function; this is neither")
         return thing
-    needed: dict[str, Any] = {}
-    for parameter in inspect.signature(thing).parameters.values():
-        if parameter.kind in (parameter.VAR_POSITIONAL, parameter.VAR_KEYWORD):
-            continue
-        if parameter.name in offers and parameter.kind is not parameter.POSITIONAL_ONLY:
-            needed[parameter.name] = offers[parameter.name]
-        elif parameter.default is parameter.empty:
+    with code_of(f"{whose}: {thing.__name__}(…)", fault):
+        return thing(**_arguments(thing, offers, given, whose))
+
+
+def _arguments(thing: Any, offers: Mapping[str, Any], given: Mapping[str, Any], whose: str) -> dict[str, Any]:
+    """What a constructor is called with: what is given by name, and of `offers` what it asks for."""
+    parameters = inspect.signature(thing).parameters.values()
+    named = {one.name: one for one in parameters if one.kind in (one.POSITIONAL_OR_KEYWORD, one.KEYWORD_ONLY)}
+    takes_any = any(one.kind is one.VAR_KEYWORD for one in parameters)
+    if not takes_any:
+        for key in given:
+            if key not in named:
+                raise UnknownNameError(f"argument of {thing.__name__}", key, named)
+    held = {key: offers[key] for key in named if key in offers}
+    held |= {key: _typed(value, named.get(key), whose) for key, value in given.items()}
+    for parameter in parameters:
+        variable = parameter.kind in (parameter.VAR_POSITIONAL, parameter.VAR_KEYWORD)
+        if not variable and parameter.name not in held and parameter.default is parameter.empty:
             raise ConfigError(
-                f"{what} {thing.__name__}: nothing to give for its parameter {parameter.name!r}; "
-                f"it may ask for: {', '.join(offers) or 'nothing'}"
+                f"{whose} {thing.__name__}: nothing to give for its parameter {parameter.name!r}; it may ask for: "
+                f"{', '.join(offers) or 'nothing'}; other arguments are given as in FILE.py:NAME?{parameter.name}=VALUE"
             )
-    return thing(**needed)
+    return held
+
+
+_TRUTH = {"true": True, "1": True, "yes": True, "false": False, "0": False, "no": False}
+
+
+def _typed(value: Any, parameter: inspect.Parameter | None, whose: str) -> Any:
+    """A value out of a name, as the number or truth value that the parameter's annotation asks for."""
+    kind = str(getattr(parameter.annotation, "__name__", parameter.annotation)) if parameter is not None else ""
+    if not isinstance(value, str) or kind not in ("int", "float", "bool"):
+        return value
+    try:
+        return {"int": int, "float": float, "bool": lambda word: _TRUTH[word.lower()]}[kind](value)  # type: ignore[operator]
+    except (ValueError, KeyError):
+        assert parameter is not None
+        raise ConfigError(f"{whose}: argument {parameter.name}={value!r} is not of type {kind}") from None
 
 
 def _run_file(path: Path, what: str) -> ModuleType:
@@ -81,11 +158,9 @@ def _run_file(path: Path, what: str) -> ModuleType:
     sys.path.insert(0, str(path.parent))
     try:
         spec.loader.exec_module(module)
-    except Exception as error:  # whatever a user's file raises is the user's to read, in one line
+    except (Exception, SystemExit) as error:  # whatever a user's file raises is the user's to read
         del sys.modules[name]
-        raise ConfigError(
-            f"{what} file {str(path)!r} failed when it was run: {type(error).__name__}: {error}"
-        ) from error
+        raise ConfigError(f"{what} file {str(path)!r} failed when it was run: it", cause=error) from error
     finally:
         sys.path.remove(str(path.parent))
     return module

@@ -8,6 +8,8 @@ from pathlib import Path
 from typing import Any
 
 from wonderful_team.jsonable import to_jsonable
+from wonderful_team.notebook import card
+from wonderful_team.text import counted, picture_names, spoken
 from wonderful_team.types import GateReport, Observation, Plan, PlannedAction, Subgoal, Target, Trial, Usage
 
 PAGE_NAME = "page.html"
@@ -47,6 +49,7 @@ class MadePlan:
         usage_by_role: Cost by role.
         seconds: How long planning took, on the wall clock.
         folder: The run folder; None when nothing was recorded.
+        told: Warnings of the run beside those of the plan, as they were told while it ran.
     """
 
     plan: Plan
@@ -55,6 +58,7 @@ class MadePlan:
     usage_by_role: Mapping[str, Usage] = field(default_factory=dict)
     seconds: float = 0.0
     folder: Path | None = None
+    told: tuple[str, ...] = ()
 
     @property
     def id(self) -> str:
@@ -82,7 +86,8 @@ class MadePlan:
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        return self.plan.warnings
+        """All that the user was warned of, each once."""
+        return tuple(dict.fromkeys((*self.told, *self.plan.warnings)))
 
     @property
     def subgoals(self) -> tuple[Subgoal, ...]:
@@ -125,17 +130,54 @@ class MadePlan:
             "seconds": round(self.seconds, 3),
         }
 
+    def _repr_html_(self) -> str:
+        """In a notebook: the picture of the plan, how it ended, its targets."""
+        from wonderful_team.images import action_arrows, overview
+
+        names = picture_names(self.plan.instruction.text, self.plan.instruction.slots)
+        lines = [self.message] if self.message else []
+        lines += [f"{goal.id}  {goal.text}" for goal in self.subgoals]
+        lines += [f"{target.id}  {target.words}  {target.status.replace('_', ' ')}" for target in self.targets]
+        if self.gate is not None and not self.gate.admitted:
+            lines += [f"refused by the safety gate: {reason}" for reason in self.gate.reasons]
+        drawn = overview(
+            self.observation.main,
+            self.plan.grounded,
+            names=names,
+            arrows=action_arrows(self.actions),
+            keep_out=self.plan.keep_out,
+        )
+        spent = f"{counted(self.usage.calls, 'call')}, {self.seconds:.1f} s"
+        lines += [spent if self.page is None else f"{spent}   page: {self.page}"]
+        title = f"{self.status.replace('_', ' ')}: {self.plan.instruction.plain_text}"
+        return card(title, [spoken(line, names) for line in lines], [(drawn, counted(len(self.actions), "action"))])
+
 
 @dataclass(frozen=True, eq=False)
 class RecordedTrial(Trial):
-    """A trial that knows its run folder."""
+    """A trial that knows its run folder, and what the user was warned of."""
 
     folder: Path | None = None
+    warnings: tuple[str, ...] = ()
 
     @property
     def page(self) -> Path | None:
         """The run's page."""
         return None if self.folder is None else self.folder / PAGE_NAME
+
+    def _repr_html_(self) -> str:
+        """In a notebook: outcome, before and after, what became of each subgoal."""
+        stage = f" at {self.stage}" if self.stage else ""
+        said = self.plans[-1].instruction if self.plans else None
+        names = {} if said is None else picture_names(said.text, said.slots)
+        lines = [] if said is None else [said.plain_text]
+        lines += [f"{one.subgoal}  {one.status.replace('_', ' ')}  {one.cause or ''}".rstrip() for one in self.verdicts]
+        executed = sum(report.executed for report in self.reports)
+        lines += [f"{counted(len(self.plans), 'plan')}, {counted(executed, 'action')} executed"]
+        lines += [] if self.page is None else [f"page: {self.page}"]
+        ends = [(self.runs[0].before, "before"), (self.runs[-1].after, "after")] if self.runs else []
+        pictures = [(seen.main.rgb, name) for seen, name in ends]
+        return card(f"{self.outcome}{stage}: {self.reason}", [spoken(line, names) for line in lines], pictures)
 
 
 def target_json(target: FoundTarget) -> dict[str, Any]:

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from wonderful_team import types
-from wonderful_team.errors import ConfigError
+from wonderful_team.errors import ConfigError, reading
 from wonderful_team.photos import PathLike, corners_camera, load_camera, load_depth, load_view
 from wonderful_team.types import Limits
 
@@ -41,6 +41,17 @@ class Observation(types.Observation):
         Raises:
             ConfigError: No picture, or an unusable file; both camera and corners; depth without a camera file.
         """
+        with reading("the pictures with their depth and camera"):
+            return cls._read(pictures, depth, camera, corners)
+
+    @classmethod
+    def _read(
+        cls,
+        pictures: Sequence[PathLike],
+        depth: PathLike | None,
+        camera: PathLike | None,
+        corners: str | None,
+    ) -> Observation:
         if not pictures:
             raise ConfigError("at least one picture is needed")
         if camera is not None and corners is not None:

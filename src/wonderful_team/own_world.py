@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any, cast
 
 from wonderful_team.actions import Action, Vocabulary
+from wonderful_team.geometry.arrays import Array
+from wonderful_team.interfaces import Filmed
 from wonderful_team.types import Instruction, KeepOut, Limits, Observation, StepReport
 
 
@@ -43,6 +46,10 @@ class OwnWorld:
 
     def execute(self, action: Action) -> StepReport:
         return cast(StepReport, self.inner.execute(action))
+
+    def film(self, each: Callable[[Mapping[str, Array]], None] | None, every_s: float = 0.1) -> None:
+        if isinstance(self.inner, Filmed):
+            self.inner.film(each, every_s)
 
     def stop(self) -> None:
         if hasattr(self.inner, "stop"):

@@ -11,9 +11,16 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal, cast
 
-from wonderful_team.errors import ConfigError, UnknownNameError
+from wonderful_team.errors import (
+    ConfigError,
+    MethodCodeError,
+    ModelCodeError,
+    UnknownNameError,
+    WorldUnavailableError,
+    code_of,
+)
 from wonderful_team.interfaces import Model, Policy, Privileged, World
-from wonderful_team.loading import build, is_file_name, load_from_file
+from wonderful_team.loading import check_names_no_code, is_file_name, load_from_file, make_from_file
 from wonderful_team.own_world import OwnWorld
 from wonderful_team.simulated_models import SIMULATED, simulated_model
 from wonderful_team.types import Instruction, KeepOut
@@ -80,7 +87,7 @@ def make_model(
     if model.startswith(SIMULATED):
         return simulated_model(model, world)
     if is_file_name(model):
-        made = build(load_from_file(model, "model"), {}, f"model {model!r}")
+        made = make_from_file(model, "model", {}, ModelCodeError)
         return make_model(made)
     from wonderful_team.models.profiles import load_profile, profile_names
     from wonderful_team.models.providers import ModelOptions, is_provider_spec, make_provider
@@ -93,7 +100,7 @@ def make_model(
         made = make_provider(spec, profile=profile, thinking=thinking, price=price, local_only=asked.local_only)
         return cast(Model, made)
     if profile is not None:
-        return make_model(spec, options, role, world)
+        return make_model(check_names_no_code(spec, f"profile {model!r}"), options, role, world)
     if model not in MODELS:
         raise UnknownNameError("model", model, [*MODELS, *profile_names(), *MODEL_FORMS])
     return cast(Model, importlib.import_module("wonderful_team.models.offline").OfflineModel())
@@ -181,7 +188,7 @@ def load_method(name: str, door: Door) -> Policy:
     Raises:
         ConfigError: The object has no `decide(situation)` or no name.
     """
-    made = build(load_from_file(name, "method"), {"door": door}, f"method {name!r}")
+    made = make_from_file(name, "method", {"door": door}, MethodCodeError)
     if not callable(getattr(made, "decide", None)):
         raise ConfigError(f"method {name!r} needs a method decide(situation); {type(made).__name__} has none")
     if not isinstance(getattr(made, "name", None), str):
@@ -232,6 +239,7 @@ def make_world(
     instruction: str | Instruction | None = None,
     keep_out: Sequence[KeepOut] = (),
     tiers: Mapping[str, int] | None = None,
+    **arguments: Any,
 ) -> World:
     """A world with one scene set up in it.
 
@@ -242,6 +250,7 @@ def make_world(
         instruction: Instead of the world's own; the scorer, which judges the world's own, is then dropped.
         keep_out: Regions nothing may enter, beside the world's own.
         tiers: How much harder than usual, 0 to 3, by kind; of `own_tiers(name)`.
+        **arguments: For the constructor of a world of FILE.py:NAME, such as a robot's address.
 
     Raises:
         UnknownNameError: No such world or task; lists those that exist.
@@ -251,13 +260,19 @@ def make_world(
         raise ConfigError(f"seed {seed}: must be 0 or more")
     if not isinstance(name, str):
         world, name = _whole(name, f"world {type(name).__name__}"), type(name).__name__
+        _take_none(name, arguments)
     else:
         wrong = [kind for kind in tiers or {} if kind not in own_tiers(name)]
         if wrong:
             raise ConfigError(f"world {name!r} makes no tiers of {', '.join(wrong)}; our tabletop does")
         harder = dict(tiers or {})
-        world = _world_from_file(name, seed, harder) if is_file_name(name) else _named_world(name, seed, harder)
-    own = getattr(world, "instruction", None)
+        if is_file_name(name):
+            world = _world_from_file(name, seed, harder, arguments)
+        else:
+            _take_none(name, arguments)
+            world = _named_world(name, seed, harder)
+    with code_of(f"instruction of world {name!r}", WorldUnavailableError):
+        own = getattr(world, "instruction", None)
     wanted = _worded(instruction, own) if instruction is not None else own
     if wanted is None:
         raise ConfigError(
@@ -277,6 +292,13 @@ def privileged(world: World) -> Privileged | None:
     """The truth behind a simulator, for its scorer; None for real robots, own worlds without one, and changed instructions."""
     truth = getattr(world, "privileged", None)
     return truth if isinstance(truth, Privileged) else None
+
+
+def _take_none(name: str, arguments: Mapping[str, Any]) -> None:
+    if arguments:
+        raise ConfigError(
+            f"world {name!r} takes no arguments ({', '.join(arguments)}); those of FILE.py:NAME, a class, are for its constructor"
+        )
 
 
 def _worded(instruction: str | Instruction, own: Instruction | None) -> Instruction:
@@ -303,12 +325,13 @@ def _named_world(name: str, seed: int, harder: Mapping[str, int]) -> World:
     return cast(World, _simulator(world).make_world(task, seed=seed, **harder))
 
 
-def _world_from_file(name: str, seed: int, harder: Mapping[str, int]) -> Any:
-    thing = load_from_file(name, "world")
-    task = task_made_of(thing)
+def _world_from_file(name: str, seed: int, harder: Mapping[str, int], arguments: Mapping[str, Any]) -> Any:
+    task = task_made_of(load_from_file(name, "world"))
     if task is not None:
+        _take_none(name, arguments)
         return _tabletop().make_world(task, seed=seed, **harder)
-    return _whole(build(thing, {"seed": seed}, f"world {name!r}"), f"world {name!r}")
+    made = make_from_file(name, "world", {"seed": seed}, WorldUnavailableError, arguments)
+    return _whole(made, f"world {name!r}")
 
 
 def _whole(made: Any, what: str) -> Any:

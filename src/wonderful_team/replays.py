@@ -17,12 +17,13 @@ from wonderful_team import registry
 from wonderful_team.actions import Vocabulary
 from wonderful_team.agents import Prompts
 from wonderful_team.api import Team, rollout
-from wonderful_team.errors import ConfigError
+from wonderful_team.errors import ConfigError, WonderfulTeamError, reading
 from wonderful_team.interfaces import Event, Model, Subscriber
+from wonderful_team.loading import check_names_no_code
 from wonderful_team.made import MadePlan, RecordedTrial
 from wonderful_team.models.replay import Branching, ReplayModel
 from wonderful_team.runtime.loop import Caller
-from wonderful_team.runtime.page.write import read_record
+from wonderful_team.runtime.record_schema import read_record
 from wonderful_team.runtime.setup import Setup, read_setup, same_limits
 from wonderful_team.runtime.stored import stored_instruction, stored_observation
 from wonderful_team.runtime.story import recorded_plan, situations
@@ -66,15 +67,23 @@ def replay(folder: Path, *, tolerant: bool = False, subscribers: Sequence[Subscr
     model, plans = ReplayModel(record, tolerant=tolerant), _Plans()
     with tempfile.TemporaryDirectory(prefix="wonderful-team-replay-") as place:
         team = _team(folder, record, model, out=place, subscribers=(plans, *subscribers))
-        if setup.entry == "run":
-            policy = team.policy()
-            with Caller() as caller:
-                for situation in situations(folder, record, setup):
-                    caller.wait_for(policy.decide(situation))
-            # A plan that was handed in is never told as one that was made.
-            plans.ids[:0] = [] if setup.plan is None else [setup.plan]
-        else:
-            _plan_again(folder, record, setup, team)
+        try:
+            if setup.entry == "run":
+                policy = team.policy()
+                with reading(f"{folder}: the record"):
+                    asked = list(situations(folder, record, setup))
+                with Caller() as caller:
+                    for situation in asked:
+                        caller.wait_for(policy.decide(situation))
+            else:
+                _plan_again(folder, record, setup, team)
+        except WonderfulTeamError as error:
+            # What ended the run then ends it again; anything else did not happen then.
+            if error not in model.failed:
+                raise
+    if setup.plan is not None:
+        # A plan that was handed in is never told as one that was made.
+        plans.ids[:0] = [setup.plan]
     then = dict.fromkeys(str(entry["id"]) for entry in record["planner"]["plans"])
     return Replayed(tuple(then), tuple(dict.fromkeys(plans.ids)), model.replayed, tuple(model.differences))
 
@@ -124,6 +133,7 @@ def branch(
     arguments = {**caps, "out": out, "subscribers": tuple(subscribers), "command": command, "parent": parent}
     team = _team(folder, record, models, **arguments)
     if setup.entry == "run" and setup.scene.partition("/")[0] in registry.WORLDS:
+        check_names_no_code(setup.scene, f"{folder}: the scene of this record")
         return _trial_again(folder, record, setup, team)
     return _plan_again(folder, record, setup, team)
 
@@ -135,6 +145,9 @@ def _team(folder: Path, record: Mapping[str, Any], model: Model | Mapping[str, M
         ConfigError: The method was not the team.
     """
     configuration = record["configuration"]
+    missing = [name for name in ("method", "concurrency", "strict") if name not in configuration]
+    if missing:
+        raise ConfigError(f"{folder}: the record does not say its {', '.join(missing)}, so it cannot be run again")
     method = str(configuration["method"])
     if registry.team_way(method) is None:
         raise ConfigError(f"{folder}: method {method!r} is a file of your own; only runs of the team can be run again")
@@ -153,14 +166,16 @@ def _team(folder: Path, record: Mapping[str, Any], model: Model | Mapping[str, M
 def _plan_again(folder: Path, record: Mapping[str, Any], setup: Setup, team: Team) -> MadePlan:
     if setup.plan is not None:
         raise ConfigError(f"{folder}: this run was handed its plan {setup.plan}: there is nothing to plan again")
-    observation = stored_observation(folder, record)
+    with reading(f"{folder}: the record"):
+        observation = stored_observation(folder, record)
+        instruction = stored_instruction(folder, record)
     if setup.entry == "ground":
         objects = [target.words for target in setup.targets if target.kind == "object"]
         areas = [target.words for target in setup.targets if target.kind == "area"]
         return team.ground(observation, objects, areas)
     return team.plan(
         observation,
-        stored_instruction(folder, record),
+        instruction,
         vocabulary=Vocabulary(setup.vocabulary),
         limits=same_limits(setup),
         until=setup.until,  # type: ignore[arg-type]  # Team checks it
@@ -170,7 +185,8 @@ def _plan_again(folder: Path, record: Mapping[str, Any], setup: Setup, team: Tea
 
 def _trial_again(folder: Path, record: Mapping[str, Any], setup: Setup, team: Team) -> RecordedTrial:
     name = setup.scene.rpartition("#")[0]
-    wanted = stored_instruction(folder, record)
+    with reading(f"{folder}: the record"):
+        wanted = stored_instruction(folder, record)
     world = registry.make_world(name, setup.seed or 0)
     if world.instruction.text != wanted.text:
         world.close()

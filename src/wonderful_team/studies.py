@@ -26,7 +26,7 @@ from wonderful_team.loading import is_file_name
 from wonderful_team.models.cache import CacheMode
 from wonderful_team.role_models import choice_of, read_choices, text_of
 from wonderful_team.runs import runs_folder
-from wonderful_team.trial_runs import check_isolation, check_names, run_trial
+from wonderful_team.trial_runs import check_isolation, check_names, code_of_names, run_trial
 
 ALL_CONTROLS = (*CONTROLS, OFFLINE)
 PILOT = 6
@@ -168,7 +168,11 @@ class Study:
     def _settings(self) -> RunSettings:
         prompts = None if self.prompts is None else Path(self.prompts)
         out = runs_folder(self.out).absolute()
-        return RunSettings(self.trial_caps, self.concurrency or 8, self.pages, out, prompts, extra=self._asked())
+        tasks = [task for suite in self.plan.suites for task in suite.tasks]
+        named = code_of_names((*tasks, *self.plan.methods), self.plan.models)
+        return RunSettings(
+            self.trial_caps, self.concurrency or 8, self.pages, out, prompts, extra=self._asked(), named_code=named
+        )
 
     def _asked(self) -> dict[str, Any]:
         """Options of the models, as `Method` takes them."""

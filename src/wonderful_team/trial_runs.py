@@ -12,7 +12,7 @@ import inspect
 import shlex
 import shutil
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import lru_cache
 from pathlib import Path
@@ -28,7 +28,7 @@ from wonderful_team.evals.controls import CONTROLS, make_control
 from wonderful_team.evals.trials import Condition, Limiter, RunSettings, TrialResult, TrialSpec
 from wonderful_team.interfaces import Event, Model, Policy, World
 from wonderful_team.jsonable import to_jsonable
-from wonderful_team.loading import is_file_name
+from wonderful_team.loading import check_names_no_code, is_file_name
 from wonderful_team.methods import Method, role_names
 from wonderful_team.models.providers import model_options
 from wonderful_team.role_models import REST, choice_of
@@ -36,6 +36,8 @@ from wonderful_team.runtime import rollout as roll_out
 from wonderful_team.runtime.versions import versions
 from wonderful_team.types import Instruction, Observation, Request, StepReport, Trial, Usage, View
 
+SUCCESS_EVERY = 10
+"""With pages of failures, successes of these seeds (1000, 1010, ...) keep theirs too: a reader wants to see both."""
 BESIDE = frozenset({"memory"})
 """Roles whose requests run beside the main line and make no waiting round."""
 
@@ -84,6 +86,7 @@ class Limited:
 
 def run_trial(spec: TrialSpec, settings: RunSettings) -> TrialResult:
     """Run one trial of a study in this process; a `TrialRunner`."""
+    check_code(spec, settings)
     if spec.task.endswith(".json"):
         from wonderful_team.photo_runs import run_photo
 
@@ -108,12 +111,32 @@ def run_trial(spec: TrialSpec, settings: RunSettings) -> TrialResult:
             provenance=tuple(sorted({*count.provenance, *trial.provenance})),
             by_role={role: to_jsonable(one) for role, one in by_role.items()},
             page=page,
-            instruction="" if spec.condition.method in CONTROLS else world.instruction.text,
+            instruction="" if spec.condition.method in CONTROLS else world.instruction.plain_text,
             versions=fingerprint(spec),
         )
     finally:
         with contextlib.suppress(Exception):
             world.close()
+
+
+def code_of_names(names: Iterable[str], models: Iterable[str]) -> frozenset[str]:
+    """Those of tasks and methods, and of models (one or by role), that are FILE.py:NAME."""
+    chosen = [choice_of(model) for model in models]
+    single = [name for one in chosen for name in ([one] if isinstance(one, str) else one.values())]
+    return frozenset(name for name in (*names, *single) if is_file_name(name))
+
+
+def check_code(spec: TrialSpec, settings: RunSettings) -> None:
+    """Whether a trial names only code that the caller named: what a store's file says never runs by itself.
+
+    Raises:
+        ConfigError: It names other code.
+    """
+    if settings.named_code is None:
+        return
+    condition = spec.condition
+    for name in sorted(code_of_names((spec.task, condition.method), (condition.model,)) - settings.named_code):
+        check_names_no_code(name, "the store")
 
 
 class Unseen:
@@ -187,7 +210,7 @@ def _run(spec: TrialSpec, settings: RunSettings, world: World, count: Counting) 
         out=out,
         subscribers=(count,),
     )
-    if settings.pages == "failures" and recorded.outcome == "success":
+    if settings.pages == "failures" and recorded.outcome == "success" and spec.seed % SUCCESS_EVERY:
         shutil.rmtree(out, ignore_errors=True)
         return recorded, ""
     return recorded, str(recorded.page)

@@ -158,7 +158,7 @@ def test_nothing_scored_is_no_data(tmp_path: Path) -> None:
         store.want(plan.name, plan.trials(), plan.request())
     made = write_all([tmp_path / "s.db"], tmp_path / "p.html")
     assert "no data" in made.page.read_text(encoding="utf-8")
-    assert any("have not ended" in text for text in made.warnings)
+    assert any("not ended yet" in text for text in made.warnings)
 
 
 def test_controls_accuse_a_wrong_scorer() -> None:
@@ -256,3 +256,26 @@ def test_an_unknown_baseline_and_a_missing_store_are_told(store: Path) -> None:
         write_all([store.with_name("none.db")], store.with_name("p.html"))
     made = write_all([store], store.with_name("p.html"), baseline="good")
     assert [one.first.method for one in made.summary.pairs("good")] == ["bad"]
+
+
+def test_it_says_what_was_run_here_and_may_run_no_script(store: Path) -> None:
+    html = write_all([store], store.with_name("page.html")).page.read_text(encoding="utf-8")
+    assert "<tr><th>run here</th><td>15 runs a task for each method and model</td></tr>" in html
+    assert "default-src 'none'; img-src data:; style-src 'unsafe-inline'\">" in html
+    assert "<script" not in html
+
+
+def test_hidden_characters_of_a_reason_are_escapes_in_the_table_and_the_page(tmp_path: Path) -> None:
+    with Store(tmp_path / "s.db") as store:
+        plan = toy_plan(1)
+        store.want(plan.name, plan.trials(), plan.request())
+        owner = Owner.this_process()
+        claim = store.claim(plan.name, owner)
+        assert claim is not None
+        reason = "no\x1b[2J \u202eway"
+        store.finish(claim.trial, owner, TrialResult("failure", "plan", reason))
+    made = write_all([tmp_path / "s.db"], tmp_path / "p.html")
+    for path in (made.csv, made.page):
+        text = path.read_text(encoding="utf-8")
+        assert "no\\x1b[2J \\u202eway" in text
+        assert not set(text) & set("\x1b\u202e")

@@ -145,16 +145,29 @@ def test_text_of_instruction_and_model_stays_text(tmp_path):
     assert text.count(attack) >= 3
 
 
+def test_characters_that_hide_are_escapes_on_the_page_and_in_the_log(tmp_path):
+    hidden = "\x1b[2K\u202etxt\u200b"
+    world = world_with_pictures(f"put it away {hidden}")
+    with Recorder(tmp_path, command=hidden) as recorder:
+        rollout(TalkingPolicy([recorder], words=hidden), world, subscribers=[recorder], scene=hidden)
+    page = write_page(tmp_path).read_text(encoding="utf-8")
+    log = (tmp_path / "log.txt").read_text(encoding="utf-8")
+    assert not set(page + log) & set("\x1b\u202e\u200b")
+    assert page.count("\\x1b[2K\\u202etxt\\u200b") >= 3
+
+
 def test_a_half_finished_run_has_a_page(tmp_path):
     recorder = Recorder(tmp_path)
     _, text = read(write_page(tmp_path))
     assert "it was still running when this page was made" in text
     world = SquaresWorld(trouble={1: RuntimeError("cable out")})
     moves = [((60.0, 60.0), (200.0, 30.0))]
-    with recorder, pytest.raises(RuntimeError):
+    with recorder:
         rollout(MovesPolicy([moves]), world, subscribers=[recorder])
     _, text = read(write_page(tmp_path))
     assert "RuntimeError: cable out" in text
+    # The traceback of the user's own code is there to be read.
+    assert "Traceback (most recent call last)" in text
 
 
 def test_a_refusal_shows_its_reasons(tmp_path):
@@ -175,7 +188,7 @@ def test_missing_pictures_do_not_stop_the_page(folder, tmp_path):
 @pytest.mark.parametrize(
     ("content", "message"),
     [
-        (None, "no record.json to read"),
+        (None, "record.json.* cannot be read: No such file"),
         ("{", "not JSON"),
         ('{"schema_version": 9}', "schema version 9; this release reads 1"),
     ],

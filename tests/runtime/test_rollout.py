@@ -47,7 +47,7 @@ def test_a_plan_runs_and_is_scored_after_the_trial():
     assert first.after.hash == trial.runs[1].before.hash
     kinds = [event.kind for event in listener.events]
     assert kinds == [
-        "run", "observe", "decision", "plan", "gate", "observe", "execute", "observe", "subgoal",
+        "run", "observe", "asking", "decision", "plan", "gate", "observe", "execute", "observe", "subgoal",
         "gate", "execute", "observe", "subgoal", "done",
     ]  # fmt: skip
 
@@ -179,10 +179,14 @@ def test_ctrl_c_stops_the_world_and_hands_over_what_happened():
     assert (trial.outcome, trial.stage, len(trial.runs)) == ("error", "interrupted", 2)
 
 
-def test_a_bug_is_not_the_methods_failure():
+def test_a_bug_of_ours_is_not_the_methods_failure():
+    class Ours(Raises):
+        """Stands for a method of the package."""
+
+    Ours.__module__ = "wonderful_team.planning.team"
     world, listener = SquaresWorld(), Listener()
     with pytest.raises(ZeroDivisionError):
-        rollout(Raises(ZeroDivisionError("x")), world, subscribers=[listener])
+        rollout(Ours(ZeroDivisionError("x")), world, subscribers=[listener])
     assert listener.events[-1].content.outcome == "error"
     assert world.stopped == 1
 
@@ -264,8 +268,9 @@ def test_wrong_use_is_refused():
         def decide(self, situation):
             return "done"
 
-    with pytest.raises(ConfigError, match="must return Act, Done or GaveUp; it returned str"):
-        rollout(Odd([]), SquaresWorld())
+    trial = rollout(Odd([]), SquaresWorld())
+    assert (trial.outcome, trial.stage) == ("failure", "method")
+    assert "returned is a str; valid: Act, Done, GaveUp" in trial.reason
 
 
 def test_done_at_once_moves_nothing():

@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 import importlib
+import io
 import sys
 from collections.abc import Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from wonderful_team import __version__
-from wonderful_team.cli.output import Document, wants_json
+from wonderful_team.cli.output import Document, say, wants_json
+
+if TYPE_CHECKING:
+    from wonderful_team.errors import WonderfulTeamError
 
 INTERRUPTED = 130
 CRASHED = 70
@@ -85,6 +89,12 @@ def run(argv: list[str]) -> int:
     Returns:
         The exit code. An error has then been told on stderr, and as a JSON document on stdout with --json.
     """
+    _write_anything()
+    foreign = [word for word in argv if any(0xD800 <= ord(letter) <= 0xDFFF for letter in word)]
+    if foreign:
+        return _fail(
+            [word for word in argv if word not in foreign], "UsageError", f"{foreign[0]!r} is not text in UTF-8", 2
+        )
     try:
         code: Any = group.main(args=argv, prog_name="wonderful-team", standalone_mode=False, obj=tuple(argv))
         return code if isinstance(code, int) else 0
@@ -104,19 +114,41 @@ def run(argv: list[str]) -> int:
         return _tell(argv, error)
 
 
+def _write_anything() -> None:
+    """What cannot be encoded (half of a character out of a file or a model's words) is shown escaped, never a crash."""
+    if isinstance(sys.stdout, io.TextIOWrapper):
+        sys.stdout.reconfigure(errors="backslashreplace")
+
+
 def _tell(argv: list[str], error: Exception) -> int:
     from wonderful_team.errors import WonderfulTeamError
 
     name = type(error).__name__
     if isinstance(error, WonderfulTeamError):
-        return _fail(argv, name, str(error), error.exit_code, stage=error.stage)
+        return _fail(argv, name, str(error), error.exit_code, error)
+    if isinstance(error, OSError):
+        # The machine's word, not a defect: a full disk, a folder without the right to write.
+        file = f"{error.filename}: " if error.filename else ""
+        return _fail(argv, name, f"{file}{error.strerror or error}", 2)
     message = f"unexpected {name}: {error}. This is a defect of wonderful-team; `wonderful-team --debug …` shows where"
     return _fail(argv, name, message, CRASHED)
 
 
-def _fail(argv: list[str], name: str, message: str, code: int, stage: str | None = None) -> int:
+def _fail(argv: list[str], name: str, message: str, code: int, error: WonderfulTeamError | None = None) -> int:
+    page = error.folder / "page.html" if error is not None and error.folder is not None else None
     if wants_json(argv):
         command = next((word for word in argv if word in COMMANDS), "")
-        Document(command, {}, error={"type": name, "message": message, "stage": stage}).print(code)
-    click.echo(f"error: {message}" if code != INTERRUPTED else message, err=True)
+        told = {"type": name, "message": message, "stage": error.stage if error is not None else None}
+        more = {} if error is None or not error.trace else {"trace": error.trace}
+        result = {} if page is None else {"folder": str(page.parent), "page": str(page)}
+        Document(command, result, error={**told, **more}).print(code)
+    # The trace of a run with a folder was told while it ran.
+    if error is not None and error.trace and page is None:
+        from wonderful_team.cli.progress import trace_lines
+
+        for line in trace_lines(error.trace):
+            say(f"    {line}", err=True)
+    say(f"error: {message}" if code != INTERRUPTED else message, err=True)
+    if page is not None:
+        say(f"page: {page}", err=True)
     return code

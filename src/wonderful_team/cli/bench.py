@@ -84,7 +84,13 @@ QUIET_S = 10.0
 @click.option("--shard", metavar="I/N", help="Only this part, in a store file of its own.")
 @click.option("--ray", metavar="ADDRESS", help='Run on a Ray cluster; "local" starts one here.')
 @click.option("--retry-errors", is_flag=True, help="Run trials again that ended as errors.")
-@click.option("--pages", type=click.Choice(["all", "failures", "none"]), default="failures", show_default=True)
+@click.option(
+    "--pages",
+    type=click.Choice(["all", "failures", "none"]),
+    default="failures",
+    show_default=True,
+    help="Trials that keep a page; failures: those, and the successes of every tenth seed (1000, 1010, ...).",
+)
 @click.option("--out", type=PATH, metavar="DIR", help="Where the pages of trials go. [default: runs]")
 @click.option("--prompts", type=PATH, metavar="DIR", help="Your own words for the roles.")
 @click.option("--concurrency", type=click.IntRange(1), help="Model calls at once, over all workers.")

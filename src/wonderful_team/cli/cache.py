@@ -9,6 +9,7 @@ import click
 
 from wonderful_team.cli.options import PATH
 from wonderful_team.cli.output import finish
+from wonderful_team.text import counted
 
 if TYPE_CHECKING:
     from wonderful_team.models.cache_store import CacheSize
@@ -34,7 +35,7 @@ def command(action: str, cache_file: Path | None, as_json: bool) -> int:
     dropped = store.clear() if action == "clear" else 0
     size = store.size()
     store.close()
-    lines = [f"{dropped} answers dropped"] if action == "clear" else []
+    lines = [f"{counted(dropped, 'answer')} dropped"] if action == "clear" else []
     lines += [size_line(size), *(f"  {count:>6}  {model}" for model, count in size.by_model.items()), *store.warnings]
     result = {
         "file": str(size.path),
@@ -48,4 +49,4 @@ def command(action: str, cache_file: Path | None, as_json: bool) -> int:
 
 def size_line(size: CacheSize) -> str:
     """How much a cache holds, in one line."""
-    return f"{size.path}: {size.answers:,} answer{'s' * (size.answers != 1)}, {size.bytes / 1e6:.1f} MB"
+    return f"{size.path}: {counted(size.answers, 'answer')}, {size.bytes / 1e6:.1f} MB"

@@ -8,6 +8,7 @@ import click
 
 from wonderful_team.cli.options import PATH
 from wonderful_team.cli.output import finish
+from wonderful_team.text import counted
 
 
 @click.command(
@@ -33,6 +34,8 @@ def command(name: str, seeds: int | None, sheet: Path | None, as_json: bool) -> 
     picture = sheet or beside
     findings = check(name, picture, seeds)
     lines = findings.lines()
-    lines.append("checked: nothing wrong" if not findings.bad else f"checked: {len(findings.bad)} things are wrong")
+    lines.append(
+        "checked: nothing wrong" if not findings.bad else f"checked: {counted(len(findings.bad), 'thing')} wrong"
+    )
     result = {"ok": not findings.bad, "good": findings.good, "bad": findings.bad, "notes": findings.notes}
     return finish("check", text="\n".join(lines), result=result, as_json=as_json, code=0 if not findings.bad else 1)

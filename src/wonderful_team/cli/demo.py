@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -11,15 +10,17 @@ import click
 from wonderful_team.cli.options import PATH
 from wonderful_team.cli.output import finish
 from wonderful_team.cli.report import program, shown_path, trial_json
-from wonderful_team.cli.wording import action_line, trial_exit_code, trial_lines
+from wonderful_team.cli.wording import action_line, said_of, trial_exit_code, trial_lines, words_of
 
 if TYPE_CHECKING:
     from wonderful_team.contracts import BoxAnswer, PlanDraft
     from wonderful_team.made import RecordedTrial
+    from wonderful_team.models.wrappers import Injection
     from wonderful_team.types import Request
 
-WORLD = "tabletop/visual_manipulation"
-SEED = 7
+WORLD = "tabletop/everyday/tidy_up"
+SEED = 3
+RIGHT, WRONG = "blue bowl", "green bowl"
 NEXT = (
     "show latest --role verification",
     "run tabletop/rotate --seed 3",
@@ -35,23 +36,18 @@ NEXT = (
 def command(seed: int, out: Path | None, as_json: bool, open_page: bool) -> int:
     """Run the team on a tabletop scene without a key, a GPU or a robot.
 
-    Two mistakes are planted and labelled INJECTED: a plan that does it the wrong way round, and a first box beside its
-    object. Verification and the Checker have to catch them.
+    Two mistakes are planted and labelled INJECTED: a plan that fills the wrong bowl, and a first box beside its object.
+    Verification and the Checker have to catch them.
     """
     from wonderful_team.api import Team, make_world, rollout
-    from wonderful_team.cli.progress import Progress, cost_line
-    from wonderful_team.models.wrappers import Injecting, Injection
+    from wonderful_team.cli.progress import Progress
+    from wonderful_team.models.wrappers import Injecting
     from wonderful_team.registry import make_model, scene_name
 
-    progress = Progress()
-    injections = (
-        Injection(("DraftPlan",), swap_pictures, "the first plan does it the wrong way round"),
-        Injection(("GiveBox",), shift_first_box, "the first box lies beside its object"),
-    )
+    progress = Progress(live=not as_json)
+    injections = planted_mistakes()
     model = Injecting(make_model("offline"), injections)
-    progress.note(
-        "`offline` is classical vision and a grammar, not a vision-language model: it needs no key and no weights."
-    )
+    progress.note("`offline` is classical vision and a grammar, not a vision-language model: no key, no weights.")
     progress.note("Two mistakes are planted, labelled INJECTED: the team has to catch them.")
     team = Team(
         model=model, method="team:paper", out=out, subscribers=(progress,), command=f"wonderful-team demo --seed {seed}"
@@ -59,11 +55,11 @@ def command(seed: int, out: Path | None, as_json: bool, open_page: bool) -> int:
     progress.header(team)
     world = make_world(WORLD, seed)
     try:
-        progress.note(f"{scene_name(WORLD, seed)}: {world.instruction.text}")
+        progress.task(scene_name(WORLD, seed), world.instruction)
         trial = rollout(team, world, replans=1, seed=seed, scene=scene_name(WORLD, seed))
     finally:
         world.close()
-    click.echo(cost_line(trial.usage, progress.seconds), err=True)
+    progress.end(trial.usage)
     planted = [injection.label for injection in injections if injection.struck]
     result = {**trial_json(trial), "injected": planted, "caught": caught(trial)}
     text = "\n".join([*_story(trial, planted), "", "next:", *(f"  {program()} {line}" for line in NEXT)])
@@ -73,17 +69,23 @@ def command(seed: int, out: Path | None, as_json: bool, open_page: bool) -> int:
     return finish("demo", text=text, result=result, as_json=as_json, code=trial_exit_code(trial), last_line=last)
 
 
-def swap_pictures(draft: PlanDraft, request: Request) -> PlanDraft | None:
-    """A wrong plan: the first two pictures that its first subgoal names change places."""
-    if not draft.subgoals:
+def planted_mistakes() -> tuple[Injection, Injection]:
+    """The two mistakes: each strikes one answer of the model, once."""
+    from wonderful_team.models.wrappers import Injection
+
+    return (
+        Injection(("DraftPlan",), wrong_bowl, f"the first plan fills the {WRONG} instead of the {RIGHT}"),
+        Injection(("GiveBox",), shift_first_box, "the first box lies beside its object"),
+    )
+
+
+def wrong_bowl(draft: PlanDraft, request: Request) -> PlanDraft | None:
+    """A wrong plan: its first subgoal and the targets speak of the other bowl."""
+    if not draft.subgoals or RIGHT not in draft.subgoals[0].text:
         return None
-    first = draft.subgoals[0]
-    names = list(dict.fromkeys(re.findall(r"\{\w+\}", first.text)))
-    if len(names) < 2:
-        return None
-    other = {names[0]: names[1], names[1]: names[0]}
-    text = re.sub(r"\{\w+\}", lambda match: other.get(match[0], match[0]), first.text)
-    return draft.model_copy(update={"subgoals": [first.model_copy(update={"text": text}), *draft.subgoals[1:]]})
+    first = draft.subgoals[0].model_copy(update={"text": draft.subgoals[0].text.replace(RIGHT, WRONG)})
+    targets = [target.model_copy(update={"words": target.words.replace(RIGHT, WRONG)}) for target in draft.targets]
+    return draft.model_copy(update={"subgoals": [first, *draft.subgoals[1:]], "targets": targets})
 
 
 def shift_first_box(answer: BoxAnswer, request: Request) -> BoxAnswer | None:
@@ -99,22 +101,24 @@ def caught(trial: RecordedTrial) -> dict[str, list[str]]:
     if not trial.plans:
         return {"verification": [], "checker": []}
     plan = trial.plans[0]
-    doubts = [f"{doubt.about}: {doubt.question} -> {doubt.answer}" for doubt in plan.questions if doubt.changed]
+    doubts = [f"{doubt.about}: {doubt.question}" for doubt in plan.questions if doubt.changed]
     verdicts = []
     for target, grounded in plan.grounded.items():
         told = [event for event in grounded.history if event.what in ("verdict", "move")]
         if any(event.provenance == "injected" for event in grounded.history):
-            verdicts += [f"{target}: {event.text}" for event in told]
+            verdicts += [f"{target} {grounded.target.words}: {event.text}" for event in told]
     return {"verification": doubts, "checker": verdicts}
 
 
 def _story(trial: RecordedTrial, planted: list[str]) -> list[str]:
+    """Each planted mistake with what caught it below, then the plan and how it went."""
     found = caught(trial)
-    lines = [f"INJECTED  {label}" for label in planted]
-    lines += [f"CAUGHT    Verification on {text}" for text in found["verification"]]
-    lines += [f"CAUGHT    {text}" for text in found["checker"]]
-    if trial.plans:
-        plan = trial.plans[-1]
-        words = {target.id: target.words for target in plan.targets}
-        lines += [f"PLAN      {action_line(planned, words)}" for planned in plan.actions]
+    plan = trial.plans[-1] if trial.plans else None
+    told = [[f"Verification, {text}" for text in found["verification"]], found["checker"]]
+    lines = []
+    for label, said in zip(planted, told, strict=False):
+        lines.append(f"INJECTED  {label}")
+        lines += [f"CAUGHT    {text if plan is None else said_of(plan.instruction, text)}" for text in said]
+    if plan is not None:
+        lines += [f"PLAN      {action_line(planned, words_of(plan))}" for planned in plan.actions]
     return [*lines, *trial_lines(trial)]

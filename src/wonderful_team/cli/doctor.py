@@ -7,6 +7,7 @@ import shutil
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
+from importlib.util import find_spec
 from pathlib import Path
 
 import click
@@ -14,7 +15,7 @@ import click
 from wonderful_team.cli.options import PATH
 from wonderful_team.cli.output import finish
 from wonderful_team.cli.report import program
-from wonderful_team.errors import ConfigError, WonderfulTeamError
+from wonderful_team.errors import ConfigError, WonderfulTeamError, extra_command
 
 KEYS = ("ANTHROPIC_API_KEY", "GEMINI_API_KEY", "GOOGLE_API_KEY", "OPENAI_API_KEY", "OPENROUTER_API_KEY")
 LEAST_FREE_MB = 200
@@ -39,6 +40,7 @@ def command(out: Path | None, as_json: bool) -> int:
     """Check this machine in a few seconds: versions, rendering, drawing, the sandbox, disk, keys."""
     checks: tuple[Callable[[], Finding], ...] = (
         _versions,
+        _extras,
         _rendering,
         _drawing,
         _sandbox,
@@ -50,7 +52,7 @@ def command(out: Path | None, as_json: bool) -> int:
     findings = [_guarded(check) for check in checks]
     ok = all(finding.ok for finding in findings)
     lines = [f"{'ok ' if item.ok else 'BAD'}  {item.name:<10} {item.text}" for item in findings]
-    lines += [f"     to mend {item.name}: {item.fix}" for item in findings if item.fix]
+    lines += [f"     to fix {item.name}: {item.fix}" for item in findings if item.fix]
     lines.append(f"ready: {program()} demo" if ok else "not ready: see the lines marked BAD")
     result = {"ready": ok, "findings": [vars(finding) for finding in findings]}
     return finish("doctor", text="\n".join(lines), result=result, as_json=as_json, code=0 if ok else 2)
@@ -62,7 +64,12 @@ def _guarded(check: Callable[[], Finding]) -> Finding:
         return check()
     except Exception as error:  # noqa: BLE001  whatever goes wrong here is what doctor is for
         name = getattr(check, "__name__", "disk").strip("_").replace("<lambda>", "disk")
-        return Finding(name, False, f"{type(error).__name__}: {error}", "pip install --force-reinstall wonderful-team")
+        return Finding(
+            name,
+            False,
+            f"{type(error).__name__}: {error}",
+            "run `make clean setup` in the checkout, or install the package again from where it came",
+        )
 
 
 def _versions() -> Finding:
@@ -72,6 +79,17 @@ def _versions() -> Finding:
     missing = [name for name, version in found.items() if version is None and name != "commit"]
     text = ", ".join(f"{name} {version}" for name, version in found.items() if version is not None)
     return Finding("versions", not missing, text, f"pip install {' '.join(missing)}" if missing else "")
+
+
+EXTRAS = {"vendors": "pydantic_ai", "report": "pandas matplotlib", "gym": "gymnasium", "ray": "ray"}
+"""Optional parts, and the modules that each brings."""
+
+
+def _extras() -> Finding:
+    """Optional: what is missing is no fault."""
+    missing = [name for name, modules in EXTRAS.items() if not all(map(find_spec, modules.split()))]
+    text = ", ".join(f"{name} {'not installed (optional)' if name in missing else 'installed'}" for name in EXTRAS)
+    return Finding("extras", True, text, "; ".join(f"{name}: {extra_command(name)}" for name in missing))
 
 
 def _rendering() -> Finding:
@@ -136,7 +154,8 @@ def _disk(out: Path | None) -> Finding:
         probe.write_text("x", encoding="utf-8")
         probe.unlink()
     except OSError as error:
-        raise ConfigError(f"runs folder {str(root)!r} cannot be written: {error.strerror}") from error
+        text = f"runs folder {str(root)!r} cannot be written: {error.strerror}"
+        return Finding("disk", False, text, "use --out DIR with a folder that you can write to")
     free_mb = shutil.disk_usage(root).free // 1_000_000
     text = f"{root}: writable, {free_mb:,} MB free"
     return Finding(

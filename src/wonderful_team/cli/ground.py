@@ -32,7 +32,7 @@ def command(
     from wonderful_team.observe import Observation
 
     observation = Observation.from_files(image)
-    progress = Progress()
+    progress = Progress(live=not common.as_json)
     team = Team(**common.team_arguments(), subscribers=(progress,))
     progress.header(team)
     made = team.ground(observation, descriptions, area)

@@ -10,6 +10,7 @@ import click
 from wonderful_team.cli.options import PATH
 from wonderful_team.cli.output import finish
 from wonderful_team.errors import ConfigError
+from wonderful_team.text import counted, visible
 
 KINDS = ("models", "worlds", "tasks", "suites", "methods", "prompts", "words", "runs")
 
@@ -19,9 +20,15 @@ KINDS = ("models", "worlds", "tasks", "suites", "methods", "prompts", "words", "
 @click.option(
     "--out", type=PATH, metavar="DIR", help="For runs: where they lie. For prompts: write them there, to edit."
 )
+@click.option("--html", type=PATH, metavar="FILE", help="For runs: write a table with pictures that can be filtered.")
+@click.option("--open", "open_page", is_flag=True, help="Open the table of --html.")
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON document instead of text.")
-def command(kind: str, out: Path | None, as_json: bool) -> int:
+def command(kind: str, out: Path | None, html: Path | None, open_page: bool, as_json: bool) -> int:
     """List models, worlds, tasks, suites, methods, prompts, words (that `offline` reads) or runs, each with a line of help."""
+    if kind != "runs" and (html is not None or open_page):
+        raise click.UsageError("--html and --open go with `list runs`")
+    if open_page and html is None:
+        raise click.UsageError("--open goes with --html FILE")
     lists: Mapping[str, Callable[[Path | None], dict[str, str]]] = {
         "models": _models,
         "worlds": _worlds,
@@ -35,7 +42,24 @@ def command(kind: str, out: Path | None, as_json: bool) -> int:
     found = lists[kind](out)
     width = max((len(name) for name in found), default=0)
     text = "\n".join(f"{name:<{width}}  {words}".rstrip() for name, words in found.items()) or f"no {kind}"
-    return finish("list", text=text, result={kind: found}, as_json=as_json, code=0)
+    last = "" if html is None else f"page: {_write_table(html, out, open_page)}"
+    result = {kind: found} if html is None else {kind: found, "page": str(html)}
+    return finish("list", text=text, result=result, as_json=as_json, code=0, last_line=last)
+
+
+def _write_table(path: Path, out: Path | None, open_page: bool) -> str:
+    from wonderful_team.cli.report import shown_path
+    from wonderful_team.runs import all_runs
+    from wonderful_team.runtime.page.runs import write_runs_table
+
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        write_runs_table(all_runs(out), path)
+    except OSError as error:
+        raise ConfigError(f"--html {str(path)!r}: {error.strerror or error}") from error
+    if open_page:
+        click.launch(path.resolve().as_uri())
+    return shown_path(path)
 
 
 def _models(out: Path | None) -> dict[str, str]:
@@ -65,15 +89,23 @@ def _suites(out: Path | None) -> dict[str, str]:
     from wonderful_team.studies import known_suites
 
     return {
-        name: f"{len(suite.tasks)} tasks; {suite.help or suite.protocol.name}{'; ' + suite.note if suite.note else ''}"
+        name: f"{counted(len(suite.tasks), 'task')}; {suite.help or suite.protocol.name}{'; ' + suite.note if suite.note else ''}"
         for name, suite in known_suites().items()
     }
 
 
 def _methods(out: Path | None) -> dict[str, str]:
+    from wonderful_team.planning.config import SETTINGS
     from wonderful_team.registry import METHODS
 
-    return {**METHODS, "FILE.py:NAME": "your own: a class with the Policy interface"}
+    def words(name: str, text: str) -> str:
+        setting = SETTINGS.get(name.rpartition(":")[2])
+        return text if setting is None else f"{text}: {setting.words}"
+
+    return {
+        **{name: words(name, text) for name, text in METHODS.items()},
+        "FILE.py:NAME": "your own: a class with the Policy interface",
+    }
 
 
 def _prompts(out: Path | None) -> dict[str, str]:
@@ -102,7 +134,7 @@ def _words(out: Path | None) -> dict[str, str]:
 
 def _runs(out: Path | None) -> dict[str, str]:
     from wonderful_team.runs import all_runs
-    from wonderful_team.runtime.page.write import read_record
+    from wonderful_team.runtime.record_schema import read_record
 
     found = {}
     for folder in all_runs(out):
@@ -112,7 +144,6 @@ def _runs(out: Path | None) -> dict[str, str]:
             found[folder.name] = "record unreadable"
             continue
         outcome = content.get("outcome") or {}
-        found[folder.name] = " ".join(str(outcome.get(key) or "") for key in ("outcome", "reason")).strip() or str(
-            content.get("state", "")
-        )
+        words = " ".join(str(outcome.get(key) or "") for key in ("outcome", "reason")).strip()
+        found[folder.name] = visible(words or str(content.get("state", "")))
     return found

@@ -3,13 +3,26 @@
 from __future__ import annotations
 
 import json
+import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import click
 
+from wonderful_team.text import visible, visible_json
+
 SCHEMA_VERSION = 1
+COLOURS: dict[str, dict[str, Any]] = {
+    "INJECTED": {"fg": "yellow", "bold": True},
+    "CAUGHT": {"fg": "green", "bold": True},
+    "SUCCESS": {"fg": "green", "bold": True},
+    "PLAN": {"bold": True},
+    "FAILURE": {"fg": "red", "bold": True},
+    "ERROR": {"fg": "red", "bold": True},
+    "REFUSED": {"fg": "red", "bold": True},
+}
+"""Colour of a line's first word on a terminal; click leaves colours out elsewhere. NO_COLOR switches them off."""
 
 
 @dataclass(frozen=True)
@@ -35,12 +48,17 @@ class Document:
             "result": dict(self.result),
             "error": None if self.error is None else dict(self.error),
         }
-        click.echo(json.dumps(held, indent=2, ensure_ascii=False))
+        click.echo(visible_json(json.dumps(held, indent=2, ensure_ascii=False)))
 
 
 def wants_json(argv: Sequence[str]) -> bool:
     """Whether the words of a command line ask for JSON."""
     return "--json" in argv
+
+
+def say(text: str, *, err: bool = False) -> None:
+    """Print text of one or several lines: what it holds of hidden characters is shown as escapes."""
+    click.echo("\n".join(map(_coloured, visible(text, layout=True).split("\n"))), err=err)
 
 
 def finish(command: str, *, text: str, result: Mapping[str, Any], as_json: bool, code: int, last_line: str = "") -> int:
@@ -52,7 +70,17 @@ def finish(command: str, *, text: str, result: Mapping[str, Any], as_json: bool,
     if as_json:
         Document(command, result).print(code)
     else:
-        click.echo(text)
+        say(text)
     if last_line:
-        click.echo(last_line, err=as_json)
+        say(last_line, err=as_json)
     return code
+
+
+def _coloured(line: str) -> str:
+    first, space, rest = line.partition(" ")
+    return click.style(first, **COLOURS[first]) + space + rest if first in COLOURS and not no_colour() else line
+
+
+def no_colour() -> bool:
+    """Whether the user wants no colours (https://no-color.org)."""
+    return bool(os.environ.get("NO_COLOR"))

@@ -66,13 +66,17 @@ def command(
     from wonderful_team.api import Team
     from wonderful_team.cli.progress import Progress
     from wonderful_team.cli.report import report_plan
+    from wonderful_team.errors import reading
     from wonderful_team.observe import Observation
     from wonderful_team.photos import instruction_with_pictures, read_keep_out
 
     *files, text = words
     observation = Observation.from_files(*files, depth=depth, camera=camera, corners=corners)
-    instruction = instruction_with_pictures(text, read_pairs(picture, "--picture"))
-    progress = Progress()
+    with reading("the instruction with its pictures"):
+        instruction = instruction_with_pictures(text, read_pairs(picture, "--picture"))
+    with reading("--keep-out", "[NAME=]x0,y0,x1,y1[px|m]"):
+        regions = read_keep_out(keep_out)
+    progress = Progress(live=not common.as_json)
     team = Team(**common.team_arguments(), subscribers=(progress,))
     progress.header(team)
     made = team.plan(
@@ -80,6 +84,6 @@ def command(
         instruction,
         vocabulary=vocabulary,
         until=until,  # type: ignore[arg-type]  # click has checked the choice
-        keep_out=read_keep_out(keep_out),
+        keep_out=regions,
     )
     return report_plan("plan", made, common, progress)

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import sys
 import time
 from collections.abc import Callable, Mapping
 from typing import Any, Protocol
 
 import click
 
+from wonderful_team.cli.live_line import LiveLine, moves
+from wonderful_team.cli.output import say
 from wonderful_team.interfaces import Event
-from wonderful_team.types import Usage
+from wonderful_team.text import counted, picture_names, spoken, visible
+from wonderful_team.types import Instruction, Usage
 
 NAME_WIDTH = 12
 
@@ -25,11 +29,12 @@ class Named(Protocol):
 
 
 class Progress:
-    """Prints what happens while it happens.
+    """Prints what happens while it happens; on a terminal a last line moves while models think.
 
     Args:
         write: Takes one line.
         clock: Seconds; its first reading is the start.
+        live: Whether a line may move at all; it never does where stderr is no terminal.
 
     Attributes:
         kept: How many answers came from the cache.
@@ -37,11 +42,34 @@ class Progress:
 
     def __init__(
         self,
-        write: Callable[[str], None] = lambda line: click.echo(line, err=True),
+        write: Callable[[str], None] = lambda line: say(line, err=True),
         clock: Callable[[], float] = time.monotonic,
+        *,
+        live: bool = True,
     ) -> None:
-        self._write, self._clock, self._start = write, clock, clock()
+        self._out, self._clock, self._start = write, clock, clock()
         self.kept = 0
+        self._pictures: dict[str, str] = {}
+        self._live = LiveLine(sys.stderr, clock) if live and moves(sys.stderr) else None
+        context = click.get_current_context(silent=True)
+        if context is not None:
+            # Also when the command ends with an error or with Ctrl-C.
+            context.call_on_close(self.close)
+
+    def close(self) -> None:
+        """Let the line that moves go away."""
+        if self._live is not None:
+            self._live.close()
+
+    def end(self, usage: Usage) -> None:
+        """The last line of progress: what it cost."""
+        self.close()
+        self._write(cost_line(usage, self.seconds, self.kept))
+
+    def _write(self, line: str) -> None:
+        if self._live is not None:
+            self._live.pause()
+        self._out(visible(spoken(line, self._pictures)))
 
     @property
     def seconds(self) -> float:
@@ -56,24 +84,34 @@ class Progress:
         """A line without a time."""
         self._write(text)
 
+    def task(self, scene: str, instruction: Instruction) -> None:
+        """Say what is to be done; from here on pictures are called by their number."""
+        self._pictures = picture_names(instruction.text, instruction.slots)
+        self._write(f"{scene}: {instruction.text}")
+
     def on_event(self, event: Event) -> None:
         """Print a line for the events that a person waits for."""
+        if self._live is not None:
+            self._live.on_event(event)
         match event.kind:
+            case "run" if isinstance(task := (event.content or {}).get("task"), Instruction):
+                self._pictures = picture_names(task.text, task.slots)
             case "stage":
                 self.line(event.name, _text(event.content))
             case "gate":
-                count = len(event.content.checks)
-                self.line(
-                    "gate", f"{event.name}: " + (f"admitted ({count} checks)" if event.content.admitted else "refused")
-                )
+                checks = counted(len(event.content.checks), "check")
+                self.line("gate", f"{event.name}: " + (f"admitted ({checks})" if event.content.admitted else "refused"))
             case "execute":
                 planned, report = event.content
                 self.line(
                     "execute",
-                    f"action {event.name} {planned.step.kind}: " + ("ran" if report.executed else f"{report.fault}"),
+                    f"action {event.name} {planned.step.kind}: " + report.words,
                 )
             case "warning":
                 self.line("warning", str(event.content))
+            case "crash":
+                for line in trace_lines(event.content.trace):
+                    self._write(f"    {line}")
             case "answer":
                 self.kept += event.content[1].provenance == "cached"
 
@@ -82,13 +120,25 @@ class Progress:
         self._write(f"{self.seconds:5.1f} s  {name:<{NAME_WIDTH}} {text}")
 
 
+TRACE_LINES = 6
+
+
+def trace_lines(trace: str) -> list[str]:
+    """The end of a traceback: where it was raised, and what."""
+    lines = trace.rstrip().splitlines()
+    return (
+        lines
+        if len(lines) <= TRACE_LINES
+        else [f"… {len(lines) - TRACE_LINES} lines more in log.txt", *lines[-TRACE_LINES:]]
+    )
+
+
 def cost_line(usage: Usage, seconds: float, kept: int = 0) -> str:
     """What it cost, in one line; `kept` answers came from the cache and cost nothing."""
-    parts = [f"{usage.calls} call{'s' if usage.calls != 1 else ''}", f"{usage.pictures} pictures"]
-    parts.append(f"{usage.tokens:,} tokens")
+    parts = [counted(usage.calls, "call"), counted(usage.pictures, "picture"), counted(usage.tokens, "token")]
     parts.append("cost unknown (no price for this model)" if usage.usd is None else f"{usage.usd:.4f} USD")
     if kept:
-        parts.append(f"{kept} answer{'s' * (kept != 1)} from the cache")
+        parts.append(f"{counted(kept, 'answer')} from the cache")
     return ", ".join([*parts, f"{seconds:.1f} s"])
 
 

@@ -12,7 +12,7 @@ import click
 
 from wonderful_team.cli.options import Common
 from wonderful_team.cli.output import finish
-from wonderful_team.cli.progress import Progress, cost_line
+from wonderful_team.cli.progress import Progress
 from wonderful_team.cli.wording import plan_exit_code, plan_lines, trial_exit_code, trial_lines
 from wonderful_team.jsonable import to_jsonable
 from wonderful_team.made import MadePlan, RecordedTrial, cost_json
@@ -20,7 +20,7 @@ from wonderful_team.made import MadePlan, RecordedTrial, cost_json
 
 def report_plan(command: str, made: MadePlan, common: Common, progress: Progress) -> int:
     """Print a plan; returns the exit code."""
-    click.echo(cost_line(made.usage, progress.seconds, progress.kept), err=True)
+    progress.end(made.usage)
     return end(command, plan_lines(made), made.to_json(), common, plan_exit_code(made), made.page)
 
 
@@ -28,7 +28,7 @@ def report_trial(
     command: str, trial: RecordedTrial, common: Common, progress: Progress, more: Mapping[str, Any]
 ) -> int:
     """Print a trial; returns the exit code."""
-    click.echo(cost_line(trial.usage, progress.seconds, progress.kept), err=True)
+    progress.end(trial.usage)
     return end(command, trial_lines(trial), {**trial_json(trial), **more}, common, trial_exit_code(trial), trial.page)
 
 
@@ -46,6 +46,7 @@ def trial_json(trial: RecordedTrial) -> dict[str, Any]:
         "refusals": [reason for gate in trial.gates for reason in gate.reasons],
         "executed": sum(report.executed for report in trial.reports),
         "verdicts": to_jsonable(trial.verdicts),
+        "warnings": list(trial.warnings),
         **cost_json(trial.usage, trial.usage_by_role, trial.folder),
     }
 

@@ -10,7 +10,9 @@ from typing import TYPE_CHECKING
 import click
 
 from wonderful_team.cli.options import PATH, Common, common
+from wonderful_team.cli.output import say
 from wonderful_team.runs import find_run
+from wonderful_team.text import counted
 
 if TYPE_CHECKING:
     from wonderful_team.runtime import Approver
@@ -61,11 +63,14 @@ def command(
     from wonderful_team.api import Team, make_world, rollout
     from wonderful_team.cli.progress import Progress
     from wonderful_team.cli.report import report_trial
-    from wonderful_team.cli.video import Film, check_video_name
+    from wonderful_team.cli.video import FRAME_S, Film, check_video_name
+    from wonderful_team.errors import reading
+    from wonderful_team.interfaces import Filmed
     from wonderful_team.methods import Method
     from wonderful_team.photos import read_keep_out
     from wonderful_team.registry import scene_name, team_way
     from wonderful_team.runtime import read_plan
+    from wonderful_team.runtime.user_code import close_world
 
     if video is not None:
         check_video_name(video)
@@ -73,14 +78,17 @@ def command(
     if looks is None:
         looks = LOOKS if replans and plan is None else 0
     kind = Method if team_way(common.method) is None else Team
-    regions = read_keep_out(keep_out)
-    progress = Progress()
+    with reading("--keep-out", "[NAME=]x0,y0,x1,y1[px|m]"):
+        regions = read_keep_out(keep_out)
+    progress = Progress(live=not common.as_json)
     method = kind(**common.team_arguments(), subscribers=(progress,))
     place = make_world(world, seed, instruction, regions)
     try:
         film = Film() if video is not None else None
+        if film is not None and isinstance(place, Filmed):
+            place.film(film.motion, FRAME_S)
         progress.header(method)
-        progress.note(f"{scene_name(world, seed)}: {place.instruction.text}")
+        progress.task(scene_name(world, seed), place.instruction)
         trial = rollout(
             method,
             place,
@@ -93,23 +101,23 @@ def command(
             subscribers=() if film is None else (film,),
         )
     finally:
-        place.close()
+        close_world(place, progress.note)
     if film is not None and video is not None:
         film.write(video)
-        progress.note(f"video: {video} ({len(film.frames)} pictures)")
+        progress.note(f"video: {video} ({counted(len(film.frames), 'picture')})")
     return report_trial("run", trial, common, progress, {"video": None if video is None else str(video)})
 
 
 def ask_person() -> Approver:
     """A function that shows a plan and asks for consent on the terminal; no answer is a no."""
-    from wonderful_team.cli.wording import action_line
+    from wonderful_team.cli.wording import action_line, words_of
     from wonderful_team.runtime import Approval, actions_id
 
     def ask(plan: Plan | None, actions: Sequence[PlannedAction], gate: GateReport) -> Approval | None:
-        words = {} if plan is None else {target.id: target.words for target in plan.targets}
-        click.echo(f"The gate admits {len(actions)} actions ({len(gate.checks)} checks):", err=True)
+        admitted, checks = counted(len(actions), "action"), counted(len(gate.checks), "check")
+        say(f"The gate admits {admitted} ({checks}):", err=True)
         for planned in actions:
-            click.echo(f"  {action_line(planned, words)}", err=True)
+            say(f"  {action_line(planned, words_of(plan))}", err=True)
         try:
             agreed = click.confirm("Run this plan?", default=False, err=True)
         except click.Abort as error:

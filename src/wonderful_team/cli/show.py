@@ -13,7 +13,8 @@ import click
 from wonderful_team.cli.options import PATH, read_models
 from wonderful_team.cli.output import finish
 from wonderful_team.cli.report import shown_path
-from wonderful_team.errors import UnknownNameError
+from wonderful_team.errors import UnknownNameError, reading
+from wonderful_team.text import counted, picture_names, spoken, visible
 
 
 @click.command(
@@ -70,7 +71,7 @@ def command(
 def _show(folder: Path, role: str | None, open_page: bool, as_json: bool) -> int:
     """The story, or one role's questions and answers."""
     from wonderful_team.runtime.page import write_page
-    from wonderful_team.runtime.page.write import read_record
+    from wonderful_team.runtime.record_schema import read_record
 
     record = read_record(folder)
     page = write_page(folder)
@@ -82,7 +83,8 @@ def _show(folder: Path, role: str | None, open_page: bool, as_json: bool) -> int
         chosen = [request for request in requests if request["role"] == role]
         text, result = "\n\n".join(_exchange(request) for request in chosen), {"requests": chosen}
     else:
-        text, result = "\n".join(_story(record)), record
+        with reading(f"{folder}: the record"):
+            text, result = "\n".join(_story(record)), record
     if open_page:
         click.launch(page.resolve().as_uri())
     last = f"page: {shown_path(page)}"
@@ -95,7 +97,7 @@ def _replay(folder: Path, tolerant: bool, as_json: bool) -> int:
 
     found = replay(folder, tolerant=tolerant)
     how = "SAME" if found.same else "DIFFERENT"
-    lines = [f"{how}  {found.answers} answers replayed"]
+    lines = [f"{how}  {counted(found.answers, 'answer')} replayed"]
     lines += [
         f"plan {number}: {then or '-'} {'=' if then == now else '->'} {now or '-'}"
         for number, (then, now) in enumerate(zip_longest(found.then, found.now), start=1)
@@ -113,13 +115,13 @@ def _replay(folder: Path, tolerant: bool, as_json: bool) -> int:
 
 def _branch(folder: Path, stage: str, words: Sequence[str], out: Path | None, as_json: bool, open_page: bool) -> int:
     """A new run that branches off this one."""
-    from wonderful_team.cli.progress import Progress, cost_line
+    from wonderful_team.cli.progress import Progress
     from wonderful_team.cli.report import trial_json
     from wonderful_team.cli.wording import plan_exit_code, plan_lines, trial_exit_code, trial_lines
     from wonderful_team.made import MadePlan
     from wonderful_team.replays import branch
 
-    progress = Progress()
+    progress = Progress(live=not as_json)
     command = shlex.join(["wonderful-team", *(click.get_current_context().obj or ())])
     # Where its parent lies, unless another place is asked for.
     made = branch(
@@ -130,7 +132,7 @@ def _branch(folder: Path, stage: str, words: Sequence[str], out: Path | None, as
         subscribers=(progress,),
         command=command,
     )
-    click.echo(cost_line(made.usage, progress.seconds, progress.kept), err=True)
+    progress.end(made.usage)
     if isinstance(made, MadePlan):
         lines, result, code = plan_lines(made), made.to_json(), plan_exit_code(made)
     else:
@@ -148,9 +150,10 @@ def _branch(folder: Path, stage: str, words: Sequence[str], out: Path | None, as
 def _diff(one: Path, two: Path, as_json: bool) -> int:
     """Two runs side by side; the exit code says nothing of the difference."""
     from wonderful_team.cli.diff import compare
-    from wonderful_team.runtime.page.write import read_record
+    from wonderful_team.runtime.record_schema import read_record
 
-    found = compare((one, read_record(one)), (two, read_record(two)))
+    with reading(f"{one}, {two}: the records"):
+        found = compare((one, read_record(one)), (two, read_record(two)))
     return finish("show", text="\n".join(found.lines()), result=found.to_json(), as_json=as_json, code=0)
 
 
@@ -158,16 +161,27 @@ def _story(content: Any) -> list[str]:
     """Instruction, outcome, then a line for each stage with its time."""
     planner, clock = content["planner"], content["clock"]
     outcome = content["outcome"] or {"outcome": content["state"], "stage": None, "reason": ""}
-    instruction = (planner["instruction"] or {}).get("text", "")
+    said = planner["instruction"] or {"text": "", "slots": {}}
+    names = picture_names(said["text"], said["slots"])
     stage = f" at {outcome['stage']}" if outcome.get("stage") else ""
-    lines = [instruction, f"{str(outcome['outcome']).upper()}{stage}  {outcome.get('reason') or ''}".rstrip()]
-    for told, seconds in zip(planner["stages"], clock["stages"], strict=False):
-        lines.append(f"{seconds:5.1f} s  {told['name']:<12} {told['text']}")
+    lines = [said["text"], f"{str(outcome['outcome']).upper()}{stage}  {outcome.get('reason') or ''}".rstrip()]
+    told = [(at_s, one["name"], one["text"]) for one, at_s in zip(planner["stages"], clock["stages"], strict=False)]
+    told += [(at_s, "gate", _gate_words(gate)) for gate, at_s in zip(planner["gates"], clock["gates"], strict=False)]
+    lines += [f"{at_s:5.1f} s  {name:<12} {text}" for at_s, name, text in sorted(told, key=lambda one: one[0])]
     lines += [f"warning: {text}" for text in planner["warnings"]]
-    lines.append(f"{len(planner['requests'])} requests; see --role " + "|".join(_roles(planner["requests"])))
+    asked = counted(len(planner["requests"]), "request")
+    lines.append(f"{asked}; see --role " + "|".join(_roles(planner["requests"])))
     if content.get("command"):
         lines.append(f"again: {content['command']}")
-    return lines
+    return [visible(spoken(line, names)) for line in lines]
+
+
+def _gate_words(gate: Any) -> str:
+    """One passage through the safety gate: admitted, or every reason against it."""
+    checks = counted(len(gate["checks"]), "check")
+    failed = [one for one in gate["checks"] if not one["ok"]]
+    reasons = "; ".join(f"{one['name']}: {one['value']} (limit {one['limit']})" for one in failed)
+    return f"{gate['where']}: " + (f"admitted ({checks})" if gate["admitted"] else f"refused ({checks}): {reasons}")
 
 
 def _roles(requests: Any) -> list[str]:

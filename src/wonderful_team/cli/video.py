@@ -1,7 +1,8 @@
-"""`--video`: an animation of what the world's cameras saw, one picture per observation."""
+"""`--video`: an animation of a run: what was observed, and the motion between, where the world can show it."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
@@ -13,7 +14,9 @@ from wonderful_team.interfaces import Event
 from wonderful_team.types import Observation
 
 FORMATS = {".webp": "WEBP", ".gif": "GIF", ".png": "PNG"}
-MS_PER_PICTURE = 900
+OBSERVED_MS, LAST_MS = 900, 2000
+FRAME_S = 0.1
+"""Time between two pictures of a motion, in the world and in the film [s]."""
 HEIGHT_PX = 320
 
 
@@ -26,28 +29,45 @@ def check_video_name(path: Path) -> None:
 
 
 class Film:
-    """Keeps every new picture that is observed, all views side by side."""
+    """Keeps every new picture that is observed and those of a motion, all views side by side.
+
+    Attributes:
+        frames: The pictures so far, shape (H, W, 3), uint8.
+        shown_ms: How long each is shown.
+    """
 
     def __init__(self) -> None:
         self.frames: list[Array] = []
+        self.shown_ms: list[int] = []
         self._last = ""
 
     def on_event(self, event: Event) -> None:
         """Keep the views of an observation that differs from the last."""
         if event.kind == "observe" and isinstance(event.content, Observation) and event.content.hash != self._last:
             self._last = event.content.hash
-            self.frames.append(_side_by_side(event.content))
+            self._keep({name: view.rgb for name, view in event.content.views.items()}, OBSERVED_MS)
+
+    def motion(self, views: Mapping[str, Array]) -> None:
+        """Keep a picture of a motion."""
+        self._keep(views, round(1000 * FRAME_S))
 
     def write(self, path: Path) -> None:
         """Write the animation."""
+        if not self.frames:
+            raise ConfigError(f"--video {str(path)!r}: the run ended before anything was seen")
         pictures = [Image.fromarray(frame) for frame in self.frames]
+        shown_ms = [*self.shown_ms[:-1], LAST_MS]
         kind = FORMATS[path.suffix.lower()]
-        pictures[0].save(path, kind, save_all=True, append_images=pictures[1:], duration=MS_PER_PICTURE, loop=0)
+        pictures[0].save(path, kind, save_all=True, append_images=pictures[1:], duration=shown_ms, loop=0)
+
+    def _keep(self, views: Mapping[str, Array], shown_ms: int) -> None:
+        self.frames.append(_side_by_side(views))
+        self.shown_ms.append(shown_ms)
 
 
-def _side_by_side(observation: Observation) -> Array:
-    views = []
-    for view in observation.views.values():
-        width = round(view.size_px[0] * HEIGHT_PX / view.size_px[1])
-        views.append(np.asarray(Image.fromarray(view.rgb).resize((width, HEIGHT_PX))))
-    return np.hstack(views)
+def _side_by_side(views: Mapping[str, Array]) -> Array:
+    scaled = []
+    for rgb in views.values():
+        width = round(rgb.shape[1] * HEIGHT_PX / rgb.shape[0])
+        scaled.append(np.asarray(Image.fromarray(rgb).resize((width, HEIGHT_PX))))
+    return np.hstack(scaled)

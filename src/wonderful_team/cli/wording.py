@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from wonderful_team.actions import Action, PickPlace, Place, Step, places_of
+from wonderful_team.actions import Action, MoveTo, Navigate, PickPlace, Place, Push, Step, Trajectory, places_of
+from wonderful_team.geometry.arrays import Array
 from wonderful_team.made import FoundTarget, MadePlan, RecordedTrial
-from wonderful_team.types import PlannedAction
+from wonderful_team.text import counted, picture_names, spoken, visible
+from wonderful_team.types import Instruction, Plan, PlannedAction
 
 EXIT_OF_STATUS: dict[str, int] = {
     "planned": 0,
@@ -35,7 +37,7 @@ def trial_exit_code(trial: RecordedTrial) -> int:
     if trial.outcome == "success" or (trial.outcome == "unscored" and trial.stage is None):
         return 0
     if trial.outcome == "error":
-        return 3
+        return 6 if trial.stage == "world" else 3
     if any(report.fault for report in trial.reports) and trial.stage == "execution":
         return 6
     status = trial.plans[-1].status if trial.plans else ""
@@ -44,46 +46,69 @@ def trial_exit_code(trial: RecordedTrial) -> int:
 
 def plan_lines(made: MadePlan) -> list[str]:
     """What `plan` prints: how it ended, then what would run."""
+    words = words_of(made.plan)
     lines = []
     if made.status not in ("planned", "grounded", "checked", "draft"):
         ending = made.status.replace("_", " ")
         said = made.message.removeprefix(f"{ending}: ").partition(" Choices: ")[0]
-        lines.append(f"{ending.upper()}  {said}")
-        lines += [f"  choice: {choice}" for choice in made.choices]
+        lines.append(f"{ending.upper()}  {said_of(made.plan.instruction, said)}")
+        lines += [f"  choice: {visible(choice)}" for choice in made.choices]
     elif made.message:
-        lines.append(made.message)
+        lines.append(said_of(made.plan.instruction, made.message))
     if made.gate is not None and not made.gate.admitted:
         lines += [f"REFUSED by the safety gate  {reason}" for reason in made.gate.reasons]
     if made.actions:
-        words = {target.id: target.words for target in made.targets}
         lines += [f"PLAN  {action_line(planned, words)}" for planned in made.actions]
     else:
-        lines += [f"GOAL  {subgoal.id} {subgoal.text}" for subgoal in made.subgoals]
-        lines += [target_line(target) for target in made.targets]
+        lines += [f"GOAL  {subgoal.id} {said_of(made.plan.instruction, subgoal.text)}" for subgoal in made.subgoals]
+        lines += [target_line(target, words) for target in made.targets]
     if made.status == "planned" and not made.verified:
         lines.append("note: Verification did not approve this plan (--strict refuses such plans)")
     return lines
 
 
-def target_line(target: FoundTarget) -> str:
-    """One target: id, words, box and points."""
+def said_of(instruction: Instruction, text: str) -> str:
+    """A model's or a person's words for a line of a terminal: pictures by number, hidden characters as escapes."""
+    return visible(spoken(text, picture_names(instruction.text, instruction.slots)))
+
+
+def words_of(plan: Plan | None) -> dict[str, str]:
+    """What each target of a plan is, by id, for `action_line`."""
+    return {} if plan is None else {target.id: said_of(plan.instruction, target.words) for target in plan.targets}
+
+
+def target_line(target: FoundTarget, words: Mapping[str, str]) -> str:
+    """One target: id, words (`words` by id), box and points."""
     box = "" if target.box_px is None else "  box ({:.0f}, {:.0f}, {:.0f}, {:.0f}) px".format(*target.box_px)
     points = "".join(f"  {role} ({x:.0f}, {y:.0f}) px" for role, (x, y) in target.points_px.items())
     status = {"gave_up": "gave up", "absent": "not here", "not_grounded": "not looked for"}.get(
         target.status, target.status
     )
-    return f"{target.id}  {target.words}  {status}{box}{points}"
+    return f"{target.id}  {words.get(target.id, visible(target.words))}  {status}{box}{points}"
 
 
 def action_line(planned: PlannedAction, words: Mapping[str, str]) -> str:
     """One action: kind, its targets (`words` by id) with their pixels, metres where there are any."""
     pixels = {(source.role, source.target): source.point_px for source in planned.sources}
+    alone = planned.sources[0].point_px if len(planned.sources) == 1 else None
     ends = []
     for role, place in places_of(planned.step):
-        point = pixels.get((role, place.target))
+        point = pixels.get((role, place.target), alone)
         at = "" if point is None else f" @ ({point[0]:.0f}, {point[1]:.0f}) px"
         ends.append(f"{_place_words(place)} {words.get(place.target, '')}".rstrip() + at)
-    return f"{planned.step.kind}  {'  ->  '.join(ends) or '-'}{_turn(planned.step)}{_metres(planned.action)}"
+    what = [_kind_words(planned.step), "  ->  ".join(ends), _turn(planned.step), _metres(planned.action)]
+    return "  ".join(part for part in what if part)
+
+
+def _kind_words(step: Step) -> str:
+    match step.kind:
+        case "move":
+            return f"move {getattr(step, 'height', '')}"
+        case "open" | "close":
+            return f"{step.kind} gripper" + (", tight" if getattr(step, "tight", False) else "")
+        case "follow":
+            return f"follow {visible(getattr(step, 'function', ''))}"
+    return step.kind
 
 
 def _place_words(place: Place) -> str:
@@ -95,24 +120,37 @@ def _place_words(place: Place) -> str:
 
 def _turn(step: Step) -> str:
     degrees = getattr(step, "rotate_deg", 0.0)
-    return f"  turned {degrees:+g} deg clockwise" if degrees else ""
+    return f"turned {degrees:+g} deg clockwise" if degrees else ""
 
 
 def _metres(action: Action | None) -> str:
-    if not isinstance(action, PickPlace):
-        return ""
-    pick, place = ("({:.3f}, {:.3f}, {:.3f})".format(*point) for point in (action.pick_m, action.place_m))
-    return f"  {pick} -> {place} m"
+    match action:
+        case PickPlace():
+            points: list[Array] = [action.pick_m, action.place_m]
+        case Push():
+            points = [action.start_m, action.end_m]
+        case MoveTo():
+            points = [action.pose.position_m]
+        case Trajectory():
+            points = list(action.waypoints_m)
+        case Navigate():
+            points = list(action.path_m)
+        case _:
+            return ""
+    shown = points if len(points) <= 2 else [points[0], points[-1]]
+    through = f" ({counted(len(points), 'point')})" if len(points) > 2 else ""
+    return " -> ".join(f"({', '.join(f'{value:.3f}' for value in point)})" for point in shown) + f" m{through}"
 
 
 def trial_lines(trial: RecordedTrial) -> list[str]:
     """What `run` prints: outcome, stage, reason, and how every subgoal went."""
     stage = f" at {trial.stage}" if trial.stage else ""
-    lines = [f"{trial.outcome.upper()}{stage}  {trial.reason}"]
+    lines = [f"{trial.outcome.upper()}{stage}  {visible(trial.reason)}"]
     lines += [
-        f"  {verdict.subgoal} {verdict.status.replace('_', ' ')}" + (f": {verdict.cause}" if verdict.cause else "")
+        f"  {verdict.subgoal} {verdict.status.replace('_', ' ')}"
+        + (f": {visible(verdict.cause)}" if verdict.cause else "")
         for verdict in trial.verdicts
     ]
     executed = sum(report.executed for report in trial.reports)
-    lines.append(f"  {len(trial.plans)} plan{'s' * (len(trial.plans) != 1)}, {executed} actions executed")
+    lines.append(f"  {counted(len(trial.plans), 'plan')}, {counted(executed, 'action')} executed")
     return lines

@@ -16,6 +16,7 @@ from wonderful_team.evals.trials import TrialResult
 from wonderful_team.geometry.arrays import Array
 from wonderful_team.images import to_png
 from wonderful_team.interfaces import World
+from wonderful_team.text import counted
 from wonderful_team.types import View
 
 SEEDS = 20
@@ -67,7 +68,7 @@ def check_looks(make: Callable[[int], World], seeds: Sequence[int], findings: Fi
     for problem, seed in problems.items():
         findings.bad.append(f"{problem} (first at seed {seed})")
     if not problems:
-        findings.good.append(f"shapes and units of all views are right on {len(seeds)} seeds")
+        findings.good.append(f"shapes and units of all views are right on {counted(len(seeds), 'seed')}")
     again = make(seeds[0])
     try:
         same = again.observe().hash == hashes[0]
@@ -81,8 +82,8 @@ def check_looks(make: Callable[[int], World], seeds: Sequence[int], findings: Fi
     different = len(set(hashes))
     findings.add(
         different > len(seeds) // 2 or len(seeds) == 1,
-        f"{different} different scenes on {len(seeds)} seeds",
-        f"only {different} different scenes on {len(seeds)} seeds: the seed is not used",
+        f"{counted(different, 'different scene')} on {counted(len(seeds), 'seed')}",
+        f"only {counted(different, 'different scene')} on {counted(len(seeds), 'seed')}: the seed is not used",
     )
     return tiles
 
@@ -125,7 +126,7 @@ def check_controls(results: dict[str, list[TrialResult]], findings: Findings) ->
         mine = results.get(name, [])
         errors = [one for one in mine if one.outcome == "error"]
         if errors:
-            findings.bad.append(f"{name}: {len(errors)} of {len(mine)} trials broke: {errors[0].reason}")
+            findings.bad.append(f"{name}: {len(errors)} of {counted(len(mine), 'trial')} broke: {errors[0].reason}")
         scored = [one for one in mine if one.outcome in ("success", "failure")]
         counts[name] = (sum(one.outcome == "success" for one in scored), len(scored))
         if mine and not scored:

@@ -24,6 +24,8 @@ from wonderful_team.actions import (
 from wonderful_team.errors import ConfigError
 from wonderful_team.evals.names import CONTROLS, NO_MODEL, NO_OP, ORACLE, RANDOM
 from wonderful_team.interfaces import Act, Decision, Done, Policy, Privileged, Situation
+from wonderful_team.runtime.keep_out import table_height_m
+from wonderful_team.runtime.relief import Relief
 from wonderful_team.types import Limits, PlannedAction
 
 
@@ -42,7 +44,7 @@ class OracleControl:
         if not actions or situation.refused is not None or self._count >= 50:
             return Done("the oracle has nothing left to do")
         self._count += 1
-        return Act((planned(actions[0], self._count),))
+        return Act((planned(at_seen_height(actions[0], situation), self._count),))
 
 
 class NoOpControl:
@@ -70,7 +72,8 @@ class RandomControl:
         if not kinds:
             return Done(f"the random control knows pick_place and push; this world runs {situation.vocabulary.kinds}")
         chosen = [kinds[int(self._rng.integers(len(kinds)))] for _ in range(self._left)]
-        return Act(tuple(planned(self._action(k, situation.limits), n) for n, k in enumerate(chosen, start=1)))
+        actions = [at_seen_height(self._action(kind, situation.limits), situation) for kind in chosen]
+        return Act(tuple(planned(action, number) for number, action in enumerate(actions, start=1)))
 
     def _action(self, kind: str, limits: Limits) -> Action:
         low, high = np.array(limits.low_m), np.array(limits.high_m)
@@ -96,6 +99,21 @@ def make_control(name: str, seed: int, truth: Privileged | None) -> Policy:
     return RandomControl(seed, len(list(truth.oracle())))
 
 
+def at_seen_height(action: Action, situation: Situation) -> Action:
+    """The same pick and place, at the heights of the surfaces that depth shows there: truth and chance know none."""
+    view = situation.observation.main
+    relief = Relief.of(view) if isinstance(action, PickPlace) else None
+    if relief is None or not isinstance(action, PickPlace):
+        return action
+    own = relief.patch(action.pick_m[:2], table_height_m(situation.limits))
+    found = relief.surface_m(action.pick_m[:2]), relief.surface_m(action.place_m[:2], own)
+    ends = []
+    for point, height in zip((action.pick_m, action.place_m), found, strict=True):
+        low, high = situation.limits.low_m[2], situation.limits.high_m[2]
+        ends.append(np.append(point[:2], point[2] if height is None else np.clip(height, low, high)))
+    return PickPlace(ends[0], ends[1], action.yaw_rad)
+
+
 def planned(action: Action, number: int) -> PlannedAction:
     """An action as a method hands it over; its step names what truth knows and no picture shows."""
     return PlannedAction(_step(action, f"G{number}"), action)
@@ -105,11 +123,12 @@ def _step(action: Action, subgoal: str) -> Step:
     thing, place = "(from truth)", At("(from truth)")
     match action.kind:
         case "pick_place":
-            return PickPlaceStep(subgoal, thing, place)
+            return PickPlaceStep(subgoal, thing, place, float(np.degrees(-getattr(action, "yaw_rad", 0.0))))
         case "push":
             return PushStep(subgoal, Beside(thing, "left"), place)
         case "gripper":
-            return OpenStep(subgoal) if getattr(action, "state", "") == "open" else CloseStep(subgoal)
+            state = getattr(action, "state", "")
+            return OpenStep(subgoal) if state == "open" else CloseStep(subgoal, tight=state == "tight")
         case "rotate_gripper":
             return RotateGripperStep(subgoal, float(np.degrees(-getattr(action, "yaw_rad", 0.0))))
         case "home":

@@ -10,6 +10,7 @@ from wonderful_team.evals.names import CONTROLS
 from wonderful_team.evals.pairing import visible_gap
 from wonderful_team.evals.plan import StudyPlan
 from wonderful_team.evals.trials import Condition, Row, TrialResult
+from wonderful_team.text import counted
 
 DISCORDANT = 0.3
 """Share of pairs in which just one method succeeds that the reckoning of visible gaps assumes."""
@@ -97,7 +98,7 @@ class Estimate:
             else f"{60 * self.hours:.1f} min"
         )
         rows.append(
-            f"in all: {sum(line.trials for line in self.lines)} trials ({self.ended} have ended), "
+            f"in all: {counted(sum(line.trials for line in self.lines), 'trial')} ({self.ended} have ended), "
             f"{self._with_bounds('calls')}, {self._with_bounds('tokens')}, "
             f"{_number(self.total('usd'), 2)} USD, {hours} with {self.workers} at a time"
         )

@@ -13,7 +13,7 @@ from pathlib import Path
 
 from pydantic import BaseModel, Field, ValidationError
 
-from wonderful_team.errors import ConfigError
+from wonderful_team.errors import ConfigError, reading
 from wonderful_team.evals.trials import TrialResult
 from wonderful_team.geometry import Box
 from wonderful_team.pictures import Point
@@ -76,6 +76,11 @@ def read_photos(path: str) -> tuple[PhotoScene, ...]:
     Raises:
         ConfigError: Not such a file, an empty box, a box without words, or a picture that is missing.
     """
+    with reading(f"photos {path!r}", "COCO JSON"):
+        return _read_photos(path)
+
+
+def _read_photos(path: str) -> tuple[PhotoScene, ...]:
     file = Path(path)
     try:
         coco = _Coco.model_validate_json(file.read_bytes())

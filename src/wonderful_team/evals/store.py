@@ -14,7 +14,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
-from wonderful_team.errors import ConfigError
+from wonderful_team.errors import ConfigError, reading
 from wonderful_team.evals.claims import LEASE_S, Owner, is_free
 from wonderful_team.evals.names import NO_MODEL
 from wonderful_team.evals.places import network_file_system
@@ -110,7 +110,9 @@ class Store:
 
     def requests(self) -> list[dict[str, Any]]:
         """What was asked for, study by study, oldest first."""
-        return [json.loads(row[0]) for row in self._base.execute("SELECT request FROM studies ORDER BY started, rowid")]
+        with reading(f"store {str(self.path)!r}", "a store that bench wrote and nothing changed"):
+            rows = self._base.execute("SELECT request FROM studies ORDER BY started, rowid").fetchall()
+            return [json.loads(row[0]) for row in rows]
 
     # -- handing out work --------------------------------------------------------------------------------------------
 
@@ -298,8 +300,9 @@ class Store:
             "SELECT t.*, (SELECT COUNT(*) FROM discarded d WHERE d.trial = t.id) AS lost "
             f"FROM trials t {chosen} ORDER BY t.id"
         )
-        found: Sequence[sqlite3.Row] = self._base.execute(query, {"study": study}).fetchall()
-        return [Row(_spec(row), _result(row) if row["state"] == "done" else None, row["lost"]) for row in found]
+        with reading(f"store {str(self.path)!r}", "a store that bench wrote and nothing changed"):
+            found: Sequence[sqlite3.Row] = self._base.execute(query, {"study": study}).fetchall()
+            return [Row(_spec(row), _result(row) if row["state"] == "done" else None, row["lost"]) for row in found]
 
 
 class Claim:

@@ -20,6 +20,7 @@ from wonderful_team.evals.spending import CapReached, Spending
 from wonderful_team.evals.store import Store
 from wonderful_team.evals.trials import RunSettings, SpendingCaps, TrialRunner
 from wonderful_team.evals.workers import POLL_S, Work, work_until_done, worker_main
+from wonderful_team.text import counted
 
 STARTS_THAT_FAIL = 3
 _THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
@@ -53,7 +54,7 @@ class Standing:
         counts = "  ".join(f"{name} {count}" for name, count in sorted(self.outcomes.items(), reverse=True))
         money = f"{self.spent.usd:.2f} USD" if not self.spent.unpriced else f"{self.spent.usd:.2f} USD + unknown"
         left = "" if self.seconds_left is None else f"  {_duration(self.seconds_left)} left"
-        return f"{self.done}/{self.total}  {counts}  {self.spent.calls} calls  {money}  {rate}{left}"
+        return f"{self.done}/{self.total}  {counts}  {counted(self.spent.calls, 'call')}  {money}  {rate}{left}"
 
 
 @dataclass(frozen=True)
@@ -111,7 +112,7 @@ def run_study(
             report(f"warning: {warning}", None)
         opened.want(plan.name, plan.trials(), plan.request())
         if retry_errors and (again := opened.retry_errors(plan.name)):
-            report(f"{again} trials that ended as errors are tried again", None)
+            report(f"{counted(again, 'trial')} that ended in an error: tried again", None)
         watch = Watch(opened, plan.name, report)
         work = Work(opened.path, plan.name, runner, settings, caps, deadline_s, at_once)
         report("", watch.standing())
@@ -128,7 +129,8 @@ def run_study(
         report("", watch.standing())
         if caps.usd is not None and (unpriced := watch.standing().spent.unpriced):
             report(
-                f"warning: {unpriced} trials have no known price: the cap of {caps.usd:g} USD does not see them", None
+                f"warning: {counted(unpriced, 'trial')} without a known price: the cap of {caps.usd:g} USD does not see them",
+                None,
             )
         return Finish(watch.standing(), watch.why(caps, deadline_s))
 
@@ -176,7 +178,7 @@ class Watch:
             return str(error)
         if deadline_s is not None and time.time() >= deadline_s:
             return f"the study's cap of {caps.seconds:g} seconds is reached"
-        return f"{self.missing} trials have not ended; the same command goes on with them"
+        return f"not ended yet: {counted(self.missing, 'trial')}; the same command goes on with them"
 
 
 def _run_processes(work: Work, watch: Watch, jobs: int, calls_at_once: int | None) -> None:

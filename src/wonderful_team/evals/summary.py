@@ -12,6 +12,7 @@ from wonderful_team.evals.pairing import Pair, pair
 from wonderful_team.evals.plan import OFFLINE
 from wonderful_team.evals.statistics import Rate
 from wonderful_team.evals.trials import DEVELOPMENT_BELOW, Condition, Row, TrialResult
+from wonderful_team.text import counted
 
 SENTENCES = 3
 TOO_MANY_ERRORS = 0.02
@@ -222,7 +223,7 @@ class Summary:
             found += self._errors(condition)
             whole = self.cell(condition)
             if whole.missing:
-                found.append(f"{condition.label}: {whole.missing} trials have not ended")
+                found.append(f"{condition.label}: not ended yet: {counted(whole.missing, 'trial')}")
         found += _origins([self.cell(one) for one in self.compared])
         development = sorted(
             {

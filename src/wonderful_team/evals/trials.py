@@ -170,6 +170,8 @@ class RunSettings:
         prompts: Folder with own words for the team's roles.
         limiter: Shared by all workers.
         extra: Settings of the top that evals passes through unread.
+        named_code: The FILE.py:NAME that the caller named; a trial out of a store may name no other. None: trials come from
+            the caller itself.
     """
 
     caps: SpendingCaps = SpendingCaps()
@@ -179,6 +181,7 @@ class RunSettings:
     prompts: Path | None = None
     limiter: Limiter | None = None
     extra: Mapping[str, Any] = field(default_factory=dict)
+    named_code: frozenset[str] | None = None
 
     def __post_init__(self) -> None:
         if self.pages not in ("all", "failures", "none"):

@@ -61,6 +61,14 @@ class PinholeCamera:
         K = frozen_array(self.K, (3, 3), "K")
         if K[0, 0] <= 0 or K[1, 1] <= 0:
             raise ValueError(f"K: focal lengths must be positive, got {K[0, 0]} and {K[1, 1]}")
+        if K[1, 0] != 0 or not np.array_equal(K[2], (0.0, 0.0, 1.0)):
+            raise ValueError(f"K: expected [[fx, skew, cx], [0, fy, cy], [0, 0, 1]] [px], got {K.tolist()}")
+        if not isinstance(self.T_base_cam, Pose):
+            given = np.shape(self.T_base_cam) if isinstance(self.T_base_cam, np.ndarray | list | tuple) else ""
+            raise TypeError(
+                f"T_base_cam: expected a Pose, got {type(self.T_base_cam).__name__}{f' of shape {given}' if given else ''}; "
+                "valid: Pose(position_m, quaternion_wxyz), or Pose.from_matrix(T) for a 4 x 4 matrix"
+            )
         object.__setattr__(self, "K", K)
 
     def project(self, points_m: ArrayLike) -> Array:
@@ -128,7 +136,8 @@ class PlanarCamera:
     """A homography between picture and table, fitted to four marked corners; knows the table plane only.
 
     Attributes:
-        H_table_px: Maps homogeneous pixels to homogeneous (x, y) on the table [m], shape (3, 3).
+        H_table_px: Maps homogeneous pixels to homogeneous (x, y) on the table [m], shape (3, 3); its third row gives
+            positive numbers for what lies before the camera and negative ones beyond the table's horizon.
         plane_z_m: Height of that plane in the base frame [m].
     """
 
@@ -146,7 +155,7 @@ class PlanarCamera:
         """Fit to four corners, in the same order: pixels, shape (4, 2), and table points, shape (4, 2) [m].
 
         Raises:
-            ConfigError: Three corners lie on one line, so the corners do not fix the table.
+            ConfigError: Three corners lie on one line, or no camera sees the corners so: they do not fix the table.
         """
         pixels, metres = as_points(corners_px, 2, "corners_px"), as_points(corners_m, 2, "corners_m")
         if len(pixels) != 4 or len(metres) != 4:
@@ -165,12 +174,21 @@ class PlanarCamera:
                     )
         # The solution of the homogeneous system is the last right singular vector.
         matrix = np.linalg.svd(np.array(rows))[2][-1].reshape(3, 3)
-        return cls(matrix / np.linalg.norm(matrix), plane_z_m)
+        matrix = matrix / np.linalg.norm(matrix)
+        scale = np.column_stack([pixels, np.ones(4)]) @ matrix[2]
+        if scale.min() <= 0 <= scale.max():
+            raise ConfigError(
+                f"corners: no camera sees a table with corners {metres.tolist()} m at {pixels.tolist()} px; "
+                "give them in the same order round the table"
+            )
+        return cls(matrix * np.sign(scale[0]), plane_z_m)
 
     def project(self, points_m: ArrayLike) -> Array:
         points = as_points(points_m, 3, "points_m")
         flat = np.column_stack([points[:, :2], np.ones(len(points))])
         pixels = np.linalg.solve(self.H_table_px, flat.T).T
+        if not (pixels[:, 2] > 1e-12).all():
+            raise ValueError("points_m: a point lies behind the camera")
         return np.asarray(pixels[:, :2] / pixels[:, 2:])
 
     def deproject(self, points_px: ArrayLike, depth_m: ArrayLike) -> Array:
@@ -179,6 +197,9 @@ class PlanarCamera:
     def on_plane(self, points_px: ArrayLike, z_m: float) -> Array:
         points = as_points(points_px, 2, "points_px")
         table = np.column_stack([points, np.ones(len(points))]) @ self.H_table_px.T
+        if not (table[:, 2] > 1e-12).all():
+            beyond = points[~(table[:, 2] > 1e-12)].round(1).tolist()
+            raise ValueError(f"pixels {beyond} lie above the table's horizon: their rays never meet the table")
         flat = table[:, :2] / table[:, 2:]
         # A homography knows nothing of height: points above the table are read as if they lay on it.
         return np.column_stack([flat, np.full(len(points), z_m)])

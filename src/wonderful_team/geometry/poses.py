@@ -31,6 +31,8 @@ class Pose:
 
     def __post_init__(self) -> None:
         quaternion = np.asarray(self.quaternion_wxyz, dtype=np.float64)
+        if quaternion.shape != (4,):
+            raise ValueError(f"quaternion_wxyz: expected shape (4,), got {quaternion.shape}")
         norm = float(np.linalg.norm(quaternion))
         if norm < 1e-9:
             raise ValueError("quaternion_wxyz: length must not be zero")
@@ -41,6 +43,30 @@ class Pose:
     def at(cls, position_m: ArrayLike, yaw_rad: float = 0.0) -> Pose:
         """A pose turned by `yaw_rad` about the vertical axis."""
         return cls(np.asarray(position_m), np.array([math.cos(yaw_rad / 2), 0, 0, math.sin(yaw_rad / 2)]))
+
+    @classmethod
+    def from_matrix(cls, matrix: ArrayLike) -> Pose:
+        """The pose that a homogeneous matrix, shape (4, 4), describes.
+
+        Raises:
+            ValueError: Another shape or last row, or its 3 x 3 part is not a rotation.
+        """
+        T = np.array(matrix, dtype=np.float64)
+        if T.shape != (4, 4) or not np.allclose(T[3], (0, 0, 0, 1)):
+            raise ValueError(f"expected a 4 x 4 pose with last row 0 0 0 1, got shape {T.shape}")
+        r = T[:3, :3]
+        if not np.allclose(r @ r.T, np.eye(3), atol=1e-3) or np.linalg.det(r) < 0:
+            raise ValueError("its 3 x 3 part is not a rotation")
+        # The quaternion is the eigenvector of the largest eigenvalue (Bar-Itzhack 2000): well conditioned everywhere.
+        profile = np.array(
+            [
+                [r[0, 0] + r[1, 1] + r[2, 2], r[2, 1] - r[1, 2], r[0, 2] - r[2, 0], r[1, 0] - r[0, 1]],
+                [r[2, 1] - r[1, 2], r[0, 0] - r[1, 1] - r[2, 2], r[0, 1] + r[1, 0], r[0, 2] + r[2, 0]],
+                [r[0, 2] - r[2, 0], r[0, 1] + r[1, 0], r[1, 1] - r[0, 0] - r[2, 2], r[1, 2] + r[2, 1]],
+                [r[1, 0] - r[0, 1], r[0, 2] + r[2, 0], r[1, 2] + r[2, 1], r[2, 2] - r[0, 0] - r[1, 1]],
+            ]
+        )
+        return cls(T[:3, 3], np.linalg.eigh(profile)[1][:, -1])
 
     @property
     def rotation(self) -> Array:

@@ -1,12 +1,13 @@
 """Views become pictures with marks, and pictures become pixels to look at."""
 
 from wonderful_team.images.axes import Ticks
+from wonderful_team.images.calibration import load_depth
 from wonderful_team.images.candidates import beside_points, inside_points
 from wonderful_team.images.compare import CHANGED, region_change
 from wonderful_team.images.cut import Edge, StripSide, crop, crop_pair, edge_strips, whole
 from wonderful_team.images.draw import draw
 from wonderful_team.images.encode import to_png
-from wonderful_team.images.load import load_depth, load_picture
+from wonderful_team.images.load import load_picture
 from wonderful_team.images.overview import action_arrows, overview
 from wonderful_team.images.resample import picture_of, resampled, resampled_depth, valid_mask
 

@@ -28,6 +28,7 @@ from wonderful_team.images.draw import candidate_radius, draw_box, point_reach
 from wonderful_team.images.lettering import plain
 from wonderful_team.images.placing import PointLabel, label_box, label_points, paint_plates
 from wonderful_team.pictures import BoxStyle, Picture, Point
+from wonderful_team.text import spoken
 from wonderful_team.types import GroundedTarget, KeepOut, Limits, PlannedAction, View
 
 TARGET_COLOURS: tuple[Colour, ...] = (ORANGE, SKY, YELLOW, PURPLE, GREEN, VERMILLION)
@@ -39,6 +40,7 @@ def overview(
     shown: View | Picture,
     grounded: Mapping[str, GroundedTarget] | Iterable[GroundedTarget] = (),
     *,
+    names: Mapping[str, str] | None = None,
     arrows: Sequence[Sequence[Point]] = (),
     keep_out: Sequence[KeepOut] = (),
     workspace: Limits | Box | None = None,
@@ -49,6 +51,7 @@ def overview(
     Args:
         shown: The main view, or a picture cut from it.
         grounded: Targets with boxes and points; those that were not found are left out.
+        names: What the instruction's pictures are called, where a target's words speak of one as {name}.
         arrows: Moves in order, each through two or more points; `action_arrows` makes them from actions.
         keep_out: Regions nothing may enter.
         workspace: Limits in metres, or a box in view px, to outline.
@@ -74,9 +77,13 @@ def overview(
         if item.box is not None:
             box = picture.frame.box_to_picture(item.box)
             draw_box(canvas, box.corners, "target", colour)
-            named.append(_Named(box, f"{item.target.id} {item.target.words}", colour, INK))
-    _draw_arrows(canvas, [_arc(_points(picture, arrow)) for arrow in arrows if len(arrow) > 1])
-    labels = [label for item, colour in found for label in _draw_points(canvas, picture, item, colour)]
+            named.append(_Named(box, _name(item, names), colour, INK))
+    paths = [_points(picture, arrow) for arrow in arrows if len(arrow) > 1]
+    labels = _draw_arrows(canvas, [_arc(path) for path in paths])
+    for item, colour in found:
+        labels += _draw_points(canvas, picture, item, colour, _name(item, names), bool(paths))
+    for path in paths:
+        canvas.cross(path[-1], point_reach(canvas), GREEN)
     paint_plates(canvas, label_points(canvas, labels))
     for entry in named:
         label_box(canvas, entry.box, plain(entry.text), back=entry.back, colour=entry.colour)
@@ -116,32 +123,42 @@ def _regions(
         yield item, "keep_out", item.name, 0.0
 
 
-def _draw_arrows(canvas: Canvas, paths: Sequence[Sequence[Point]]) -> None:
-    """All arrows, then their numbers, each in the middle of its arrow."""
+def _draw_arrows(canvas: Canvas, paths: Sequence[Sequence[Point]]) -> list[PointLabel]:
+    """All arrows; returns their numbers, to be placed beside the middle of each, off the line and its head."""
     for path in paths:
         canvas.polyline(path, GREEN, width_px=canvas.stroke_px + 1, halo=WHITE)
         canvas.arrow_head(path[-2], path[-1], GREEN, 6.5 * canvas.stroke_px)
-        for point in path[::2]:
-            canvas.keep_clear(point, canvas.stroke_px)
-    for number, path in enumerate(paths, start=1):
-        width, height = canvas.plate_size(str(number))
-        x, y = path[len(path) // 2] if len(path) > 2 else ((path[0][0] + path[1][0]) / 2, (path[0][1] + path[1][1]) / 2)
-        canvas.plate(str(number), round(x - width / 2), round(y - height / 2), back=GREEN, alpha=1.0)
+        for point in path:
+            canvas.keep_clear(point, 1.5 * canvas.stroke_px)
+        canvas.keep_clear(path[-1], 6.5 * canvas.stroke_px)
+    middles = [
+        path[len(path) // 2] if len(path) > 2 else ((path[0][0] + path[1][0]) / 2, (path[0][1] + path[1][1]) / 2)
+        for path in paths
+    ]
+    return [PointLabel(at, str(number), 2.0 * canvas.stroke_px, GREEN) for number, at in enumerate(middles, start=1)]
 
 
-def _draw_points(canvas: Canvas, picture: Picture, item: GroundedTarget, colour: Colour) -> list[PointLabel]:
-    """Where something is taken: a dot. Where something goes: a cross. A target without a box is named at its points."""
+def _name(item: GroundedTarget, names: Mapping[str, str] | None) -> str:
+    return f"{item.target.id} {spoken(item.target.words, names or {})}"
+
+
+def _draw_points(
+    canvas: Canvas, picture: Picture, item: GroundedTarget, colour: Colour, name: str, moved: bool
+) -> list[PointLabel]:
+    """Where something is taken: a dot. Where it goes: a cross; once something moves, the arrows' ends get it instead.
+
+    A target without a box is named at its points.
+    """
     labels = []
     for role, point in item.points.items():
         (at,) = _points(picture, [point])
-        if role in ("place", "push_end"):
+        if role in ("place", "push_end") and not moved:
             canvas.cross(at, point_reach(canvas), colour)
-        else:
+        elif role not in ("place", "push_end"):
             canvas.disc(at, candidate_radius(canvas) * 1.2, BLUE, WHITE)
         canvas.keep_clear(at, candidate_radius(canvas) * 1.4)
         if item.box is None:
-            text = plain(f"{item.target.id} {item.target.words}")
-            labels.append(PointLabel(at, text, point_reach(canvas), colour, INK))
+            labels.append(PointLabel(at, plain(name), point_reach(canvas), colour, INK))
     return labels
 
 
@@ -151,7 +168,10 @@ def _outline(region: KeepOut, camera: Camera | None, z_m: float) -> tuple[Point,
         return region.box.corners
     if camera is None:
         return None
-    seen = camera.project([(x, y, z_m) for x, y in region.box.corners])
+    try:
+        seen = camera.project([(x, y, z_m) for x, y in region.box.corners])
+    except ValueError:
+        return None  # a part of it lies behind the camera
     return tuple((float(x), float(y)) for x, y in seen) if np.isfinite(seen).all() else None
 
 

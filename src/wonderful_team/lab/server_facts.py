@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterator, Mapping
 from typing import Any
+
+from wonderful_team.models.providers.bounded import ReplyTooLargeError, fetch_json
 
 _NAMES = (
     "max_model_len",
@@ -59,10 +60,9 @@ def _fetched(
 
     headers = {} if not key else {"x-goog-api-key": key} if api == "google" else {"Authorization": f"Bearer {key}"}
     try:
-        with httpx2.Client(timeout=timeout_s, trust_env=not direct, follow_redirects=False) as client:
-            reply = client.request(method, url, headers=headers, json=body)
-            return json.loads(reply.text) if reply.status_code == 200 else None
-    except (httpx2.HTTPError, ValueError):
+        status, found = fetch_json(method, url, headers=headers, timeout_s=timeout_s, direct=direct, body=body)
+        return found if status == 200 else None
+    except (httpx2.HTTPError, ReplyTooLargeError):
         # Most services have only one of these places.
         return None
 

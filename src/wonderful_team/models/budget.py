@@ -8,10 +8,9 @@ import math
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
-from typing import Protocol, runtime_checkable
 
 from wonderful_team.errors import BudgetReached, ConfigError
-from wonderful_team.types import Request, Usage
+from wonderful_team.types import Usage
 
 LEAST_OUT = 256
 """A call is not worth sending when fewer tokens than this are left for its answer."""
@@ -51,13 +50,6 @@ class Estimate:
     tokens_out: int
     usd_in: float | None = None
     usd_out: float | None = None
-
-
-@runtime_checkable
-class Estimating(Protocol):
-    """A model that can say beforehand what a request may cost."""
-
-    def estimate(self, request: Request) -> Estimate: ...
 
 
 @dataclass(eq=False)

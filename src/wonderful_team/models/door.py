@@ -11,6 +11,7 @@ import contextlib
 import contextvars
 import inspect
 import json
+import reprlib
 import threading
 import time
 from collections.abc import Callable, Mapping, Sequence
@@ -23,12 +24,14 @@ from wonderful_team.contracts import Question
 from wonderful_team.errors import (
     BudgetReached,
     ConfigError,
+    ModelCodeError,
     ModelOutputError,
     ModelUnavailableError,
     WonderfulTeamError,
+    code_of,
 )
 from wonderful_team.interfaces import Event, Model, Subscriber
-from wonderful_team.models.budget import Budget, Estimating, Ticket, hand_over
+from wonderful_team.models.budget import Budget, Ticket, hand_over
 from wonderful_team.models.wire.unreadable import Unreadable
 from wonderful_team.types import Answer, Request, Usage
 
@@ -113,7 +116,7 @@ class Door:
             total = total + answer.usage
             try:
                 value, repairs = settle_answer(sent, answer.value)
-            except ValueError as error:
+            except (ValueError, RecursionError, OverflowError) as error:
                 text = _explain(error)
                 self.tell("invalid", sent.id, (sent, answer.raw or _as_text(answer.value), text))
                 request = replace(request, feedback=text, previous=answer.raw or _plain(answer.value))
@@ -132,7 +135,10 @@ class Door:
     async def _send(self, model: Model, request: Request) -> Answer:
         async with self._place():
             budget = self.budget
-            estimate = model.estimate(request) if isinstance(model, Estimating) else None
+            with model_code(model):
+                # Not isinstance with a protocol: from Python 3.12 on it misses what a wrapper forwards, and caps would fail open.
+                reckon = getattr(model, "estimate", None)
+                estimate = reckon(request) if callable(reckon) else None
             ticket = await budget.take(estimate)
             usage = None
             started = time.monotonic()
@@ -186,12 +192,27 @@ def _failed_usage(request: Request, ticket: Ticket, started: float) -> Usage:
 
 
 async def call_model(model: Model, request: Request) -> Any:
-    """What a model's `answer` returns, be it plain (then in a thread) or async."""
-    if inspect.iscoroutinefunction(model.answer):
-        return await model.answer(request)
-    # A plain function would block every other request: it runs in a thread.
-    result = await _in_thread(model.answer, request)
-    return await result if inspect.isawaitable(result) else result
+    """What a model's `answer` returns, be it plain (then in a thread) or async.
+
+    Raises:
+        ModelCodeError: It raised something that says nothing of whose fault it is.
+    """
+
+    def plain(asked: Request) -> Any:
+        with model_code(model):
+            return model.answer(asked)
+
+    with model_code(model):
+        if inspect.iscoroutinefunction(model.answer):
+            return await model.answer(request)
+        # A plain function would block every other request: it runs in a thread.
+        result = await _in_thread(plain, request)
+        return await result if inspect.isawaitable(result) else result
+
+
+def model_code(model: Model) -> contextlib.AbstractContextManager[None]:
+    """Whatever the code of a model raises is the model's: never a defect of ours, never the method's failure."""
+    return code_of(f"the code of model {_name(model)!r}", ModelCodeError)
 
 
 async def _in_thread(answer: Callable[[Request], Any], request: Request) -> Any:
@@ -224,6 +245,10 @@ async def _in_thread(answer: Callable[[Request], Any], request: Request) -> Any:
 def as_answer(result: Any, model: Model) -> Answer:
     """What a model returned, as an Answer; values that are no Answer are taken as its value."""
     if isinstance(result, Answer):
+        if not isinstance(result.usage, Usage):
+            raise ModelCodeError(
+                f"model {_name(model)!r} answered with usage {type(result.usage).__name__}; valid: a wt.Usage"
+            )
         return result if result.model_id else replace(result, model_id=_name(model))
     raw = result if isinstance(result, str) else ""
     return Answer(value=result, model_id=_name(model), raw=raw, usage=Usage(calls=1, usd=None))
@@ -249,11 +274,13 @@ def _plain(value: Any) -> Any:
 def _as_text(value: Any) -> str:
     try:
         return json.dumps(_plain(value))
-    except (TypeError, ValueError):
-        return repr(value)
+    except (TypeError, ValueError, RecursionError):
+        return reprlib.repr(value)
 
 
-def _explain(error: ValueError) -> str:
+def _explain(error: Exception) -> str:
+    if isinstance(error, RecursionError):
+        return "the answer is nested too deeply"
     if not isinstance(error, ValidationError):
         return str(error)
     lines = (

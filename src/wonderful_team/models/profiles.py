@@ -16,7 +16,7 @@ from typing import Any, Literal, TypeAlias
 
 from pydantic import TypeAdapter, ValidationError
 
-from wonderful_team.errors import ConfigError, UnknownNameError
+from wonderful_team.errors import ConfigError, UnknownNameError, reading
 from wonderful_team.models.conventions import PIXELS, Convention, Resize, Shape
 from wonderful_team.models.error_profile import ErrorProfile
 
@@ -259,12 +259,8 @@ def load_profile(name: str, folder: Path | None = None) -> Profile:
     path = place / f"{name}.json"
     if not _NAME.fullmatch(name) or not path.is_file():
         raise UnknownNameError("profile", name, profile_names(folder))
-    try:
+    with reading(f"profile {str(path)!r}", f"a file that probe wrote; probe the model again with --save {name}"):
         return replace(profile_from_json(path.read_text(encoding="utf-8")), name=name)
-    except (OSError, ValueError) as error:
-        raise ConfigError(
-            f"profile {str(path)!r} cannot be read: {error}; probe the model again with --save {name}"
-        ) from error
 
 
 def saved_profiles(folder: Path | None = None) -> dict[str, Profile | str]:

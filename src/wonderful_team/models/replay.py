@@ -9,7 +9,14 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from wonderful_team import errors
-from wonderful_team.errors import BudgetReached, ModelOutputError, ReplayError, UnknownNameError, WonderfulTeamError
+from wonderful_team.errors import (
+    BudgetReached,
+    ModelOutputError,
+    ReplayError,
+    UnknownNameError,
+    WonderfulTeamError,
+    reading,
+)
 from wonderful_team.interfaces import Model
 from wonderful_team.jsonable import to_jsonable
 from wonderful_team.models.budget import Estimate
@@ -36,14 +43,20 @@ class ReplayModel:
     Attributes:
         differences: What differed, in words; empty after an exact replay.
         replayed: How many answers were given.
+        failed: The errors of the record that were raised again.
     """
 
     def __init__(self, record: Mapping[str, Any], *, tolerant: bool = False) -> None:
-        told = record.get("configuration", {}).get("model") or "a model"
-        self.name = f"replay of {told}"
+        with reading("the record"):
+            self._read(record)
         self.tolerant = tolerant
         self.differences: list[str] = []
         self.replayed = 0
+        self.failed: list[WonderfulTeamError] = []
+
+    def _read(self, record: Mapping[str, Any]) -> None:
+        told = record.get("configuration", {}).get("model") or "a model"
+        self.name = f"replay of {told}"
         self._entries = {(entry["id"], entry["attempt"]): entry for entry in record["planner"]["requests"]}
         outcome = record.get("outcome") or {}
         plans = record["planner"]["plans"]
@@ -69,18 +82,20 @@ class ReplayModel:
             if self._budget is not None:
                 raise BudgetReached(self._budget)
             raise ReplayError(f"{_called(request)} is not in the record: this time the run took another way")
-        found = differences(request, entry)
+        with reading(f"{_called(request)} in the record"):
+            found = differences(request, entry)
         if found and not self.tolerant:
             raise ReplayError(f"{_called(request)} is not what was asked then: {'; '.join(found)}")
         self.differences += [f"{_called(request)}: {text}" for text in found]
-        self.replayed += 1
+        self.replayed += bool(entry["answer"] or entry["invalid"] or entry.get("failed"))
         if entry["answer"]:
             return _answer(request, entry["answer"])
         if entry["invalid"]:
             raw = entry["invalid"]["raw"]
             return Answer(raw, Usage(calls=0), self.name, raw, provenance="replayed")
         if entry.get("failed"):
-            raise _revived(entry["failed"])
+            self.failed.append(_revived(entry["failed"]))
+            raise self.failed[-1]
         # Sent, but given up before an answer came: something else ended the run, and will again.
         await asyncio.sleep(_PATIENCE_S)
         raise ReplayError(f"{_called(request)} was never answered in the record")
@@ -208,6 +223,7 @@ def _revived(told: Mapping[str, Any]) -> WonderfulTeamError:
         kind = ModelOutputError
     error: WonderfulTeamError = kind.__new__(kind)
     WonderfulTeamError.__init__(error, told["message"], stage=told["stage"])
+    error.trace = str(told.get("trace", ""))
     for name in ("question", "choices", "contract", "reasons"):
         if name in told:
             value = told[name]

@@ -50,6 +50,22 @@ def blank(rgb: Array) -> Array:
 CHANGES: Mapping[str, Change] = {"shifted": shifted, "flipped": flipped, "noised": noised, "blank": blank}
 
 
+def with_pictures(value: Any, change: Callable[[Picture], Picture]) -> Any:
+    """The same value with every picture in it changed; the value itself when none is."""
+    match value:
+        case Picture():
+            return change(value)
+        case tuple():
+            new_items = tuple(with_pictures(item, change) for item in value)
+            return new_items if any(new is not old for new, old in zip(new_items, value, strict=True)) else value
+        case _ if is_dataclass(value) and not isinstance(value, type):
+            held = {item.name: getattr(value, item.name) for item in fields(value) if item.init}
+            new = {name: with_pictures(item, change) for name, item in held.items()}
+            return replace(value, **new) if any(new[name] is not held[name] for name in held) else value
+        case _:
+            return value
+
+
 class Reshown:
     """Passes requests to `model` with every picture changed.
 
@@ -66,28 +82,15 @@ class Reshown:
 
     async def answer(self, request: Request) -> Any:
         """What the model answers to the changed pictures."""
-        changed = replace(
-            request, question=self._in(request.question), parts=tuple(self._in(part) for part in request.parts)
-        )
-        result = self.model.answer(changed)
+        question = with_pictures(request.question, self._shown)
+        parts = tuple(with_pictures(part, self._shown) for part in request.parts)
+        result = self.model.answer(replace(request, question=question, parts=parts))
         return await result if inspect.isawaitable(result) else result
 
-    def _in(self, value: Any) -> Any:
-        """The same value with every picture in it changed."""
-        match value:
-            case Picture():
-                return replace(value, rgb=self._pixels(value.rgb)) if self._meant(value) else value
-            case tuple():
-                return tuple(self._in(item) for item in value)
-            case _ if is_dataclass(value) and not isinstance(value, type):
-                held = {item.name: getattr(value, item.name) for item in fields(value) if item.init}
-                new = {name: self._in(item) for name, item in held.items()}
-                return replace(value, **new) if any(new[name] is not held[name] for name in held) else value
-            case _:
-                return value
-
-    def _meant(self, picture: Picture) -> bool:
-        return picture.frame.view_id.startswith(self._only)
+    def _shown(self, picture: Picture) -> Picture:
+        if not picture.frame.view_id.startswith(self._only):
+            return picture
+        return replace(picture, rgb=self._pixels(picture.rgb))
 
     def _pixels(self, rgb: Array) -> Array:
         """The changed pixels; made once for as long as the original is kept."""

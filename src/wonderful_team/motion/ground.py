@@ -23,6 +23,7 @@ from wonderful_team.motion.pick_place import ground_pick_place
 from wonderful_team.motion.places import Places
 from wonderful_team.motion.progress import Progress
 from wonderful_team.motion.push import ground_push
+from wonderful_team.motion.sharing import shared_places
 from wonderful_team.pictures import Point
 from wonderful_team.types import GroundedTarget, Limits, PlannedAction, View
 
@@ -55,7 +56,7 @@ def ground_actions(
         PlanError: A step needs a target, point, box or path that is not there, or a place with no room; names the
             step.
     """
-    places = Places(grounded, Lift(view), limits, {} if paths is None else paths)
+    places = Places(grounded, Lift(view), limits, {} if paths is None else paths, shares=shared_places(steps))
     progress = Progress()
     planned = []
     for number, step in enumerate(steps, start=1):

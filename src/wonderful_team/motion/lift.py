@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -69,18 +70,27 @@ class Lift:
             return Spot(px, None, how)
         return Spot(px, np.asarray(self.camera.on_plane([px], z_m)[0]), how)
 
-    def support_z_m(self, box: Box | None) -> float:
+    def support_z_m(self, box: Box | None, below_m: float = math.inf) -> float:
         """Height of what a boxed thing stands on, measured just round its box; the table's without a box or depth.
 
         Neighbours stand higher than the support, so a low quantile of the heights is taken; what lies lower than the
-        table is beside it and supports nothing.
+        table is beside it and supports nothing. Nor does what stands higher than the thing itself: round a thing in a
+        bowl is the bowl's rim, and the bowl's floor shows between.
+
+        Args:
+            box: Where the thing shows [px].
+            below_m: Height of a point of the thing; what is higher does not support it [m].
         """
         if self.camera is None or box is None or isinstance(self.camera, PlanarCamera):
             return self._plane_z_m
         margin = max(2.0, RING_SHARE * min(box.width, box.height))
         spots = [self.surface(px, "round the box") for px in _outline(box.grown(*[margin] * 4)) if self.inside(px)]
         heights = [float(spot.position_m[2]) for spot in spots if spot.position_m is not None]
-        supports = [height for height in heights if height >= TABLE_Z_M]
+        supports = [height for height in heights if TABLE_Z_M <= height < below_m]
+        if heights and not supports and math.isfinite(below_m):
+            inside = [self.surface(px, "inside the box").position_m for px in _grid(box) if self.inside(px)]
+            lower = [float(at[2]) for at in inside if at is not None and TABLE_Z_M <= at[2] < below_m]
+            supports = [min(lower)] if lower else []
         return float(np.quantile(supports, 0.25)) if supports else self._plane_z_m
 
     def to_px(self, position_m: Array) -> Point:
@@ -107,6 +117,12 @@ class Lift:
             if valid.size:
                 return float(np.median(valid))
         return None
+
+
+def _grid(box: Box) -> list[Point]:
+    """A hundred points inside a box."""
+    shares = [(k + 0.5) / 10 for k in range(10)]
+    return [(box.x0 + box.width * a, box.y0 + box.height * b) for b in shares for a in shares]
 
 
 def _outline(box: Box) -> list[Point]:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -13,6 +14,7 @@ from wonderful_team.geometry import Box
 from wonderful_team.motion.beside import beside_px, half_extents
 from wonderful_team.motion.lift import Lift, Spot
 from wonderful_team.motion.progress import Progress
+from wonderful_team.motion.sharing import Share, share_px
 from wonderful_team.pictures import Point
 from wonderful_team.types import GroundedTarget, Limits, PointRole
 
@@ -22,12 +24,17 @@ ANY: tuple[PointRole, ...] = ("pick", "grasp", "place", "push_end", "push_start"
 TO_GRASP: tuple[PointRole, ...] = ("grasp", "pick", "place", "push_start", "push_end")
 
 
+EVEN_M = 0.002
+"""A surface at most this much higher than a thing's own point may still be what a flat thing lies on [m]."""
+
+
 @dataclass(frozen=True, eq=False)
 class Places:
     """The grounded targets of a plan in their view.
 
     Attributes:
-        step: Number of the step that is being computed, from 1; for messages.
+        step: Number of the step that is being computed, from 1.
+        shares: By step number, which part of its place a thing gets that lies there together with others.
     """
 
     grounded: Mapping[str, GroundedTarget]
@@ -35,6 +42,7 @@ class Places:
     limits: Limits
     paths: Mapping[str, tuple[Point, ...]]
     step: int = 1
+    shares: Mapping[int, Share] = field(default_factory=dict)
 
     def fail(self, message: str) -> PlanError:
         """The error to raise, naming the step."""
@@ -94,7 +102,7 @@ class Places:
 
     def support_z_m(self, name: str) -> float:
         """Height of what the target stood on in the picture [m]."""
-        return self.lift.support_z_m(self.target(name).box)
+        return self.lift.support_z_m(self.target(name).box, self._top_z_m(name) + EVEN_M)
 
     def centre(self, name: str, progress: Progress) -> Spot:
         """Where the target's centre lies now: that of its box, at the height of the point chosen on it.
@@ -148,11 +156,26 @@ class Places:
                 # A thing that is put down where it is, such as one that is only turned.
                 return self.resting(target, progress)
             case At(target):
-                return self.spot(target, TO_PLACE, progress)[1]
+                spot = self._shared(target, self.spot(target, TO_PLACE, progress)[1])
+                return spot if progress.moved.get(target) else self._freed(spot, progress, thing, target)
             case OriginOf(target):
                 return self.origin(target)
             case Beside():
                 return self._beside(place, progress, thing, yaw_rad)
+
+    def _shared(self, name: str, spot: Spot) -> Spot:
+        """This step's part of a place that several things share; the place's own point for one thing alone."""
+        share = self.shares.get(self.step)
+        if share is None:
+            return spot
+        boxes = [self.target(thing).box for thing in share.things]
+        centre = self.point(name, TO_PLACE)[1]
+        px = share_px(share, self.target(name), boxes, centre, self.lift)
+        px = (spot.px[0] + px[0] - centre[0], spot.px[1] + px[1] - centre[1])
+        if px == spot.px:
+            return spot
+        how = f"{spot.how}; part {share.index + 1} of {len(share.things)} that go there"
+        return self.lift.at_height(px, 0.0 if spot.position_m is None else float(spot.position_m[2]), how)
 
     def _beside(self, place: Beside, progress: Progress, thing: str | None, yaw_rad: float) -> Spot:
         half = (0.0, 0.0)
@@ -162,4 +185,24 @@ class Places:
             px = beside_px(self.box_now(place.target, progress), place.side, half, self.lift.view.size_px)
         except ValueError as error:
             raise self.fail(f"no room for {thing or 'the tool'} {place.side} of {place.target!r}: {error}") from error
-        return self.lift.surface(px, f"{place.side} of {place.target}'s box")
+        spot = self.lift.surface(px, f"{place.side} of {place.target}'s box")
+        return self._freed(spot, progress, thing, place.target)
+
+    def _freed(self, spot: Spot, progress: Progress, thing: str | None, place: str) -> Spot:
+        """The same spot, but at the height of the support where the picture shows a thing that will have left it."""
+        for name in (*progress.moved, *([thing] if thing is not None else [])):
+            box = self.target(name).box if name != place else None
+            if box is None or spot.position_m is None or not box.contains(spot.px):
+                continue
+            support_m, top_m = self.support_z_m(name), self._top_z_m(name)
+            if support_m + EVEN_M < float(spot.position_m[2]) <= top_m + EVEN_M:
+                return self.lift.at_height(
+                    spot.px, support_m, f"{spot.how}; {name} has left it, so z = {support_m:.3f} m"
+                )
+        return spot
+
+    def _top_z_m(self, name: str) -> float:
+        """Height of the point at which a thing is held; infinite without one."""
+        point = next((px for role, px in self.target(name).points.items() if role in TO_PICK), None)
+        seen = None if point is None or not self.lift.inside(point) else self.lift.surface(point, name).position_m
+        return math.inf if seen is None else float(seen[2])

@@ -149,7 +149,9 @@ async def _propose(job: Job, box: Box, problem: str, lines: tuple[str, ...]) -> 
     move: BoxMove = answer.value
     after = shown.frame.box_to_view(move.apply(question.box)).intersection(job.view_box)
     if move.action != "stop" and after is not None:
-        job.tell("move", f"Mover: {_move_line(move)}", after, provenance=answer.provenance)
+        # What is told is in pixels of the view, like every box; the Mover itself is asked in those of its crop.
+        said = _move_line(move, float(shown.frame.T_view_picture[0, 0]), float(shown.frame.T_view_picture[1, 1]))
+        job.tell("move", f"Mover: {said}", after, provenance=answer.provenance)
     return move, after
 
 
@@ -169,13 +171,18 @@ async def _judge_revision(job: Job, before: Box, after: Box) -> str:
     return verdict.decision
 
 
-def _move_line(move: BoxMove) -> str:
+def _move_line(move: BoxMove, view_per_x: float = 1.0, view_per_y: float = 1.0) -> str:
+    """A revision in words; the factors are how many pixels of the wanted picture one pixel of the crop is."""
     if move.action == "move":
-        across = f"{abs(move.right_px):.0f} px {'right' if move.right_px >= 0 else 'left'}"
-        return f"moved {across}, {abs(move.down_px):.0f} px {'down' if move.down_px >= 0 else 'up'}"
-    grown = (move.grow_left_px, move.grow_top_px, move.grow_right_px, move.grow_bottom_px)
-    names = ("left", "top", "right", "bottom")
-    parts = [f"{name} {amount:+.0f}" for name, amount in zip(names, grown, strict=True) if amount]
+        right, down = move.right_px * view_per_x, move.down_px * view_per_y
+        return f"moved {abs(right):.0f} px {'right' if right >= 0 else 'left'}, {abs(down):.0f} px {'down' if down >= 0 else 'up'}"
+    grown = {
+        "left": move.grow_left_px * view_per_x,
+        "top": move.grow_top_px * view_per_y,
+        "right": move.grow_right_px * view_per_x,
+        "bottom": move.grow_bottom_px * view_per_y,
+    }
+    parts = [f"{name} {amount:+.0f}" for name, amount in grown.items() if amount]
     return f"edges outward by px: {', '.join(parts)}"
 
 

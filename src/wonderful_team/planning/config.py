@@ -21,6 +21,20 @@ class Members:
     mover: bool = True
     memory: bool = True
 
+    @property
+    def words(self) -> str:
+        """What is switched off, in words: "without Verification and Checker"."""
+        if not self.manager:
+            members = (
+                "Verification, Manager, Checker and Mover" if not self.verification else "Manager, Checker and Mover"
+            )
+            return f"without {members}: the Supervisor gives one point for each target"
+        off = [name for name in ("verification", "checker", "mover", "memory") if not getattr(self, name)]
+        names = [name.capitalize() for name in off]
+        return (
+            "without " + " and ".join([", ".join(names[:-1]), names[-1]] if len(names) > 1 else names) if names else ""
+        )
+
 
 SETTINGS: dict[str, Members] = {
     "full": Members(),

@@ -22,6 +22,7 @@ from wonderful_team.contracts import (
 from wonderful_team.errors import NeedsClarification
 from wonderful_team.planning.desk import Desk
 from wonderful_team.planning.scene import SceneShown
+from wonderful_team.text import counted
 from wonderful_team.types import Answer, Doubt, Subgoal, Target
 
 
@@ -81,7 +82,9 @@ async def verify(desk: Desk, scene: SceneShown, state: PlanState) -> PlanState:
             state = replace(state, verified=True)
             break
         if len(state.questions) >= desk.config.bounds.questions:
-            desk.warn(f"Verification still doubts after {len(state.questions)} questions: {verdict.doubt.question}")
+            desk.warn(
+                f"Verification still doubts after {counted(len(state.questions), 'question')}: {verdict.doubt.question}"
+            )
             break
         doubt = Doubt(verdict.doubt.about, verdict.doubt.kind, verdict.doubt.question, provenance=review.provenance)
         state, answered = await _resolve(desk, scene, state, doubt)
@@ -137,9 +140,9 @@ def _next_subgoal(state: PlanState, passed: set[str]) -> str | None:
 
 
 def _count(state: PlanState) -> str:
-    text = f"{len(state.subgoals)} subgoal{'s' * (len(state.subgoals) != 1)}"
+    text = counted(len(state.subgoals), "subgoal")
     if state.targets:
-        text += f", {len(state.targets)} target{'s' * (len(state.targets) != 1)}"
+        text += ", " + counted(len(state.targets), "target")
     return text if state.subgoals else "nothing to do: the instruction is already fulfilled"
 
 
@@ -147,7 +150,6 @@ def _told(state: PlanState) -> str:
     if not state.questions:
         return "approved at once" if state.verified else "not approved"
     last = state.questions[-1]
-    plural = "s" * (len(state.questions) != 1)
     outcome = "plan changed" if last.changed else "answered, plan kept"
     end = "" if state.verified else "; not approved within the bound"
-    return f'{len(state.questions)} question{plural}: "{last.question}" -> {outcome}{end}'
+    return f'{counted(len(state.questions), "question")}: "{last.question}" -> {outcome}{end}'

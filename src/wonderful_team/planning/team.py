@@ -30,6 +30,7 @@ from wonderful_team.planning.looking import first_part, is_uncertain, looking_li
 from wonderful_team.planning.plan_loop import PlanState
 from wonderful_team.planning.scene import SceneShown
 from wonderful_team.planning.together import both
+from wonderful_team.text import counted
 from wonderful_team.types import (
     NO_WORKSPACE,
     GroundedTarget,
@@ -227,7 +228,7 @@ class Team:
         if self.config.strict and not state.verified:
             plan = _refused(plan, "steps")
         pixels = " (no camera given: pixels only)" if any(item.action is None for item in actions) else ""
-        desk.stage("actions", f"{len(actions)} action{'s' * (len(actions) != 1)}{pixels}")
+        desk.stage("actions", counted(len(actions), "action") + pixels)
         return plan, []
 
     def _remember_plan(self, desk: Desk, state: PlanState) -> None:

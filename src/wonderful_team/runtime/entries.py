@@ -89,6 +89,8 @@ def answer_entry(answer: Answer) -> dict[str, Any]:
 def error_entry(error: WonderfulTeamError) -> dict[str, Any]:
     """What came instead of an answer; enough to raise it again."""
     shown: dict[str, Any] = {"error": type(error).__name__, "message": str(error), "stage": error.stage}
+    if error.trace:
+        shown["trace"] = error.trace
     for name in ("question", "choices", "contract", "reasons"):
         if hasattr(error, name):
             shown[name] = to_jsonable(getattr(error, name))

@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 from wonderful_team.geometry import Box
 from wonderful_team.interfaces import Act, World
 from wonderful_team.runtime.approval import Approval, Approver
+from wonderful_team.runtime.course import Stage, stages_of
 from wonderful_team.runtime.freshness import freshness_checks, touched, watched
 from wonderful_team.runtime.gate import check_gate
 from wonderful_team.runtime.progress import Ending, Progress
+from wonderful_team.runtime.seen_checks import still_free_checks
+from wonderful_team.text import counted
 from wonderful_team.types import GateReport, Observation, Plan, PlannedAction, StepReport, SubgoalRun
 
 
@@ -76,13 +80,16 @@ class Execution:
     def _run_all(self, decision: Act, then: Observation, now: Observation, horizon: int | None) -> Ending | None:
         actions, plan = decision.actions, decision.plan
         excused: list[Box] = []
+        stages = stages_of(actions, plan, now.main, self._world.limits)
         last = before = now
         reports: list[StepReport] = []
         for index, planned in enumerate(actions):
             if horizon is not None and self._progress.executed >= horizon:
                 self._close(actions[index - 1], before, last, reports)
-                return Ending(None, "execution", f"the world's horizon of {horizon} actions is reached", final=True)
-            if index > 0 and not self._still_fresh(planned, index, plan, then, last, excused):
+                return Ending(
+                    None, "execution", f"the world's horizon of {counted(horizon, 'action')} is reached", final=True
+                )
+            if index > 0 and not self._still_fresh(planned, index, plan, then, last, excused, stages[index]):
                 self._close(actions[index - 1], before, last, reports)
                 return Ending("failure", "gate", "; ".join(self._refused().reasons))
             report = self._execute(planned, before, reports)
@@ -94,7 +101,9 @@ class Execution:
                 self._close(planned, before, last, reports)
                 before, reports = last, []
             if not report.executed:
-                return Ending(None, "execution", f"action {index + 1} did not run: {report.fault or 'no reason given'}")
+                return Ending(
+                    None, "execution", f"action {index + 1} did not run: {report.fault or 'the robot gave no reason'}"
+                )
         return None
 
     def _execute(self, planned: PlannedAction, before: Observation, reports: list[StepReport]) -> StepReport:
@@ -119,13 +128,18 @@ class Execution:
         then: Observation,
         last: Observation,
         excused: Sequence[Box],
+        stage: Stage,
     ) -> bool:
-        """Compare with the plan's picture outside of what the plan itself changed, and with the last step's picture."""
+        """Compare with the plan's picture outside of what the plan itself changed, and with the last step's picture.
+
+        What depth shows now decides whether the place is still free: an action before may have left something there.
+        """
         now = self._world.observe()
         regions = watched((planned,), plan, now.main, first=index)
         checks = freshness_checks(then, now, regions, excused=excused, max_age_s=self._max_age_s)
         checks += freshness_checks(last, now, regions, max_age_s=self._max_age_s)
-        report = GateReport(tuple(checks))
+        found = still_free_checks(planned, stage, now.main, self._world.limits)
+        report = GateReport((*checks, *(replace(check, action=index) for check in found)))
         self._progress.passed_gate(f"before action {index + 1}", report)
         self.refusal = None if report.admitted else report
         return report.admitted

@@ -68,12 +68,22 @@ def points_px(planned: PlannedAction, view: View) -> tuple[tuple[str, Point], ..
 
 
 def watched(actions: Sequence[PlannedAction], plan: Plan | None, view: View, first: int = 0) -> tuple[Region, ...]:
-    """The regions that actions rely on: the box of each object they touch, a window round each other point."""
-    return tuple(
-        _region(role, point, planned, plan, view, index)
-        for index, planned in enumerate(actions, start=first)
-        for role, point in points_px(planned, view)
-    )
+    """The regions that actions rely on: the box of each object they touch, a window round each other point.
+
+    Where nothing says which part of the picture an action that touches something relies on, it is the whole picture.
+    """
+    whole = Box(0, 0, *view.size_px)
+    found: list[Region] = []
+    for index, planned in enumerate(actions, start=first):
+        regions = [_region(role, point, planned, plan, view, index) for role, point in points_px(planned, view)]
+        if not regions and isinstance(planned.action, PickPlace | Push):
+            regions = [Region("whole picture", whole, index)]
+        if isinstance(planned.action, Push) and len(regions) == 2 and regions[0].box.intersection(whole) is None:
+            # A tool may come down just outside of the picture: what shows of its way is watched.
+            ends = (*regions[0].box.corners, *regions[1].box.corners)
+            regions[0] = Region(regions[0].name, Box.bounding(ends), index)
+        found += regions
+    return tuple(found)
 
 
 def _region(role: str, point: Point, planned: PlannedAction, plan: Plan | None, view: View, index: int) -> Region:
@@ -165,7 +175,7 @@ def _region_check(then: View, now: View, region: Region, same: bool, excused: Se
     if then.size_px != now.size_px:
         return GateCheck(region.action, name, False, f"picture of {now.size_px} px", f"{then.size_px} px as planned")
     if region.box.intersection(Box(0, 0, *now.size_px)) is None:
-        return GateCheck(region.action, name, True, "outside the picture: not watched", limit)
+        return GateCheck(region.action, name, False, "outside the picture: it cannot be watched", limit)
     if any(region.box.intersection(box) is not None for box in excused):
         return GateCheck(region.action, name, True, "changed by this plan's own actions", limit, "excused")
     change = 0.0 if same else region_change(then.rgb, now.rgb, region.box)

@@ -1,21 +1,30 @@
-"""The one safety gate: every action of every policy passes it, simulated or real. All problems are reported at once."""
+"""The one safety gate: every action of every policy passes it, simulated or real. All problems are reported at once.
+
+Where it cannot decide, it refuses.
+"""
 
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
-from wonderful_team.actions import Action, PickPlace, RotateGripper, Vocabulary
-from wonderful_team.geometry import Box, Camera
+from wonderful_team.actions import Action, EndEffectorDelta, PickPlace, Vocabulary
+from wonderful_team.geometry import Box
 from wonderful_team.geometry.arrays import Array
 from wonderful_team.jsonable import to_jsonable
+from wonderful_team.runtime.agreement import agreement_checks, form_checks
 from wonderful_team.runtime.approval import Approval, approved_id
+from wonderful_team.runtime.course import Course, Stage
 from wonderful_team.runtime.freshness import MAX_AGE_S, freshness_checks, watched
-from wonderful_team.runtime.keep_out import distance, region_m, region_px, table_height_m
-from wonderful_team.runtime.sweep import carry_height_m, swept_path_m, swept_path_px, tool_after
+from wonderful_team.runtime.keep_out import table_height_m
+from wonderful_team.runtime.keep_out_checks import keep_out_checks, keep_out_px_checks
+from wonderful_team.runtime.seen_checks import height_checks, place_checks, way_checks
+from wonderful_team.runtime.sweep import Sweep, carry_height_m, sweep_of, swept_path_px
+from wonderful_team.text import counted
 from wonderful_team.types import GateCheck, GateReport, KeepOut, Limits, Observation, Plan, PlannedAction
 
 TOOL_RADIUS_M = 0.01
@@ -39,6 +48,7 @@ def check_gate(
     excused: Sequence[Box] = (),
     max_age_s: float | None = MAX_AGE_S,
     tool_radius_m: float = TOOL_RADIUS_M,
+    measured_heights: bool = False,
 ) -> GateReport:
     """Check actions before anything moves.
 
@@ -48,7 +58,7 @@ def check_gate(
         limits: What it allows.
         plan: Where the actions come from, or None for a method that acts without one.
         then: The picture that the plan was made from; None when it is not at hand.
-        now: The scene just before motion.
+        now: The scene just before motion; its depth, where it has any, says what stands where.
         approval: A person's consent, checked whenever it is given.
         approval_required: Refuse without consent.
         expected_plan_id: Id of the plan that was read; another plan is refused.
@@ -56,6 +66,8 @@ def check_gate(
         excused: Parts of the main view [px] that the plan's own earlier actions changed.
         max_age_s: Oldest picture that may be acted upon [s]; None for no limit.
         tool_radius_m: Half-width of what moves, kept clear of keep-out regions [m].
+        measured_heights: Refuse heights that no depth shows, for a camera without depth; a world whose robot finds
+            surfaces by itself does without. Where there is depth, it must show every point that is touched.
 
     Returns:
         Every check with its value, limit and margin; `admitted` when none failed.
@@ -63,26 +75,131 @@ def check_gate(
     checks = _plan_checks(actions, plan, expected_plan_id)
     checks += _approval_checks(actions, plan, approval, approval_required)
     regions = (*limits.keep_out, *(plan.keep_out if plan is not None else ()))
-    tool_m = now.robot.tool_m if now.robot is not None else None
+    passage = _Passage(plan, limits, now, regions, must_run, tool_radius_m, measured_heights)
     for index, planned in enumerate(actions):
-        found = [_word_check(planned, vocabulary)]
-        if planned.action is None:
-            found += _pixel_checks(planned, now, regions, limits, must_run)
+        found = form_checks(planned, vocabulary)
+        if all(check.ok or check.name == "vocabulary" for check in found):
+            found += passage.next(planned)
         else:
-            found += _metre_checks(planned.action, now.main.camera, regions, limits, tool_m, tool_radius_m)
-            if now.main.camera is None:
-                found += _pixel_regions(planned, regions)
-            tool_m = tool_after(planned.action, tool_m)
+            # What such an action does, and where the tool is after it, nobody knows.
+            passage.lost()
         checks += [replace(check, action=index) for check in found]
+    sound = [
+        planned for planned in actions if not any(c.name == "class of action" for c in form_checks(planned, vocabulary))
+    ]
     checks += freshness_checks(
         then,
         now,
-        watched(actions, plan, now.main) if then is not None else (),
+        watched(sound, plan, now.main) if then is not None else (),
         scene_hash=plan.scene_hash if plan is not None else "",
         excused=excused,
         max_age_s=max_age_s,
     )
     return GateReport(tuple(checks))
+
+
+class _Passage:
+    """Follows actions one after the other: where the tool is, what it carries, what stands where."""
+
+    def __init__(
+        self,
+        plan: Plan | None,
+        limits: Limits,
+        now: Observation,
+        regions: Sequence[KeepOut],
+        must_run: bool,
+        tool_radius_m: float,
+        measured_heights: bool,
+    ) -> None:
+        self._plan, self._limits, self._now, self._regions = plan, limits, now, regions
+        self._must_run, self._tool_radius_m, self._measured = must_run, tool_radius_m, measured_heights
+        self._course = Course(now.main, plan, table_height_m(limits), holding=bool(now.robot and now.robot.holding))
+        self._tool_m = _tool_m(now)
+
+    def lost(self) -> None:
+        self._tool_m = None
+
+    def next(self, planned: PlannedAction) -> list[GateCheck]:
+        if planned.action is None:
+            return self._pixel_checks(planned)
+        held = self._held(planned)
+        reach_px = 0.0 if held is None else math.hypot(held.width, held.height) / 2
+        stage = self._course.next(planned, self._tool_m)
+        sweep = sweep_of(planned.action, self._limits, self._tool_m)
+        found = self._metre_checks(planned.action, stage, sweep)
+        found += agreement_checks(planned, self._now.main, reach_px)
+        if self._now.main.camera is None:
+            found += keep_out_px_checks(
+                planned, self._regions, None, self._limits, held, min(self._now.main.size_px), True
+            )
+        self._tool_m = sweep.after_m
+        return found
+
+    def _held(self, planned: PlannedAction) -> Box | None:
+        name = getattr(planned.step, "pick", None)
+        if name is None:
+            name = getattr(getattr(planned.step, "to", None), "target", None)
+        target = self._plan.grounded.get(name) if self._plan is not None and name is not None else None
+        return None if target is None else target.box
+
+    def _metre_checks(self, action: Action, stage: Stage, sweep: Sweep) -> list[GateCheck]:
+        limits = self._limits
+        if sweep.path_m is None:
+            found = []
+            if isinstance(action, EndEffectorDelta):
+                limit = "known, from the robot or from an action before"
+                found.append(GateCheck(None, "tool position", False, "not known", limit))
+            camera = self._now.main.camera
+            if action.kind == "home":
+                found += keep_out_checks(action, sweep, None, self._regions, camera, limits, self._tool_radius_m)
+            return found
+        # The way from where the tool stands is the world's own doing: only what the action asks for must lie inside.
+        checks = [_axis_check(sweep.path_m, axis, limits) for axis in range(2)]
+        if action.kind != "navigate":
+            checks.append(_axis_check(sweep.path_m, 2, limits))
+        if isinstance(action, PickPlace):
+            checks.append(_carry_check(action, limits))
+        if action.kind != "navigate":
+            checks += height_checks(action, stage, limits, self._measured)
+            checks += place_checks(action, stage, limits)
+            checks += way_checks(action, stage, sweep, self._tool_radius_m)
+        camera = self._now.main.camera
+        return checks + keep_out_checks(
+            action, sweep, stage.carried, self._regions, camera, limits, self._tool_radius_m
+        )
+
+    def _pixel_checks(self, planned: PlannedAction) -> list[GateCheck]:
+        needs_metres = planned.step.kind not in ("open", "close", "rotate_gripper", "home")
+        limit = "metres from a camera" if self._must_run else "none"
+        checks = [GateCheck(None, "metres", not self._must_run, "pixels only", limit)]
+        points = np.array(swept_path_px(planned), dtype=np.float64).reshape(-1, 2)
+        finite = bool(np.isfinite(points).all())
+        checks.append(GateCheck(None, "numbers", finite, f"{len(points)} points", "all finite"))
+        if not finite:
+            return checks
+        if len(points) == 0:
+            if needs_metres:
+                checks.append(GateCheck(None, "points", False, "none", "at least 1 pixel of the picture"))
+            return checks
+        width, height = self._now.main.size_px
+        for axis, side in enumerate((width, height)):
+            least, most = float(points[:, axis].min()), float(points[:, axis].max())
+            margin = min(least, side - most)
+            value = f"{least:.0f} to {most:.0f} px"
+            name = f"picture {'xy'[axis]}"
+            checks.append(GateCheck(None, name, margin >= 0, value, f"[0, {side}] px", f"{margin:+.0f} px"))
+        held, camera = self._held(planned), self._now.main.camera
+        return checks + keep_out_px_checks(
+            planned, self._regions, camera, self._limits, held, min(width, height), False
+        )
+
+
+def _tool_m(now: Observation) -> Array | None:
+    """Where the robot says that its tool is; None when it does not say, or says something that is no point."""
+    if now.robot is None or now.robot.tool_m is None:
+        return None
+    tool = np.asarray(now.robot.tool_m, dtype=np.float64)
+    return tool if tool.shape == (3,) and np.isfinite(tool).all() else None
 
 
 def _plan_checks(actions: Sequence[PlannedAction], plan: Plan | None, expected_id: str | None) -> list[GateCheck]:
@@ -93,7 +210,7 @@ def _plan_checks(actions: Sequence[PlannedAction], plan: Plan | None, expected_i
     if plan is not None:
         ours, theirs = _texts(actions), _texts(plan.actions)
         same = ours == theirs
-        value = f"{len(actions)} action{'s' * (len(actions) != 1)}" + ("" if same else ", not those of the plan")
+        value = counted(len(actions), "action") + ("" if same else ", not those of the plan")
         checks.append(GateCheck(None, "actions of the plan", same, value, f"the {len(theirs)} of plan {plan.id}"))
     if not actions:
         checks.append(GateCheck(None, "actions", False, "0", "at least 1"))
@@ -115,55 +232,6 @@ def _approval_checks(
     return [GateCheck(None, "approval", same, value, f"for plan {wanted}, by a named person")]
 
 
-def _word_check(planned: PlannedAction, vocabulary: Vocabulary) -> GateCheck:
-    if planned.action is None:
-        kind, valid = planned.step.kind, vocabulary.step_kinds
-    else:
-        kind, valid = planned.action.kind, vocabulary.kinds
-    return GateCheck(None, "vocabulary", kind in valid, kind, ", ".join(valid))
-
-
-def _metre_checks(
-    action: Action,
-    camera: Camera | None,
-    regions: Sequence[KeepOut],
-    limits: Limits,
-    tool_m: Array | None,
-    tool_radius_m: float,
-) -> list[GateCheck]:
-    path = swept_path_m(action, limits, tool_m)
-    checks = [_finite_check(action, path)]
-    if path is None or not checks[0].ok:
-        return checks
-    # The way from where the tool stands is the world's own doing: only what the action asks for must lie inside.
-    asked = path[1:] if tool_m is not None and len(path) > 1 and action.kind in ("move_to", "trajectory") else path
-    checks += [_axis_check(asked, axis, limits) for axis in range(2)]
-    if action.kind != "navigate":
-        checks.append(_axis_check(asked, 2, limits))
-    if isinstance(action, PickPlace):
-        checks.append(_carry_check(action, limits))
-    for region in regions:
-        shape = region_m(region, camera, table_height_m(limits))
-        if shape is None and camera is not None:
-            checks.append(GateCheck(None, f"keep-out {region.name}", False, "meets no table", "a region on the table"))
-        elif shape is not None:
-            gap = distance(path, shape)
-            ok = gap > 0.0 and gap >= tool_radius_m
-            value = "enters it" if gap == 0 else f"{gap:.3f} m away"
-            limit = f"at least {tool_radius_m:.3f} m"
-            checks.append(GateCheck(None, f"keep-out {region.name}", ok, value, limit, f"{gap - tool_radius_m:+.3f} m"))
-    return checks
-
-
-def _finite_check(action: Action, path: Array | None) -> GateCheck:
-    numbers = [] if path is None else [path.ravel()]
-    numbers += [np.array([action.yaw_rad])] if isinstance(action, PickPlace | RotateGripper) else []
-    flat = np.concatenate(numbers) if numbers else np.zeros(0)
-    bad = int((~np.isfinite(flat)).sum())
-    value = f"{len(flat) - bad} of {len(flat)} finite"
-    return GateCheck(None, "numbers", bad == 0, value, "all finite")
-
-
 def _axis_check(path: Array, axis: int, limits: Limits) -> GateCheck:
     low, high = limits.low_m[axis], limits.high_m[axis]
     values = path[:, axis]
@@ -181,51 +249,3 @@ def _carry_check(action: PickPlace, limits: Limits) -> GateCheck:
     return GateCheck(
         None, "carrying height", room > 0, f"{carry:.3f} m", f"above both ends ({ends:.3f} m)", f"{room:+.3f} m"
     )
-
-
-def _pixel_checks(
-    planned: PlannedAction, now: Observation, regions: Sequence[KeepOut], limits: Limits, must_run: bool
-) -> list[GateCheck]:
-    checks = [GateCheck(None, "metres", not must_run, "pixels only", "metres from a camera" if must_run else "none")]
-    points = np.array(swept_path_px(planned), dtype=np.float64).reshape(-1, 2)
-    finite = bool(np.isfinite(points).all())
-    checks.append(GateCheck(None, "numbers", finite, f"{len(points)} points", "all finite"))
-    if len(points) == 0 or not finite:
-        return checks
-    width, height = now.main.size_px
-    for axis, side in enumerate((width, height)):
-        least, most = float(points[:, axis].min()), float(points[:, axis].max())
-        margin = min(least, side - most)
-        name = f"picture {'xy'[axis]}"
-        value = f"{least:.0f} to {most:.0f} px"
-        checks.append(GateCheck(None, name, margin >= 0, value, f"[0, {side}] px", f"{margin:+.0f} px"))
-    checks += [_region_px_check(points, region, now.main.camera, limits) for region in regions]
-    return checks
-
-
-def _region_px_check(points: Array, region: KeepOut, camera: Camera | None, limits: Limits) -> GateCheck:
-    name = f"keep-out {region.name}"
-    shape = region_px(region, camera, table_height_m(limits))
-    if shape is None:
-        return GateCheck(None, name, False, "in metres, but no camera places it", "a region in px, or a camera")
-    gap = distance(points, shape)
-    return GateCheck(
-        None, name, gap > 0, "enters it" if gap == 0 else f"{gap:.0f} px away", "outside", f"{gap:+.0f} px"
-    )
-
-
-def _pixel_regions(planned: PlannedAction, regions: Sequence[KeepOut]) -> list[GateCheck]:
-    """Metres without a camera in the main view: regions in pixels are checked against the pixels it came from."""
-    points = np.array(swept_path_px(planned), dtype=np.float64)
-    checks = []
-    for region in regions:
-        if region.unit != "px":
-            continue
-        name = f"keep-out {region.name}"
-        if len(points) == 0:
-            checks.append(GateCheck(None, name, False, "in pixels, but no camera places it", "a region in metres"))
-            continue
-        gap = distance(points, region_px(region, None, 0.0))
-        value = "enters it" if gap == 0 else f"{gap:.0f} px away"
-        checks.append(GateCheck(None, name, gap > 0, value, "outside", f"{gap:+.0f} px"))
-    return checks

@@ -23,37 +23,44 @@ def table_height_m(limits: Limits) -> float:
 def region_m(region: KeepOut, camera: Camera | None, table_z_m: float) -> Any | None:
     """The region on the table, in metres, as a polygon that reaches up without end.
 
-    A region in pixels is followed down the camera's rays to the table. None when no camera can place it there.
+    A region in pixels is followed down the camera's rays to the table. None when no camera can place it there: a part of
+    it lies above the horizon, or what comes out is no region.
     """
     if region.unit == "m":
-        return Polygon(region.box.corners)
+        return _polygon(region.box.corners)
     if camera is None:
         return None
     try:
         corners = camera.on_plane(np.array(region.box.corners), table_z_m)[:, :2]
     except ValueError:
         return None  # a ray of the region never meets the table
-    return Polygon(corners)
+    return _polygon(corners)
+
+
+def _polygon(corners: Any) -> Any | None:
+    if not np.isfinite(np.asarray(corners, dtype=np.float64)).all():
+        return None
+    shape = Polygon(corners)
+    return shape if shape.is_valid and 0 < shape.area < np.inf else None
 
 
 def region_px(region: KeepOut, camera: Camera | None, table_z_m: float) -> Any | None:
     """The region in pixels of the main view; None for metres that no camera can place there."""
     if region.unit == "px":
-        return Polygon(region.box.corners)
+        return _polygon(region.box.corners)
     if camera is None:
         return None
     flat = np.column_stack([np.array(region.box.corners), np.full(4, table_z_m)])
     try:
-        return Polygon(camera.project(flat))
+        return _polygon(camera.project(flat))
     except ValueError:
         return None  # a part of it lies behind the camera
 
 
-def distance(path: Array, region: Any) -> float:
-    """Least distance between a path seen from above, shape (N, 2), and a region; 0 when it enters. Exact."""
+def line(path: Array) -> Any:
+    """A path seen from above, shape (N, 2) or (N, 3), as a shape."""
     corners = np.asarray(path, dtype=np.float64)[:, :2]
-    shape = ShapelyPoint(corners[0]) if len(corners) == 1 else LineString(corners)
-    return float(region.distance(shape))
+    return ShapelyPoint(corners[0]) if len(corners) == 1 else LineString(corners)
 
 
 def outlines(regions: Iterable[KeepOut], limits: Limits | None, camera: Camera | None) -> list[dict[str, Any]]:

@@ -6,7 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
-from wonderful_team.interfaces import Act, Decision, Event, Policy, Subscriber, World
+from wonderful_team.errors import WonderfulTeamError
+from wonderful_team.interfaces import Act, Decision, Event, Policy, Situation, Subscriber, World
 from wonderful_team.runtime.optional import Accounting, Configured, NamedModel, Sourced
 from wonderful_team.types import GateReport, Observation, Plan, PlannedAction, StepReport, SubgoalRun, Trial, Verdict
 
@@ -48,6 +49,11 @@ class Progress:
     def observed(self, where: str, observation: Observation) -> None:
         self.tell("observe", where, observation)
 
+    def asking(self, situation: Situation) -> None:
+        """Note what a method is told beside pictures and reports, so that it can be asked so again."""
+        counts = {name: getattr(situation, name) for name in ("attempt", "replans_left", "looks_left")}
+        self.tell("asking", f"attempt {situation.attempt}", counts)
+
     def decided(self, decision: Decision) -> None:
         """Note a decision and what it carries."""
         name = type(decision).__name__
@@ -58,6 +64,11 @@ class Progress:
             self.tell("verdicts", "judge", verdicts)
         if isinstance(decision, Act) and decision.plan is not None:
             self.add_plan(decision.plan)
+
+    def traced(self, error: WonderfulTeamError) -> None:
+        """Tell the traceback of the user's own code, where that is what failed."""
+        if error.trace:
+            self.tell("crash", type(error).__name__, error)
 
     def add_plan(self, plan: Plan) -> None:
         if all(plan.id != known.id for known in self.plans):

@@ -6,12 +6,13 @@ import json
 import os
 import threading
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from datetime import UTC, datetime
 from pathlib import Path
 from types import TracebackType
 from typing import Any
 
+from wonderful_team.errors import WonderfulTeamError
 from wonderful_team.images import Ticks, action_arrows, overview, to_png
 from wonderful_team.interfaces import Event
 from wonderful_team.jsonable import to_jsonable
@@ -19,14 +20,15 @@ from wonderful_team.runtime import entries
 from wonderful_team.runtime.keep_out import outlines
 from wonderful_team.runtime.picture_store import PictureStore
 from wonderful_team.runtime.plan_file import plan_to_json
+from wonderful_team.runtime.record_schema import RECORD_SCHEMA_VERSION
 from wonderful_team.runtime.redact import redact, redact_all, secrets_of_environment
 from wonderful_team.runtime.versions import versions
+from wonderful_team.text import counted, picture_names, spoken, visible
 from wonderful_team.types import Instruction, Limits, Observation, Plan, Request, Trial
 
-RECORD_SCHEMA_VERSION = 1
 _REWRITE_EVERY_S = 0.3
 """Least time between two rewrites of record.json; important events are written at once."""
-_AT_ONCE = frozenset({"run", "stage", "plan", "gate", "execute", "subgoal", "warning", "done"})
+_AT_ONCE = frozenset({"run", "stage", "plan", "gate", "execute", "subgoal", "warning", "crash", "done"})
 
 
 class Recorder:
@@ -53,6 +55,7 @@ class Recorder:
         self._observations: dict[str, Observation] = {}
         self._seen: Observation | None = None
         self._limits: Limits | None = None
+        self._pictures: dict[str, str] = {}
         self._planner: dict[str, Any] = {"instruction": None, "outlines": []}
         for key in ("observations", "stages", "plans", "decisions", "gates", "executions", "subgoals", "verdicts"):
             self._planner[key] = []
@@ -75,12 +78,14 @@ class Recorder:
             "invalid": self._on_invalid,
             "failed": self._on_failed,
             "plan": self._on_plan,
+            "asking": self._on_asking,
             "decision": self._on_decision,
             "gate": self._on_gate,
             "execute": self._on_execute,
             "subgoal": self._on_subgoal,
             "verdicts": self._on_verdicts,
             "warning": self._on_warning,
+            "crash": self._on_crash,
             "done": self._on_done,
         }
         (self.folder / "log.txt").write_text("", encoding="utf-8")
@@ -103,6 +108,16 @@ class Recorder:
                 self._record["state"] = "interrupted"
             self._write()
 
+    @property
+    def ended(self) -> bool:
+        """Whether the run's end was told."""
+        return str(self._record["state"]) == "finished"
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """Every warning that was told so far, each once."""
+        return tuple(dict.fromkeys(self._planner["warnings"]))
+
     def __enter__(self) -> Recorder:
         return self
 
@@ -118,6 +133,7 @@ class Recorder:
         task, limits = content.pop("task", None), content.pop("limits", None)
         if isinstance(task, Instruction):
             self._planner["instruction"] = entries.instruction_entry(task, self._store)
+            self._pictures = picture_names(task.text, task.slots)
         if isinstance(limits, Limits):
             self._limits = limits
             self._planner["limits"] = to_jsonable(limits)
@@ -201,19 +217,32 @@ class Recorder:
         view = observation.main
         regions = (*plan.keep_out, *(self._limits.keep_out if self._limits is not None else ()))
         self._planner["outlines"] = outlines(dict.fromkeys(regions), self._limits, view.camera)
+        said = plan.instruction
         rgb = overview(
-            view, plan.grounded, arrows=action_arrows(plan.actions), keep_out=plan.keep_out, workspace=self._limits
+            view,
+            plan.grounded,
+            names=picture_names(said.text, said.slots),
+            arrows=action_arrows(plan.actions),
+            keep_out=plan.keep_out,
+            workspace=self._limits,
         )
         (self.folder / "final.png").write_bytes(to_png(rgb))
 
+    def _on_asking(self, event: Event) -> None:
+        self._planner.setdefault("asked", []).append({**event.content, "so_far": self._so_far()})
+
     def _on_decision(self, event: Event) -> None:
-        # How much had happened by then: what a method was told is what happened since its last decision.
-        so_far = {key: len(self._planner[key]) for key in ("observations", "gates", "executions", "subgoals")}
-        self._planner["decisions"].append({**entries.plain(event.content), "so_far": so_far})
+        self._planner["decisions"].append({**entries.plain(event.content), "so_far": self._so_far()})
+
+    def _so_far(self) -> dict[str, int]:
+        """How much has happened: what a method is told is what happened since its last decision."""
+        return {key: len(self._planner[key]) for key in ("observations", "gates", "executions", "subgoals")}
 
     def _on_gate(self, event: Event) -> None:
         self._planner["gates"].append({"plan": self._plan_number, **entries.gate_entry(event.name, event.content)})
         self._stamp("gates")
+        checks = counted(len(event.content.checks), "check")
+        self._log("gate", f"{event.name}: " + gate_words(event.content.admitted, checks, event.content.reasons))
 
     def _on_subgoal(self, event: Event) -> None:
         entry = entries.subgoal_entry(event.content, self._store)
@@ -224,9 +253,7 @@ class Recorder:
         number = len(self._planner["executions"]) + 1
         self._planner["executions"].append(entries.execution_entry(number, planned, report))
         self._stamp("executions")
-        self._log(
-            "execute", f"action {number} {report.action.kind}: " + ("ran" if report.executed else f"{report.fault}")
-        )
+        self._log("execute", f"action {number} {report.action.kind}: " + report.words)
 
     def _on_verdicts(self, event: Event) -> None:
         verdicts = to_jsonable(tuple(event.content))
@@ -238,6 +265,15 @@ class Recorder:
         text = str(event.content)
         self._planner["warnings"].append(text)
         self._log("warning", text)
+
+    def _on_crash(self, event: Event) -> None:
+        """The user's own code raised: its traceback is kept, line by line in the log."""
+        error: WonderfulTeamError = event.content
+        entry = {"error": event.name, "message": str(error), "trace": error.trace}
+        self._planner.setdefault("crashes", []).append(entry)
+        self._log("crash", str(error))
+        for line in error.trace.splitlines():
+            self._log("", line)
 
     def _on_done(self, event: Event) -> None:
         self._record["state"] = "finished"
@@ -263,6 +299,8 @@ class Recorder:
                 # The score comes after the trial and stays out of the planner's part.
                 usage = {role: entries.usage_entry(one, with_seconds=True) for role, one in trial.usage_by_role.items()}
                 self._clock["usage_by_role"] = usage
+            case WonderfulTeamError() as error:
+                self._record["outcome"] = {"outcome": event.name, "stage": error.stage, "reason": str(error)}
             case _:
                 self._record["outcome"] = {"outcome": event.name, "stage": None, "reason": ""}
         outcome = self._record["outcome"]
@@ -286,8 +324,8 @@ class Recorder:
 
     def _log(self, name: str, text: str) -> None:
         line = redact(f"{self._elapsed_s():6.1f} s  {name:10s} {text}", self._secrets)
-        with (self.folder / "log.txt").open("a", encoding="utf-8") as log:
-            log.write(line.replace("\n", " ") + "\n")
+        with (self.folder / "log.txt").open("a", encoding="utf-8", errors="backslashreplace") as log:
+            log.write(visible(spoken(line.replace("\n", " "), self._pictures)) + "\n")
 
     def _write(self) -> None:
         planner = {**self._planner, "requests": [self._requests[key] for key in sorted(self._requests)]}
@@ -302,8 +340,14 @@ class Recorder:
 def _write_whole(path: Path, text: str) -> None:
     """Replace a file so that a reader finds the old or the new content, never half of it."""
     part = path.with_name(f".{path.name}.part")
-    part.write_text(text, encoding="utf-8")
+    # Half of a character (a lone surrogate) becomes its JSON escape, which reads back as what it was.
+    part.write_text(text, encoding="utf-8", errors="backslashreplace")
     os.replace(part, path)
+
+
+def gate_words(admitted: bool, checks: str, reasons: Sequence[str]) -> str:
+    """One passage through the gate in a line."""
+    return f"admitted ({checks})" if admitted else f"refused ({checks}): " + "; ".join(reasons)
 
 
 def _now() -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import Any, cast
 
 from wonderful_team.errors import (
     ConfigError,
@@ -13,13 +13,14 @@ from wonderful_team.errors import (
     WonderfulTeamError,
     WorldUnavailableError,
 )
-from wonderful_team.interfaces import Act, Decision, Done, GaveUp, Policy, Privileged, Situation, Subscriber, World
+from wonderful_team.interfaces import Act, Done, GaveUp, Policy, Privileged, Situation, Subscriber, World
 from wonderful_team.runtime.approval import Approval, Approver
 from wonderful_team.runtime.execute import Execution
 from wonderful_team.runtime.freshness import MAX_AGE_S
 from wonderful_team.runtime.loop import Caller
 from wonderful_team.runtime.optional import ChunkPolicy, Horizon
 from wonderful_team.runtime.progress import Ending, Progress
+from wonderful_team.runtime.user_code import GuardedScorer, GuardedWorld, decision_of
 from wonderful_team.types import Observation, Plan, Trial
 
 MAX_DECISIONS = 500
@@ -75,6 +76,7 @@ def rollout(
         raise ConfigError(
             f"looks is {looks}, but the plan was read (or approved) beforehand: it runs as it is, so looks must be 0"
         )
+    world = cast(World, GuardedWorld(world))
     progress = Progress(policy, scene, seed, tuple(subscribers))
     setup = {"method": policy.name, "seed": seed, "replans": replans, "looks": looks, **(configuration or {})}
     progress.tell("run", scene, {**setup, "task": world.instruction, "limits": world.limits})
@@ -119,7 +121,8 @@ def _attempts(
             plan=plan if attempt == 0 else None,
             looks_left=looks,
         )
-        decision: Decision = caller.wait_for(policy.decide(situation))
+        progress.asking(situation)
+        decision = decision_of(policy, situation, caller)
         progress.decided(decision)
         if not isinstance(decision, Act):
             return _said(decision, progress)
@@ -152,18 +155,21 @@ def _said(decision: Done | GaveUp | Any, progress: Progress) -> Ending:
 
 def _stop(world: World, progress: Progress, error: BaseException) -> Trial:
     """End a trial that an exception cut short; raises what is neither the method's, the provider's nor the robot's."""
+    try:
+        world.stop()
+    except WonderfulTeamError as worse:
+        progress.tell("warning", "halt", f"{worse}: the robot may still be moving; a person must look")
+        progress.traced(worse)
+    if isinstance(error, WonderfulTeamError):
+        progress.traced(error)
     match error:
         case RobotFaultError() | SafetyStopError():
-            world.stop()
             progress.tell("warning", "halt", f"{error}. The run is halted; a person should look before it goes on.")
             return progress.finish(Ending("failure", error.stage or "execution", str(error)))
         case ModelUnavailableError() | WorldUnavailableError():
-            world.stop()
             return progress.finish(Ending("error", error.stage or "model", str(error)))
         case WonderfulTeamError() if not isinstance(error, ConfigError):
-            world.stop()
             return progress.finish(Ending("failure", error.stage or "plan", str(error)))
-    world.stop()
     interrupted = isinstance(error, KeyboardInterrupt)
     reason = "interrupted" if interrupted else f"{type(error).__name__}: {error}"
     progress.tell("warning", "interrupted" if interrupted else "crash", reason)
@@ -175,7 +181,11 @@ def _scored(progress: Progress, ending: Ending, scorer: Privileged | None) -> Tr
     """Let truth decide, now that nothing can learn from it any more."""
     if scorer is None:
         return progress.finish(Ending(ending.outcome or "unscored", ending.stage, ending.reason))
-    score = scorer.score()
+    try:
+        score = GuardedScorer(scorer).score()
+    except WonderfulTeamError as error:
+        progress.traced(error)
+        return progress.finish(Ending("error", error.stage or "world", str(error)))
     match score.success:
         case True:
             return progress.finish(Ending("success", None, score.reason or ending.reason))

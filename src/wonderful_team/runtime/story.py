@@ -27,22 +27,45 @@ def situations(folder: Path, record: Record, setup: Setup) -> Iterator[Situation
     instruction = stored_instruction(folder, record)
     vocabulary, limits = Vocabulary(setup.vocabulary), same_limits(setup)
     before = _NOTHING
-    for attempt, decision in enumerate(record["planner"]["decisions"]):
-        now = decision["so_far"]
-        # The last thing that happened before a decision is a look.
+    for number, asked in enumerate(_asked(record, setup)):
+        now = asked["so_far"]
+        # The last thing that happened before a method was asked is a look.
         observation = stored_observation(folder, record, now["observations"] - 1)
         yield Situation(
             observation,
             instruction,
             vocabulary,
             limits,
-            attempt=attempt,
-            replans_left=setup.replans - attempt,
+            attempt=asked["attempt"],
+            replans_left=asked["replans_left"],
             executed=tuple(_runs(folder, record, before, now)),
             refused=_refusal(record["planner"]["gates"][before["gates"] : now["gates"]]),
-            plan=recorded_plan(folder, record, setup.plan) if attempt == 0 and setup.plan is not None else None,
+            plan=recorded_plan(folder, record, setup.plan) if number == 0 and setup.plan is not None else None,
+            looks_left=asked["looks_left"],
         )
         before = now
+
+
+def _asked(record: Record, setup: Setup) -> list[dict[str, Any]]:
+    """What the method was told of attempts and looks each time it was asked; the last time only if that came to an end.
+
+    Records of earlier releases say it only through the names of their pictures.
+    """
+    planner = record["planner"]
+    if "asked" in planner:
+        ended = record["state"] == "finished" and (record["outcome"] or {}).get("stage") not in ("interrupted", "crash")
+        return list(planner["asked"] if ended else planner["asked"][: len(planner["decisions"])])
+    found: list[dict[str, Any]] = []
+    attempt, looks = 0, setup.looks
+    for decision in planner["decisions"]:
+        where = planner["observations"][decision["so_far"]["observations"] - 1]["where"]
+        if found and where == "look":
+            looks -= 1
+        elif found:
+            attempt += 1
+        counts = {"attempt": attempt, "replans_left": setup.replans - attempt, "looks_left": looks}
+        found.append({**counts, "so_far": decision["so_far"]})
+    return found
 
 
 def recorded_plan(folder: Path, record: Record, plan_id: str) -> Plan:

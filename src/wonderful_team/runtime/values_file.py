@@ -59,6 +59,9 @@ def decode(value: Any, hint: Any, where: str = "") -> Any:
     origin, arguments = get_origin(hint), get_args(hint)
     if hint is Any:
         return value
+    if hasattr(origin, "__value__"):
+        # From numpy 2.5 on, which needs Python 3.12, NDArray is an alias by the `type` statement: what it stands for counts.
+        origin = get_origin(origin.__value__)
     if origin is Literal:
         return _require(value in arguments, value, place, f"one of {', '.join(map(repr, arguments))}")
     if origin in (Union, types.UnionType):

@@ -1,6 +1,6 @@
 """Runs Python that a model wrote, in a worker process that has no files, no network and no clock."""
 
-from wonderful_team.sandbox.errors import SandboxError
+from wonderful_team.sandbox.errors import SandboxError, SandboxUnavailableError
 from wonderful_team.sandbox.run import run_path
 
-__all__ = ["SandboxError", "run_path"]
+__all__ = ["SandboxError", "SandboxUnavailableError", "run_path"]

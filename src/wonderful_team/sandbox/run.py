@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from typing import Any
 
@@ -11,11 +10,10 @@ import pydantic_monty
 from wonderful_team.geometry import Box
 from wonderful_team.pictures import Point
 from wonderful_team.sandbox.errors import SandboxError
-from wonderful_team.sandbox.worker import discarded_output, session
+from wonderful_team.sandbox.returned import cut, describing, parsed
+from wonderful_team.sandbox.worker import WorkerLostError, discarded_output, in_worker
 
 MAX_CODE_CHARACTERS = 20_000
-MAX_COORDINATE_PX = 1e6
-"""Larger numbers are no pixels."""
 
 _AUTHORS_FILE = "<python-input-0>"
 _FORBIDDEN = {
@@ -32,7 +30,8 @@ def run_path(code: str, boxes: Mapping[str, Box], *, max_points: int = 20, timeo
     """Run code that defines `path(boxes)` and return its points.
 
     The code runs in another process, without files, network, clock or packages, within bounds on time and memory.
-    Nothing it does can change this process.
+    Nothing it does can change this process, and nothing it returns reaches this process: the worker describes the value in at
+    most `PRINTED_BYTES` of text, which is parsed here as untrusted input.
 
     Args:
         code: Python source that defines `path(boxes)`.
@@ -44,52 +43,35 @@ def run_path(code: str, boxes: Mapping[str, Box], *, max_points: int = 20, timeo
         Points (x, y) [px], all finite, 2 to `max_points` of them.
 
     Raises:
-        SandboxError: Anything that went wrong with the code or with what it returned; the text is for its author.
+        SandboxError: Anything that went wrong with the code or with what it returned; the text is for its author and has at
+            most `MAX_ERROR_CHARACTERS`.
+        SandboxUnavailableError: The workers do not run here, not even an empty program.
     """
     if len(code) > MAX_CODE_CHARACTERS:
         raise SandboxError(f"the code has {len(code)} characters; at most {MAX_CODE_CHARACTERS} are run")
     plain = {name: box.as_tuple for name, box in boxes.items()}
+
+    def run(interpreter: Any) -> str:
+        interpreter.feed_run(code, print_callback=discarded_output())
+        interpreter.feed_run("_returned = path(boxes)", inputs={"boxes": plain}, print_callback=discarded_output())
+        described = discarded_output()
+        interpreter.feed_run(describing(max_points), print_callback=described)
+        return str(described.output)
+
     try:
-        with session(timeout_s) as interpreter:
-            interpreter.feed_run(code, print_callback=discarded_output())
-            returned = interpreter.feed_run("path(boxes)", inputs={"boxes": plain}, print_callback=discarded_output())
-    except pydantic_monty.MontyCrashedError as error:
-        raise SandboxError(f"the function had to be stopped from outside: {_first_line(str(error))}") from error
+        text = in_worker(run, timeout_s)
+    except WorkerLostError as error:
+        raise SandboxError(f"the function had to be stopped from outside: {cut(str(error), 200)}") from error
     except (pydantic_monty.MontySyntaxError, pydantic_monty.MontyRuntimeError) as error:
-        raise SandboxError(_explained(error, code)) from error
+        raise SandboxError(cut(_explained(error, code))) from error
     except pydantic_monty.MontyError as error:
-        raise SandboxError(f"the function could not be run: {_first_line(str(error))}") from error
-    return checked_points(returned, max_points)
-
-
-def checked_points(returned: Any, max_points: int) -> tuple[Point, ...]:
-    """What a function returned, as points.
-
-    Raises:
-        SandboxError: Not a list of 2 to `max_points` pairs of finite numbers.
-    """
-    if not isinstance(returned, list | tuple):
-        raise SandboxError(f"path(boxes) must return a list of (x, y), it returned {_shortened(returned)}")
-    if not 2 <= len(returned) <= max_points:
-        raise SandboxError(f"path(boxes) returned {len(returned)} points; 2 to {max_points} are allowed")
-    return tuple(_checked_point(point, number) for number, point in enumerate(returned, start=1))
-
-
-def _checked_point(point: Any, number: int) -> Point:
-    if not isinstance(point, list | tuple) or len(point) != 2:
-        raise SandboxError(f"point {number} must be a pair (x, y), it is {_shortened(point)}")
-    for value in point:
-        if isinstance(value, bool) or not isinstance(value, int | float):
-            raise SandboxError(f"point {number} must hold two numbers, it is {_shortened(point)}")
-        # Compared before any conversion: an integer may be too large for a float.
-        if not (isinstance(value, int) or math.isfinite(value)) or abs(value) > MAX_COORDINATE_PX:
-            raise SandboxError(f"point {number} is {_shortened(point)}; both numbers must be finite pixels")
-    return float(point[0]), float(point[1])
+        raise SandboxError(f"the function could not be run: {cut(str(error), 200)}") from error
+    return parsed(text, max_points)
 
 
 def _explained(error: Any, code: str) -> str:
     """The exception, the line of the author's code where it arose, and what would be valid."""
-    message = str(error)
+    message = cut(str(error))
     kind = type(error.exception()).__name__
     if kind == "NameError" and "'path'" in message and not any(f.filename == _AUTHORS_FILE for f in error.traceback()):
         return "the code does not define a function path(boxes)"
@@ -99,18 +81,3 @@ def _explained(error: Any, code: str) -> str:
     if lines and 1 <= lines[-1] <= len(source):
         text += f"\nin line {lines[-1]}: {source[lines[-1] - 1].strip()[:200]}"
     return text + (f"\n{_FORBIDDEN[kind]}" if kind in _FORBIDDEN else "")
-
-
-def _first_line(text: str) -> str:
-    return text.splitlines()[0][:200] if text else "no reason given"
-
-
-def _shortened(value: Any, depth: int = 0) -> str:
-    if isinstance(value, int) and abs(value) > MAX_COORDINATE_PX:
-        return "a very large number"
-    if isinstance(value, list | tuple):
-        # A list may hold itself.
-        inside = ", ".join(_shortened(item, depth + 1) for item in value[:4]) if depth < 2 else "..."
-        return f"({inside}{', ...' if len(value) > 4 else ''})"
-    text = repr(value)
-    return text if len(text) <= 80 else text[:77] + "..."

@@ -21,6 +21,13 @@ class StepReport:
     measured: Mapping[str, Any] = field(default_factory=dict)
     fault: str | None = None
 
+    @property
+    def words(self) -> str:
+        """How it went, in words."""
+        if self.executed:
+            return f"ran, with a fault: {self.fault}" if self.fault else "ran"
+        return self.fault or "did not run, and the robot gave no reason"
+
 
 @dataclass(frozen=True)
 class Verdict:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -217,6 +218,10 @@ class Limits:
     clearance_m: float = 0.2
 
     def __post_init__(self) -> None:
+        if not all(math.isfinite(value) for value in (*self.low_m, *self.high_m, self.clearance_m)):
+            raise ValueError(
+                f"workspace: every number must be finite, got {self.low_m}, {self.high_m} m, clearance {self.clearance_m} m"
+            )
         if any(low >= high for low, high in zip(self.low_m, self.high_m, strict=True)):
             raise ValueError(f"workspace: every low must be below its high, got {self.low_m} and {self.high_m} m")
 

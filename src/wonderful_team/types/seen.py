@@ -12,7 +12,9 @@ from typing import Literal, TypeAlias
 from wonderful_team.errors import ConfigError
 from wonderful_team.geometry import Camera
 from wonderful_team.geometry.arrays import Array
+from wonderful_team.notebook import card
 from wonderful_team.pictures import checked_depth, checked_rgb, picture_hash
+from wonderful_team.text import counted, picture_names, spoken
 
 SlotKind: TypeAlias = Literal["object", "scene", "frame", "before", "after"]
 
@@ -82,6 +84,15 @@ class Observation:
         """Hash over all views, in order."""
         return hashlib.sha256("".join(view.hash for view in self.views.values()).encode()).hexdigest()[:16]
 
+    def _repr_html_(self) -> str:
+        """In a notebook: every view, with what is known beside its pixels."""
+        pictures = []
+        for name, view in self.views.items():
+            known = [word for word, value in (("depth", view.depth_m), ("camera", view.camera)) if value is not None]
+            size = f"{view.size_px[0]} x {view.size_px[1]} px"
+            pictures.append((view.rgb, f"{name}, {size}, {' and '.join(known) or 'no depth, no camera'}"))
+        return card(f"observation of {counted(len(pictures), 'view')}", pictures=pictures)
+
 
 @dataclass(frozen=True, eq=False)
 class Slot:
@@ -124,3 +135,8 @@ class Instruction:
                     f"the instruction has a picture {name!r} but its text never says {{{name}}}: {self.text!r}"
                 )
         object.__setattr__(self, "slots", MappingProxyType(dict(self.slots)))
+
+    @property
+    def plain_text(self) -> str:
+        """The words as people read them without the pictures: "put [picture 1] into [picture 2]"."""
+        return spoken(self.text, picture_names(self.text, self.slots))

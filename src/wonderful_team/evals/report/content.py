@@ -19,6 +19,7 @@ from wonderful_team.evals.report import tables
 from wonderful_team.evals.report.plots import cost_plot, rate_plot, task_plot
 from wonderful_team.evals.summary import Summary
 from wonderful_team.evals.trials import Condition, Row
+from wonderful_team.text import counted
 
 EXAMPLES = 3
 GALLERY = 24
@@ -30,6 +31,7 @@ def page_content(summary: Summary, warnings: Sequence[str], baseline: str | None
     head, lines = tables.task_table(summary)
     return {
         "summary": summary,
+        "runs_words": runs_words(summary),
         "answer": summary.headline(baseline),
         "warnings": warnings,
         "head": tables.HEAD,
@@ -53,6 +55,19 @@ def page_content(summary: Summary, warnings: Sequence[str], baseline: str | None
         "gallery": _gallery(summary, page),
         "versions": sorted({f"{k} {v}" for row in summary.rows if row.result for k, v in row.result.versions.items()}),
     }
+
+
+def runs_words(summary: Summary) -> str:
+    """How often each task was really run by each method and model: seeds times repeats."""
+    runs: dict[tuple[str, Condition], set[tuple[int, int]]] = {}
+    for row in summary.rows:
+        if row.spec.condition in summary.compared:
+            runs.setdefault((row.spec.task, row.spec.condition), set()).add((row.spec.seed, row.spec.repeat))
+    counts = sorted({len(found) for found in runs.values()})
+    if not counts:
+        return "no trial of a method"
+    span = counted(counts[0], "run") if len(counts) == 1 else f"{counts[0]} to {counted(counts[-1], 'run')}"
+    return f"{span} a task for each method and model"
 
 
 def _plots(summary: Summary) -> dict[str, Any]:
@@ -148,7 +163,7 @@ def _gallery(summary: Summary, page: Path) -> list[dict[str, Any]]:
             "scene": row.spec.scene,
             "label": row.spec.condition.label,
             "outcome": row.result.outcome,
-            "stage": row.result.stage or "",
+            "stage": f"at {row.result.stage}" if row.result.stage else "",
         }
         for row in turns[:GALLERY]
         if row.result is not None

@@ -19,6 +19,7 @@ from wonderful_team.evals.report.latex import latex_tables
 from wonderful_team.evals.store import Store
 from wonderful_team.evals.summary import Summary, merge, summarise
 from wonderful_team.evals.trials import Row
+from wonderful_team.text import counted, visible
 
 _HERE = Path(__file__).parent
 
@@ -88,7 +89,7 @@ def write_all(
     content["files"] = {name: link(str(file), page) for name, file in files.items()}
     content["stores"] = [(str(one), _hash(Path(one))) for one in stores]
     content["command"] = command
-    page.write_text(_render(content), encoding="utf-8")
+    page.write_text(visible(_render(content), layout=True), encoding="utf-8")
     return Written(page, table, markdown, tex, summary, warnings)
 
 
@@ -127,5 +128,6 @@ def _render(content: Mapping[str, Any]) -> str:
         loader=FileSystemLoader(_HERE), autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
     )
     environment.filters["short"] = short_names
+    environment.filters["counted"] = counted
     style = Markup((_HERE / "report.css").read_text(encoding="utf-8"))
     return environment.get_template("report.html.j2").render(style=style, **content)

@@ -15,6 +15,7 @@ from wonderful_team.evals.paper import paper_beside
 from wonderful_team.evals.statistics import wilson_interval
 from wonderful_team.evals.summary import Cell, Summary
 from wonderful_team.evals.trials import Condition, Row
+from wonderful_team.text import visible
 
 _RESULT = (
     "outcome",
@@ -60,7 +61,7 @@ def to_csv(rows: Sequence[Row]) -> str:
     out = io.StringIO()
     writer = csv.DictWriter(out, columns, restval="", lineterminator="\n")
     writer.writeheader()
-    writer.writerows(records)
+    writer.writerows({k: visible(v) if isinstance(v, str) else v for k, v in record.items()} for record in records)
     return out.getvalue()
 
 
@@ -221,7 +222,7 @@ def to_markdown(summary: Summary, baseline: str | None = None) -> str:
     for whole, members in summary.variants():
         lines = [variant_words(summary.cell(one), against) for one, against in members]
         parts.append(_markdown((whole.label, *VARIANT_HEAD[1:]), lines))
-    return "\n\n".join(parts) + "\n"
+    return visible("\n\n".join(parts) + "\n", layout=True)
 
 
 def _markdown(head: Sequence[str], lines: Sequence[Sequence[str]]) -> str:

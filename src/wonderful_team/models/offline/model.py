@@ -5,7 +5,8 @@ from __future__ import annotations
 from wonderful_team.errors import ModelOutputError, UnsupportedQuestion
 from wonderful_team.models.budget import Estimate
 from wonderful_team.models.offline.answers import ANSWERS, SAMPLED
-from wonderful_team.models.offline.vision import NotSeen
+from wonderful_team.models.offline.vision import NotSeen, in_plain_light
+from wonderful_team.models.reshown import with_pictures
 from wonderful_team.types import Answer, Request, Usage
 
 MODEL_ID = "offline"
@@ -34,11 +35,9 @@ class OfflineModel:
         kind = type(request.question)
         if kind not in ANSWERS:
             raise UnsupportedQuestion(self.name, request.contract, "classical vision writes no programs")
+        question = with_pictures(request.question, in_plain_light)
         try:
-            if kind in SAMPLED:
-                value = ANSWERS[kind](request.question, request.sample)
-            else:
-                value = ANSWERS[kind](request.question)
+            value = ANSWERS[kind](question, request.sample) if kind in SAMPLED else ANSWERS[kind](question)
         except NotSeen as error:
             raise ModelOutputError(f"model 'offline' could not answer {request.contract}: {error}") from error
         value, repairs = request.question.settle(value)

@@ -20,6 +20,7 @@ from wonderful_team.errors import (
     UnknownModelError,
     WonderfulTeamError,
 )
+from wonderful_team.models.providers.bounded import ReplyTooLargeError
 
 _LONGEST_BODY = 300
 _CONTEXT = re.compile(
@@ -73,6 +74,13 @@ def scrubbed(text: str, key: str | None) -> str:
 
 def fault_of(error: BaseException, name: str, where: str, key: str | None, key_names: str) -> Fault:
     """Sort an error of the library; `key` is taken out of every text, `key_names` are the variables that may hold it."""
+    too_large = _caused_by(error, ReplyTooLargeError)
+    if too_large is not None:
+        return Fault(ModelServerError(f"{name}: {where}: {too_large}"), billed=True)
+    return _sorted(error, name, where, key, key_names)
+
+
+def _sorted(error: Any, name: str, where: str, key: str | None, key_names: str) -> Fault:
     from pydantic_ai import exceptions as lib
 
     said = _said(error, key)
@@ -105,6 +113,15 @@ def fault_of(error: BaseException, name: str, where: str, key: str | None, key_n
         case _:
             # A reply that is none: empty choices, HTML, an error in a reply that says 200.
             return Fault(ModelServerError(f"{name}: the reply is not one ({said})"), True, billed=True)
+
+
+def _caused_by(error: BaseException | None, kind: type[BaseException]) -> BaseException | None:
+    """The error of that kind among an error and its causes."""
+    for _ in range(10):
+        if error is None or isinstance(error, kind):
+            return error
+        error = error.__cause__ or error.__context__
+    return None
 
 
 def _rejected(status: int, name: str, where: str, said: str, wait_s: float | None) -> Fault:

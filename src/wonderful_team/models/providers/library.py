@@ -11,6 +11,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, cast
 
 from wonderful_team.errors import MissingExtraError
+from wonderful_team.models.providers.bounded import limit_replies
 from wonderful_team.models.providers.specs import Spec, is_loopback
 from wonderful_team.models.wire import Composed
 
@@ -55,13 +56,14 @@ def preload(api: str, text: str) -> None:
 
 
 def http_client(spec: Spec, timeout_s: float, local_only: bool) -> httpx2.AsyncClient:
-    """A connection pool of our own: no redirects (a key must not follow one), no proxy for this machine."""
+    """A connection pool of our own: no redirects (a key must not follow one), no proxy for this machine, no endless reply."""
     import httpx2
 
     limits = httpx2.Limits(max_connections=64, max_keepalive_connections=16)
     timeout = httpx2.Timeout(timeout_s, connect=min(10.0, timeout_s))
     outside = not (local_only or is_loopback(spec.base_url))
-    return httpx2.AsyncClient(timeout=timeout, limits=limits, follow_redirects=False, trust_env=outside)
+    client = httpx2.AsyncClient(timeout=timeout, limits=limits, follow_redirects=False, trust_env=outside)
+    return limit_replies(client)
 
 
 def build_model(spec: Spec, model: str, key: str | None, client: httpx2.AsyncClient) -> LibraryModel:

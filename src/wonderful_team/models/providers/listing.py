@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from typing import Any
 
 from wonderful_team.errors import (
@@ -12,6 +11,7 @@ from wonderful_team.errors import (
     ModelUnavailableError,
     UnknownModelError,
 )
+from wonderful_team.models.providers.bounded import ReplyTooLargeError, fetch_json
 from wonderful_team.models.providers.faults import scrubbed
 from wonderful_team.models.providers.specs import SERVER_KEY, is_loopback
 
@@ -29,19 +29,17 @@ def server_models(base_url: str, key: str | None, *, timeout_s: float = 10.0, lo
     except ImportError as error:
         raise MissingExtraError("models of vendors and servers", "vendors") from error
     headers = {"Authorization": f"Bearer {key}"} if key else {}
-    outside = not (local_only or is_loopback(base_url))
+    direct = local_only or is_loopback(base_url)
     try:
-        with httpx2.Client(timeout=timeout_s, trust_env=outside, follow_redirects=False) as client:
-            reply = client.get(f"{base_url}/models", headers=headers)
-            status, text = reply.status_code, reply.text
-    except httpx2.HTTPError as error:
+        status, said = fetch_json("GET", f"{base_url}/models", headers=headers, timeout_s=timeout_s, direct=direct)
+    except (httpx2.HTTPError, httpx2.InvalidURL, ReplyTooLargeError) as error:
         reason = f"{type(error).__name__}: {scrubbed(str(error), key)}"
         raise ModelUnavailableError(f"no model server answers at {base_url} ({reason})") from None
     if status in (401, 403):
         raise ModelAuthError(f"{base_url} wants a key: set the environment variable {SERVER_KEY}")
     if status >= 500:
         raise ModelUnavailableError(f"{base_url}/models failed with status {status}")
-    found = _names(text) if status == 200 else None
+    found = _names(said) if status == 200 else None
     if found is None:
         raise UnknownModelError(
             f"{base_url}/models gives no list of models (status {status}); valid is the address under which the server "
@@ -64,11 +62,7 @@ def only_model(base_url: str, names: list[str]) -> str:
     raise ConfigError(f"{base_url} has {len(names)} models; say which: {listed}")
 
 
-def _names(text: str) -> list[str] | None:
-    try:
-        data: Any = json.loads(text)
-    except ValueError:
-        return None
+def _names(data: Any) -> list[str] | None:
     entries = data.get("data", data.get("models")) if isinstance(data, dict) else data
     if not isinstance(entries, list):
         return None

@@ -28,7 +28,7 @@ from wonderful_team.models.providers import library
 from wonderful_team.models.providers.faults import Fault, fault_of, scrubbed
 from wonderful_team.models.providers.settings import LONGEST_WAIT_S, Settings
 from wonderful_team.models.providers.specs import SERVER_KEY, VENDORS, Spec
-from wonderful_team.models.wire import Composed, Reading, Unreadable, compose, ticks_of
+from wonderful_team.models.wire import Composed, Reading, Unreadable, compose, encodable, ticks_of
 from wonderful_team.types import Answer, Request, Usage, Words
 
 if TYPE_CHECKING:
@@ -268,7 +268,7 @@ class Provider:
         response, limit = reply
         said = "".join(part.content for part in response.parts if isinstance(part, TextPart))
         thought = "".join(part.content for part in response.parts if isinstance(part, ThinkingPart))
-        said, thought = scrubbed_key(said, self.key), scrubbed_key(thought, self.key)
+        said, thought = (encodable(scrubbed_key(text, self.key)) for text in (said, thought))
         usage = self._usage(request, response, said, thought, tries)
         ticket.answered = usage
         details = response.provider_details or {}

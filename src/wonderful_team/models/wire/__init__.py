@@ -2,7 +2,7 @@
 
 from wonderful_team.models.wire.composing import Composed, compose
 from wonderful_team.models.wire.form import Form
-from wonderful_team.models.wire.reading import Reading, read_json
+from wonderful_team.models.wire.reading import Reading, encodable, read_json
 from wonderful_team.models.wire.showing import Shown, paste, show, ticks_of
 from wonderful_team.models.wire.unreadable import Unreadable
 
@@ -13,6 +13,7 @@ __all__ = [
     "Shown",
     "Unreadable",
     "compose",
+    "encodable",
     "paste",
     "read_json",
     "show",

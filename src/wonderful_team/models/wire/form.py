@@ -219,7 +219,7 @@ def _decoded(text: str) -> Any:
     """A nested object or list that was written as a string."""
     try:
         inner = json.loads(text)
-    except ValueError:
+    except (ValueError, RecursionError):
         return text
     return inner if isinstance(inner, dict | list) else text
 

@@ -14,6 +14,8 @@ _POINT_TAG = re.compile(r"<points?\b([^>]*)>", re.IGNORECASE)
 _PAIR = re.compile(r"\bx(\d*)\s*=\s*\"([-\d.]+)\"\s+y\1\s*=\s*\"([-\d.]+)\"")
 _COORDS = re.compile(r"coords\s*=\s*\"([^\"]*)\"")
 _MOST_STARTS = 200
+_MOST_DEPTH = 50
+"""No question's answer is nested deeper than ten; deeper values would exhaust whatever walks them."""
 
 
 @dataclass(frozen=True)
@@ -32,7 +34,7 @@ def read_json(text: str, keys: frozenset[str] = frozenset()) -> Reading:
         keys: Names that the object should have: they tell it from others in the text.
 
     Raises:
-        ValueError: There is none, or it holds NaN or Infinity; the text is for the model.
+        ValueError: There is none, it holds NaN or Infinity, or is nested too deeply; the text is for the model.
     """
     stripped = text.strip().lstrip("\ufeff")
     if not stripped:
@@ -64,7 +66,38 @@ def read_json(text: str, keys: frozenset[str] = frozenset()) -> Reading:
             repairs.append(f"the wrapper {name!r} round the answer dropped")
     if not isinstance(value, dict):
         raise ValueError(f"expected one JSON object, got {type(value).__name__}")
-    return Reading(value, tuple(repairs))
+    _check_depth(value)
+    return Reading(_encodable(value), tuple(repairs))
+
+
+def encodable(text: str) -> str:
+    """The text without lone surrogates: JSON can hold them as escapes, but no file or terminal can."""
+    return text.encode("utf-16-le", "surrogatepass").decode("utf-16-le", "replace")
+
+
+def _check_depth(value: Any) -> None:
+    level = [value]
+    for _ in range(_MOST_DEPTH):
+        level = [
+            inner
+            for outer in level
+            for inner in (outer.values() if isinstance(outer, dict) else outer)
+            if isinstance(inner, dict | list)
+        ]
+        if not level:
+            return
+    raise ValueError(f"the JSON is nested deeper than {_MOST_DEPTH} levels; expected an object of the form asked for")
+
+
+def _encodable(value: Any) -> Any:
+    match value:
+        case str():
+            return encodable(value)
+        case dict():
+            return {encodable(name): _encodable(item) for name, item in value.items()}
+        case list():
+            return [_encodable(item) for item in value]
+    return value
 
 
 def read_point_tags(text: str) -> list[list[float]]:

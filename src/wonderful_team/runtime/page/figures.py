@@ -72,7 +72,7 @@ def point_layer(point: Corner, radius: float, css: str, label: str = "") -> Mark
 
 
 def cross_layer(point: Corner, reach: float, css: str) -> Markup:
-    """A cross: where something goes."""
+    """A cross: where something is put down."""
     (x, y), r = point, reach
     path = f"M{x - r:.2f} {y - r:.2f}L{x + r:.2f} {y + r:.2f}M{x - r:.2f} {y + r:.2f}L{x + r:.2f} {y - r:.2f}"
     return Markup('<path d="{}" class="cross-rim"/><path d="{}" class="cross {}"/>').format(path, path, css)
@@ -89,10 +89,10 @@ def tag_layer(x: float, y: float, text: str, size: float, css: str) -> Markup:
 
 
 def arrow_layer(points: Sequence[Corner], number: int, size: float) -> Markup:
-    """A move through points, bowed when there are two, with its number in the middle and a head at its end."""
+    """A move through points, bowed when there are two, with a head at its end and its number beside its middle."""
     start, end = points[0], points[-1]
     middle: Corner = points[len(points) // 2]
-    before = points[-2]
+    before, outward = points[-2], _outward(start, end)
     if len(points) == 2:
         dx, dy = end[0] - start[0], end[1] - start[1]
         side = -1.0 if dx < 0 else 1.0
@@ -102,9 +102,17 @@ def arrow_layer(points: Sequence[Corner], number: int, size: float) -> Markup:
     else:
         path = "M" + "L".join(f"{x:.2f} {y:.2f}" for x, y in points)
     head = _head(before, end, 1.1 * size)
+    beside = (middle[0] + 1.25 * size * outward[0], middle[1] + 1.25 * size * outward[1])
     return Markup(
         '<path d="{0}" class="arrow-rim"/><path d="{0}" class="arrow"/><path d="{1}" class="arrow-head"/>{2}'
-    ).format(path, head, point_layer(middle, 0.75 * size, "move", str(number)))
+    ).format(path, head, point_layer(beside, 0.75 * size, "move", str(number)))
+
+
+def _outward(start: Corner, end: Corner) -> Corner:
+    """Across an arrow, on the side to which it bows: a number there covers neither the line nor its head."""
+    dx, dy = end[0] - start[0], end[1] - start[1]
+    length, side = math.hypot(dx, dy) or 1.0, -1.0 if dx < 0 else 1.0
+    return (dy * side / length, -dx * side / length) if dx or dy else (1.0, 0.0)
 
 
 def _head(before: Corner, end: Corner, length: float) -> str:

@@ -29,6 +29,11 @@ def grounded_plan(record: dict[str, Any]) -> dict[str, Any] | None:
     return last_plan(record)
 
 
+def target_words(plan: dict[str, Any] | None) -> dict[str, str]:
+    """What each target of a plan is, by id."""
+    return {} if plan is None else {target["id"]: target["words"] for target in plan["targets"]}
+
+
 def scene_of(record: dict[str, Any], plan: dict[str, Any] | None) -> dict[str, Any] | None:
     """The observation a plan was made from, else the first one."""
     observations: list[dict[str, Any]] = record["planner"]["observations"]

@@ -6,9 +6,12 @@ import base64
 import io
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from markupsafe import Markup, escape
 from PIL import Image
+
+from wonderful_team.text import PLACEHOLDER
 
 MOST_BYTES = 3_600_000
 """Bytes of pictures that a page may hold before base64 (4.8 MB of text); beyond, pictures get coarser, not fewer."""
@@ -105,3 +108,15 @@ def text_in_svg(x: float, y: float, text: str, css: str, size: float) -> Markup:
     return Markup('<text x="{}" y="{}" class="{}" font-size="{}">{}</text>').format(
         f"{x:.2f}", f"{y:.2f}", css, f"{size:.2f}", escape(text)
     )
+
+
+def pictured(text: str | Markup, record: dict[str, Any], album: Album) -> Markup:
+    """A text with the instruction's pictures in the place of their names, small enough for a line."""
+    said = record["planner"]["instruction"]
+    slots = said["slots"] if said is not None else {}
+
+    def shown(name: str) -> str | None:
+        slot = slots.get(name)
+        return None if slot is None else album.image(next(iter(slot["views"].values())), f"picture {name}", "inline")
+
+    return Markup(PLACEHOLDER.sub(lambda found: shown(found[1]) or found[0], str(escape(text))))  # noqa: S704  escaped

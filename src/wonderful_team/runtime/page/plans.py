@@ -7,7 +7,7 @@ from typing import Any
 
 from markupsafe import Markup, escape
 
-from wonderful_team.runtime.page.look_up import chapters
+from wonderful_team.runtime.page.look_up import chapters, target_words
 from wonderful_team.runtime.page.words import step_words, word_diff
 
 
@@ -18,7 +18,7 @@ def plans(record: dict[str, Any]) -> list[dict[str, Any]]:
 
 def _plan(name: str, current: dict[str, Any]) -> dict[str, Any]:
     before = current["first_draft"] or current["subgoals"]
-    rows = diff_rows(before, current["subgoals"])
+    rows, names = diff_rows(before, current["subgoals"]), target_words(current)
     return {
         "name": name,
         "id": current["id"],
@@ -27,7 +27,7 @@ def _plan(name: str, current: dict[str, Any]) -> dict[str, Any]:
         "rows": rows,
         "changed": any(row["kind"] != "same" for row in rows),
         "questions": current["questions"],
-        "steps": [{"subgoal": step["subgoal"], "words": step_words(step)} for step in current["steps"]],
+        "steps": [{"subgoal": step["subgoal"], "words": step_words(step, names)} for step in current["steps"]],
         "message": current["message"],
     }
 
@@ -72,7 +72,7 @@ def replans(record: dict[str, Any]) -> list[dict[str, Any]]:
                 "verdicts": verdicts,
                 "refusal": [] if verdicts else refusal,
                 "rows": diff_rows(before["subgoals"], after["subgoals"]),
-                "steps": [step_words(step) for step in after["steps"]],
+                "steps": [step_words(step, target_words(after)) for step in after["steps"]],
                 "status": after["status"].replace("_", " "),
             }
         )

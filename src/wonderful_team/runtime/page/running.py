@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from wonderful_team.runtime.page.look_up import chapters
+from wonderful_team.runtime.page.look_up import chapters, target_words
 from wonderful_team.runtime.page.pictures import Album
 from wonderful_team.runtime.page.words import step_words
 
@@ -40,7 +40,7 @@ def _rows(current: dict[str, Any]) -> list[dict[str, Any]]:
             {
                 "number": number,
                 "subgoal": planned["step"]["subgoal"],
-                "words": step_words(planned["step"]),
+                "words": step_words(planned["step"], target_words(current)),
                 "yaw": action.get("yaw_rad") if action else None,
                 "sources": sources,
             }
@@ -70,7 +70,8 @@ def execution(record: dict[str, Any], album: Album) -> list[dict[str, Any]]:
         reports = planner["executions"][used : used + run["actions"]]
         used += run["actions"]
         name = run["subgoal"]
-        goals = planner["plans"][run["plan"]]["plan"]["subgoals"] if run["plan"] is not None else []
+        plan = planner["plans"][run["plan"]]["plan"] if run["plan"] is not None else None
+        goals = plan["subgoals"] if plan is not None else []
         found.append(
             {
                 "subgoal": name,
@@ -78,7 +79,7 @@ def execution(record: dict[str, Any], album: Album) -> list[dict[str, Any]]:
                 "replan": run["plan"] or 0,
                 "before": album.image(_view(run, "before"), f"before {name}", "wide"),
                 "after": album.image(_view(run, "after"), f"after {name}", "wide"),
-                "reports": [{**report, "words": step_words(report["step"])} for report in reports],
+                "reports": [{**report, "words": step_words(report["step"], target_words(plan))} for report in reports],
                 "verdict": _verdict(planner["verdicts"], position, name),
             }
         )

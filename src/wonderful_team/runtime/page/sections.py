@@ -15,7 +15,8 @@ from wonderful_team.runtime.page.plans import plans, replans
 from wonderful_team.runtime.page.requests import Asked
 from wonderful_team.runtime.page.running import actions, execution
 from wonderful_team.runtime.page.strips import overviews, targets
-from wonderful_team.runtime.page.words import brief, counted, money, pretty_name, seconds
+from wonderful_team.runtime.page.words import brief, money, pretty_name, seconds
+from wonderful_team.text import counted, picture_names, spoken
 
 __all__ = [
     "actions",
@@ -28,6 +29,7 @@ __all__ = [
     "replans",
     "reproduce",
     "story",
+    "summary",
     "targets",
     "title",
     "warnings",
@@ -65,7 +67,7 @@ def title(record: dict[str, Any]) -> str:
 
 def _text(record: dict[str, Any]) -> str:
     said = record["planner"]["instruction"]
-    return str(said["text"]) if said else "a run without an instruction"
+    return spoken(said["text"], picture_names(said["text"], said["slots"])) if said else "a run without an instruction"
 
 
 def _outcome(record: dict[str, Any]) -> dict[str, Any]:
@@ -77,7 +79,7 @@ def _outcome(record: dict[str, Any]) -> dict[str, Any]:
     return {"outcome": state, "stage": None, "reason": reason}
 
 
-def head(record: dict[str, Any], album: Album, asked: Sequence[Asked]) -> dict[str, Any]:
+def head(record: dict[str, Any], asked: Sequence[Asked], planted: str = "") -> dict[str, Any]:
     """1: the verdict bar."""
     outcome = _outcome(record)
     current = last_plan(record)
@@ -100,11 +102,33 @@ def head(record: dict[str, Any], album: Album, asked: Sequence[Asked]) -> dict[s
         "tone": _TONES.get(name, "bad"),
         "stage": outcome.get("stage"),
         "reason": brief(reason),
+        "planted": planted,
         "whole_reason": reason if reason != brief(reason) else "",
         "choices": current["choices"] if current else [],
         "badges": _badges(asked, current),
         "unverified": bool(current and current["status"] == "planned" and not current["verified"]),
         "facts": [(key, value) for key, value in facts if value not in (None, "")],
+    }
+
+
+def summary(record: dict[str, Any]) -> dict[str, Any]:
+    """A run in one line of a table."""
+    outcome, settings = _outcome(record), record["configuration"]
+    answers = [request["answer"] for request in record["planner"]["requests"] if request["answer"]]
+    prices = [answer["usage"]["usd"] for answer in answers]
+    name = str(outcome["outcome"])
+    return {
+        "text": _text(record),
+        "started": str(record["clock"].get("started", ""))[:16].replace("T", " "),
+        "scene": settings.get("scene") or "",
+        "outcome": pretty_name(name),
+        "tone": _TONES.get(name, "bad"),
+        "reason": outcome.get("reason") or _plain_reason(name, last_plan(record)),
+        "method": outcome.get("method") or settings.get("method") or "",
+        "model": outcome.get("model") or settings.get("model") or "",
+        "usd": None if any(price is None for price in prices) else sum(prices),
+        "seconds": record["clock"].get("seconds"),
+        "calls": len(record["planner"]["requests"]),
     }
 
 
@@ -189,7 +213,7 @@ def _motion_events(record: dict[str, Any]) -> list[tuple[float, str, str, str]]:
         if not gate["admitted"]:
             events.append((at_s, "gate", f"{gate['where']}: {_refusals([gate])}", ""))
         elif gate["where"] == "before motion":
-            events.append((at_s, "gate", f"admitted: {len(gate['checks'])} checks passed", ""))
+            events.append((at_s, "gate", f"admitted: {counted(len(gate['checks']), 'check')} passed", ""))
     position = 0
     for run in planner["subgoals"]:
         last = position + run["actions"] - 1

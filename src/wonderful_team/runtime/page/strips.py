@@ -23,7 +23,7 @@ from wonderful_team.runtime.page.figures import (
 from wonderful_team.runtime.page.look_up import chapters, main_key, scene_of
 from wonderful_team.runtime.page.pictures import Album
 from wonderful_team.runtime.page.requests import Asked
-from wonderful_team.runtime.page.words import counted
+from wonderful_team.text import counted
 
 _GOES_THERE = ("place", "push_end")
 
@@ -52,8 +52,14 @@ def _overview(
         arrow_layer([source["point_px"] for source in sources], number, size)
         for number, sources in enumerate(moves, start=1)
     ]
+    # Once there are moves, things go where the arrows end: the point of "left of T4" lies beside T4, not on it.
     for position, item in enumerate(grounded):
-        layers += _points(item["points"], size, shade(position))
+        taken = {role: point for role, point in item["points"].items() if not moves or role not in _GOES_THERE}
+        layers += _points(taken, size, shade(position))
+    shades = {item["target"]["id"]: shade(position) for position, item in enumerate(grounded)}
+    layers += [
+        cross_layer(sources[-1]["point_px"], 0.5 * size, shades.get(sources[-1]["target"], "move")) for sources in moves
+    ]
     layers += _tags(grounded, moves, size, scene["size_px"])
     legend = [
         {
@@ -161,6 +167,13 @@ def _examples(target: dict[str, Any], record: dict[str, Any], album: Album) -> l
             picture = album.image(next(iter(slot["views"].values())), f"instruction picture {name}", "wide example")
             found.append({"what": "looks like", "text": name, "provenance": "", "tone": "", "drawing": picture})
     return found
+
+
+def history_frames(
+    record: dict[str, Any], plan: dict[str, Any], item: dict[str, Any], album: Album, position: int
+) -> list[dict[str, Any]]:
+    """How one target's box and points came about, picture by picture."""
+    return _frames(record, item, scene_of(record, plan), album, position)
 
 
 def _frames(

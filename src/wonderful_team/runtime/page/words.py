@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import difflib
 import json
+from collections.abc import Mapping
 from typing import Any
 
 from markupsafe import Markup, escape
@@ -42,11 +43,6 @@ def money(usd: float | None) -> str:
     return "0" if usd == 0 else f"${usd:.4f}" if usd < 1 else f"${usd:.2f}"
 
 
-def counted(number: int, noun: str) -> str:
-    """`3 calls`, `1 call`."""
-    return f"{number:,} {noun}{'' if number == 1 else 's'}"
-
-
 def brief(text: str, most: int = 220) -> str:
     """The first sentences of a text, at most `most` characters of it; what is cut is marked with "…"."""
     if len(text) <= most:
@@ -71,27 +67,33 @@ def word_diff(before: str, after: str) -> Markup:
     return Markup(" ").join(parts)
 
 
-def place_words(place: dict[str, Any]) -> str:
-    """A step's place in words."""
+def place_words(place: dict[str, Any], names: Mapping[str, str] | None = None) -> str:
+    """A step's place in words; `names` says what targets are, by id."""
+    target = _named(str(place.get("target", "")), names)
     match place.get("type"):
         case "Beside":
-            return f"{place['side']} of {place['target']}"
+            return f"{place['side']} of {target}" if place["side"] in ("left", "right") else f"{place['side']} {target}"
         case "OriginOf":
-            return f"where {place['target']} stood"
-    return str(place.get("target", ""))
+            return f"where {target} stood"
+    return target
 
 
-def step_words(step: dict[str, Any]) -> str:
-    """A step in words, from its JSON."""
+def _named(target: str, names: Mapping[str, str] | None) -> str:
+    return f"{target} {(names or {}).get(target, '')}".strip()
+
+
+def step_words(step: dict[str, Any], names: Mapping[str, str] | None = None) -> str:
+    """A step in words, from its JSON; `names` says what targets are, by id."""
     turn = step.get("rotate_deg")
     turned = f", turned {turn:g}° clockwise" if turn else ""
     match step["type"]:
         case "PickPlaceStep":
-            return f"pick {step['pick']}, place at {place_words(step['place'])}{turned}"
+            at = "" if step["place"].get("type") == "Beside" else "at "
+            return f"pick {_named(step['pick'], names)}, place {at}{place_words(step['place'], names)}{turned}"
         case "PushStep":
-            return f"push from {place_words(step['start'])} to {place_words(step['end'])}"
+            return f"push from {place_words(step['start'], names)} to {place_words(step['end'], names)}"
         case "MoveStep":
-            return f"move {step['height']} {place_words(step['to'])}"
+            return f"move {step['height']} {place_words(step['to'], names)}"
         case "CloseStep":
             return "close the gripper" + (", tight" if step["tight"] else "")
         case "OpenStep":
@@ -101,5 +103,5 @@ def step_words(step: dict[str, Any]) -> str:
         case "FollowStep":
             return f"follow the path of {step['function']}"
         case "NavigateStep":
-            return f"drive to {place_words(step['to'])}"
+            return f"drive to {place_words(step['to'], names)}"
     return "go home"

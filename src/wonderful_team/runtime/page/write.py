@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import Any
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
-from wonderful_team.errors import ConfigError
-from wonderful_team.runtime.page import cost, requests, sections
-from wonderful_team.runtime.page.pictures import Album
+from wonderful_team.errors import reading
+from wonderful_team.runtime.page import cost, planted, requests, sections
+from wonderful_team.runtime.page.pictures import Album, pictured
 from wonderful_team.runtime.page.words import clock_time, money, pretty, pretty_name, seconds
-from wonderful_team.runtime.recorder import RECORD_SCHEMA_VERSION
+from wonderful_team.runtime.record_schema import read_record
+from wonderful_team.text import counted, visible
 
 PAGE_NAME = "page.html"
 _HERE = Path(__file__).parent
@@ -30,6 +30,14 @@ def write_page(folder: Path) -> Path:
     """
     folder = Path(folder)
     record = read_record(folder)
+    with reading(f"{folder}: the record"):
+        html = _html(folder, record)
+    path = folder / PAGE_NAME
+    path.write_text(visible(html, layout=True), encoding="utf-8", errors="xmlcharrefreplace")
+    return path
+
+
+def _html(folder: Path, record: dict[str, Any]) -> str:
     album = Album(folder, record["files"])
     environment = Environment(
         loader=FileSystemLoader(_HERE),
@@ -39,48 +47,29 @@ def write_page(folder: Path) -> Path:
         lstrip_blocks=True,
     )
     environment.filters.update(pretty=pretty, seconds=seconds, money=money, title=pretty_name, clock=clock_time)
+    environment.filters["counted"] = counted
+    environment.filters["pictured"] = lambda text: pictured(text, record, album)
     content = _content(record, album)
     style = Markup((_HERE / "page.css").read_text(encoding="utf-8"))
     # The body comes first: it decides which pictures the page has to hold.
     body = environment.get_template("body.html.j2").render(**content)
-    html = environment.get_template("page.html.j2").render(
+    return environment.get_template("page.html.j2").render(
         title=content["title"],
         style=style,
         body=Markup(body),
         pictures=album.definitions(),
     )
-    path = folder / PAGE_NAME
-    path.write_text(html, encoding="utf-8")
-    return path
-
-
-def read_record(folder: Path) -> dict[str, Any]:
-    """The record of a run folder.
-
-    Raises:
-        ConfigError: Missing, not JSON, or of another schema version.
-    """
-    file = folder / "record.json"
-    try:
-        record = json.loads(file.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise ConfigError(f"{folder}: no record.json to read ({error.strerror}); give the folder of a run") from error
-    except ValueError as error:
-        raise ConfigError(f"{file}: not JSON: {error}") from error
-    version = record.get("schema_version") if isinstance(record, dict) else None
-    if version != RECORD_SCHEMA_VERSION:
-        raise ConfigError(f"{file}: record schema version {version!r}; this release reads {RECORD_SCHEMA_VERSION}")
-    assert isinstance(record, dict)
-    return record
 
 
 def _content(record: dict[str, Any], album: Album) -> dict[str, Any]:
     asked = requests.in_order(record, album)
+    cards = planted.planted(record, album, asked)
     return {
         "title": sections.title(record),
         "record": record,
         "album": album,
-        "head": sections.head(record, album, asked),
+        "head": sections.head(record, asked, planted.sentence(cards)),
+        "planted": cards,
         "instruction": sections.instruction(record, album),
         "ends": sections.before_after(record, album),
         "overviews": sections.overviews(record, album),
@@ -94,6 +83,7 @@ def _content(record: dict[str, Any], album: Album) -> dict[str, Any]:
         "waterfall": cost.waterfall(asked),
         "rounds": cost.rounds(asked),
         "warnings": sections.warnings(record, asked),
+        "crashes": record["planner"].get("crashes", []),
         "requests": asked,
         "reproduce": sections.reproduce(record),
     }

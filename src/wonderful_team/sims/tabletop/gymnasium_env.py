@@ -29,7 +29,7 @@ from typing import Any
 import numpy as np
 
 from wonderful_team.actions import PickPlace, Push
-from wonderful_team.errors import ConfigError
+from wonderful_team.errors import ConfigError, MissingExtraError
 from wonderful_team.geometry.arrays import Array
 from wonderful_team.sims.tabletop.cameras import CAMERA_NAMES, TABLE_HIGH_M, TABLE_LOW_M
 from wonderful_team.sims.tabletop.options import Tiers, asked
@@ -39,7 +39,7 @@ from wonderful_team.sims.tabletop.world import TabletopWorld
 try:
     import gymnasium
 except ModuleNotFoundError as error:
-    raise ConfigError("gymnasium environments need the package gymnasium: pip install gymnasium") from error
+    raise MissingExtraError("gymnasium environments", "gym") from error
 
 
 class TabletopEnv(gymnasium.Env[Any, Any]):

@@ -12,6 +12,7 @@ from wonderful_team.sims.tabletop.goals import Goal, Poses, Verdict
 from wonderful_team.sims.tabletop.model import Thing
 from wonderful_team.sims.tabletop.rules import Progress, Rules
 from wonderful_team.sims.tabletop.suction import Picked
+from wonderful_team.text import counted
 
 MOVED_M = 0.004
 """How far a thing must have moved to count as pushed [m]."""
@@ -45,7 +46,7 @@ def score_of(rules: Rules, history: Sequence[Happened], things: Mapping[str, Thi
     upto = judged[: list(judged).index(end) + 1]
     reason = end.verdict.reason or rules.unmet(end.progress)
     if len(history) - 1 > rules.horizon and end.verdict.state == "open":
-        reason += f"; the horizon of {rules.horizon} actions was reached"
+        reason += f"; the horizon of {counted(rules.horizon, 'action')} was reached"
     return Score(False, _stage(rules, upto, things), reason)
 
 

@@ -42,7 +42,10 @@ class Pushed:
 
 
 class Spatula:
-    """Moves a MuJoCo state through pushes: the front of the blade travels from the start to the end."""
+    """Moves a MuJoCo state through pushes: the front of the blade travels from the start to the end.
+
+    `watch` is called after every step of physics.
+    """
 
     holding = False
 
@@ -51,6 +54,7 @@ class Spatula:
         self._blade = int(mj.mj_name2id(built.model, mj.mjtObj.mjOBJ_GEOM, "blade"))
         self._slot = int(built.model.body_mocapid[built.body_id("tool")])
         self.tool_m = np.array(HOME_M)
+        self.watch: Callable[[], None] | None = None
 
     def push(self, action: Push) -> Pushed:
         """Run one action to its end, things at rest again."""
@@ -94,12 +98,17 @@ class Spatula:
             travelled = reach * k / count
             at = start + (travelled - BLADE_HALF_M[0]) * way
             self._place(np.array([*at, height]), yaw)
-            mj.mj_step(self._model, self._state)
+            self._step()
             if k % SAMPLE_STEPS == 0:
                 during.append(self._poses())
                 if self._stuck():
                     return during, travelled
         return during, reach
+
+    def _step(self) -> None:
+        mj.mj_step(self._model, self._state)
+        if self.watch is not None:
+            self.watch()
 
     def _stuck(self) -> bool:
         contact = self._state.contact

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -39,7 +39,7 @@ class Picked:
 
 
 class Suction:
-    """Moves a MuJoCo state through pick-and-place actions."""
+    """Moves a MuJoCo state through pick-and-place actions; `watch` is called after every step of physics."""
 
     def __init__(self, built: BuiltModel, state: Any) -> None:
         self._built, self._model, self._state = built, built.model, state
@@ -50,6 +50,7 @@ class Suction:
         self._slot = int(built.model.body_mocapid[built.body_id("tool")])
         self.tool_m = np.array(HOME_M)
         self.holding = False
+        self.watch: Callable[[], None] | None = None
 
     def thing_under(self, x_m: float, y_m: float) -> str | None:
         """Name of the highest thing at a point of the table, or None for bare table."""
@@ -138,9 +139,14 @@ class Suction:
             share = k / count
             eased = share * share * (3 - 2 * share)
             self._place_tool(start + eased * (goal_m - start), eased * yaw_rad)
-            mj.mj_step(self._model, self._state)
+            self._step()
         for _ in range(20):
-            mj.mj_step(self._model, self._state)
+            self._step()
+
+    def _step(self) -> None:
+        mj.mj_step(self._model, self._state)
+        if self.watch is not None:
+            self.watch()
 
     def _lower(self, body: int, contact_z: float, yaw_rad: float) -> None:
         """Lower the thing until it touches something, never below the height at which it was picked from the table."""
@@ -149,7 +155,7 @@ class Suction:
         while z > lowest and not self._touches(body):
             z = max(lowest, z - LOWER_SPEED_M_S * TIMESTEP_S)
             self._place_tool(np.array([x, y, z]), yaw_rad)
-            mj.mj_step(self._model, self._state)
+            self._step()
 
     def _lift_of(self, body: int, contact_z: float) -> float:
         """How high over the table the thing's origin stood when it was picked; it may go down by that much."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -160,6 +160,17 @@ class Table:
     def draw(self, camera: str) -> Drawn:
         """A picture of the table as it stands now."""
         return self.renderer().draw(self._state, camera)
+
+    def film(self, each: Callable[[], None] | None, every_s: float) -> None:
+        """Call `each` about every `every_s` of simulated time while the tool moves; None stops it."""
+        due = [self.time_s]
+
+        def watch() -> None:
+            if each is not None and self.time_s >= due[0]:
+                due[0] = self.time_s + every_s
+                each()
+
+        self.tool.watch = None if each is None else watch
 
     def body_picture(self, camera: str) -> Array:
         """Id of the body that each pixel of a view shows, shape (H, W)."""

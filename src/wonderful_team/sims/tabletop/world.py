@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Mapping
 from functools import cached_property
 
 from wonderful_team.actions import Action, PickPlace, Push, Vocabulary
 from wonderful_team.errors import ConfigError
+from wonderful_team.geometry.arrays import Array
 from wonderful_team.sims.tabletop.cameras import CAMERA_NAMES, TABLE_HIGH_M, TABLE_LOW_M
 from wonderful_team.sims.tabletop.options import Tiers, asked
 from wonderful_team.sims.tabletop.privileged import TabletopTruth
@@ -14,6 +16,8 @@ from wonderful_team.sims.tabletop.registering import find_task
 from wonderful_team.sims.tabletop.spatula import SHORTEST_M
 from wonderful_team.sims.tabletop.table import Snapshot, Table
 from wonderful_team.types import Instruction, Limits, Observation, RobotState, StepReport, View
+
+MOST_TURN_RAD = 2 * math.pi + 1e-6
 
 
 class TabletopWorld:
@@ -110,6 +114,15 @@ class TabletopWorld:
             return StepReport(action, False, {}, fault)
         return StepReport(action, True, self._table.run(action))
 
+    def film(self, each: Callable[[Mapping[str, Array]], None] | None, every_s: float = 0.1) -> None:
+        """Hand pictures of all cameras to `each` while an action runs; for people: no planner is shown them."""
+
+        def picture() -> None:
+            if each is not None:
+                each({name: self._table.draw(name).rgb for name in CAMERA_NAMES})
+
+        self._table.film(None if each is None else picture, every_s)
+
     def stop(self) -> None:
         """Nothing moves any more until a new world is made."""
         self._stopped = True
@@ -129,6 +142,8 @@ def _out_of_reach(action: PickPlace | Push) -> str:
             low, high, value = TABLE_LOW_M[axis], TABLE_HIGH_M[axis], float(point[axis])
             if not low <= value <= high:
                 return f"{role} {'xy'[axis]} = {value:.3f} m is out of reach [{low}, {high}] m"
+    if isinstance(action, PickPlace) and abs(action.yaw_rad) > MOST_TURN_RAD:
+        return f"a turn of {action.yaw_rad:.3g} rad is more than once round (limit {MOST_TURN_RAD:.3f} rad)"
     if isinstance(action, Push):
         length = math.dist(action.start_m[:2], action.end_m[:2])
         if length < SHORTEST_M:

@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from wonderful_team.interfaces import Score
+from wonderful_team.text import counted
 
 FAILURE = "the simulator says failure: a rule of the task was broken"
 
@@ -23,7 +24,7 @@ def score_of(said: Mapping[str, Any]) -> Score:
         return Score(True, None, "every goal is met")
     reason = FAILURE if said["state"] == "failure" else _unmet(said["unmet"])
     if said["state"] == "open" and said["steps"] >= said["horizon"]:
-        reason += f"; the horizon of {said['horizon']} actions was reached"
+        reason += f"; the horizon of {counted(said['horizon'], 'action')} was reached"
     upto = said["history"][: said["ended_at"] or said["horizon"]]
     return Score(False, _stage(said, upto), reason)
 

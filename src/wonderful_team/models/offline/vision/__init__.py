@@ -2,6 +2,7 @@
 
 from wonderful_team.models.offline.vision.examples import alike, likeness, study_example
 from wonderful_team.models.offline.vision.heights import with_heights
+from wonderful_team.models.offline.vision.light import in_plain_light
 from wonderful_team.models.offline.vision.measure import BoxFit, StripFit, fit_box, strip_presence
 from wonderful_team.models.offline.vision.resolve import resolve, suits
 from wonderful_team.models.offline.vision.scene import see
@@ -20,6 +21,7 @@ __all__ = [
     "alike",
     "fit_box",
     "free_spots",
+    "in_plain_light",
     "likeness",
     "resolve",
     "see",

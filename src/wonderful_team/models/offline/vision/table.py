@@ -23,7 +23,7 @@ _LEAST_TABLE = 0.12
 _CLEAN = 1.05
 """A table that spreads no more than this share of the floor is computed, without noise."""
 
-_NO_TABLE = 1000.0
+NO_TABLE = 1000.0
 """Spread that is given when the picture has no table."""
 
 _SEED = 5.0
@@ -71,7 +71,7 @@ def find_table(lab: Array, valid: Array, depth_m: Array | None = None) -> Table:
     surface, spread = _fit_surface(lab, valid, height_m)
     residual = lab - surface
     distance = np.sqrt(((residual / spread) ** 2).sum(axis=-1) / 1.5)
-    if height_m is None and (spread < _NO_TABLE).all():
+    if height_m is None and (spread < NO_TABLE).all():
         room = room_distance(lab, valid, surface, spread)
         distance = distance if room is None else np.minimum(distance, room)
     distance[~valid] = 0.0
@@ -86,7 +86,7 @@ def find_table(lab: Array, valid: Array, depth_m: Array | None = None) -> Table:
         known = np.isfinite(height_m)
         flat = known & ~stands_out & valid
         noise = 1.4826 * np.median(np.abs(height_m[flat])) if flat.any() else 0.0
-        if (spread >= _NO_TABLE).all():  # noise over a depth of something else: nothing is seen
+        if (spread >= NO_TABLE).all():  # noise over a depth of something else: nothing is seen
             known = np.zeros_like(known)
         raised = known & valid & (np.nan_to_num(height_m) > max(RAISED_M, 4.0 * float(noise)))
     return Table(surface, spread, distance, stands_out, height_m, raised, clean)
@@ -136,7 +136,7 @@ def _fit_surface(lab: Array, valid: Array, height_m: Array | None) -> tuple[Arra
         order = 2
     is_surface = chosen.sum() > _LEAST_TABLE * max(ok.sum(), 1)
     residual = np.abs(fine - terms @ coefficients)[chosen]
-    spread = np.maximum(1.4826 * np.median(residual, axis=0), _FLOOR) if is_surface else np.full(3, _NO_TABLE)
+    spread = np.maximum(1.4826 * np.median(residual, axis=0), _FLOOR) if is_surface else np.full(3, NO_TABLE)
     Y, X = np.mgrid[0:H, 0:W].astype(np.float32)
     X, Y = X / W * 2 - 1, Y / H * 2 - 1
     c = coefficients.astype(np.float32)

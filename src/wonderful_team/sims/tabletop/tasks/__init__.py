@@ -11,6 +11,7 @@ from wonderful_team.sims.tabletop.tasks import (
     same,
     scene_understanding,
     sweep,
+    tidy_up,
     twist,
     visual_manipulation,
 )
@@ -26,6 +27,7 @@ __all__ = [
     "same",
     "scene_understanding",
     "sweep",
+    "tidy_up",
     "twist",
     "visual_manipulation",
 ]

@@ -1,0 +1,118 @@
+"""Several things that go to one place: each gets a part of it of its own."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from wonderful_team.actions import At, PickPlaceStep, Step
+from wonderful_team.geometry import Box
+from wonderful_team.motion.beside import LEAST_GAP_PX, half_extents
+from wonderful_team.motion.lift import Lift
+from wonderful_team.motion.turns import yaw_of
+from wonderful_team.pictures import Point
+from wonderful_team.types import GroundedTarget
+
+LEVEL_M = 0.006
+"""A floor may rise or fall by this much under what is put on it [m]."""
+WITHIN = 0.95
+"""Without depth, things are kept within this share of the ellipse in a place's box: its walls lie outside."""
+CLOSER = (1.0, 0.9, 0.8, 0.7, 0.6)
+"""Shares of the distance at which the discs of things would not touch; things are mostly smaller than their discs."""
+TURNS = 24
+"""Directions in which a group of things is tried."""
+ROUND = tuple((math.cos(k * math.pi / 4), math.sin(k * math.pi / 4)) for k in range(8))
+
+
+@dataclass(frozen=True)
+class Share:
+    """One thing's part of a place.
+
+    Attributes:
+        things: All that lie there together, by target id, in the order in which they come.
+        yaws_rad: How far each is turned on its way.
+        index: Which of them this is, from 0.
+    """
+
+    things: tuple[str, ...]
+    yaws_rad: tuple[float, ...]
+    index: int
+
+
+def shared_places(steps: Sequence[Step]) -> dict[int, Share]:
+    """For each step, by its number from 1, that puts a thing where others lie at the same time: its share."""
+    stays: dict[str, list[tuple[int, int, str, float]]] = {}
+    for number, step in enumerate(steps, start=1):
+        if isinstance(step, PickPlaceStep) and isinstance(step.place, At) and step.place.target != step.pick:
+            later = (
+                k for k, other in enumerate(steps[number:], start=number + 1)
+                if isinstance(other, PickPlaceStep) and other.pick == step.pick
+            )  # fmt: skip
+            stay = (number, next(later, len(steps) + 1), step.pick, yaw_of(step.rotate_deg))
+            stays.setdefault(step.place.target, []).append(stay)
+    shares: dict[int, Share] = {}
+    for group in (group for there in stays.values() for group in _together(there)):
+        things, yaws = tuple(stay[2] for stay in group), tuple(stay[3] for stay in group)
+        shares |= {stay[0]: Share(things, yaws, k) for k, stay in enumerate(group)}
+    return shares
+
+
+def _together(stays: list[tuple[int, int, str, float]]) -> list[list[tuple[int, int, str, float]]]:
+    """Stays, in order of arrival, that overlap in time; only groups of two or more."""
+    groups: list[list[tuple[int, int, str, float]]] = []
+    end = 0
+    for stay in stays:
+        if groups and stay[0] < end:
+            groups[-1].append(stay)
+        else:
+            groups.append([stay])
+        end = max(end, stay[1])
+    return [group for group in groups if len(group) > 1]
+
+
+def parts_of(place: GroundedTarget, centre: Point, sizes: Sequence[tuple[float, float]], lift: Lift) -> list[Point]:
+    """A point for each thing on a place, clear of the others; the one point for all where there is no room.
+
+    Args:
+        place: Where they go.
+        centre: Its chosen point [px].
+        sizes: Half width and height of each thing [px].
+        lift: The view.
+    """
+    if place.box is None:
+        return [centre] * len(sizes)
+    reach = [(half_x + half_y) / 2 for half_x, half_y in sizes]
+    pairs = [one + other for one, other in zip(reach, [*reach[1:], reach[0]], strict=True)]
+    ring = (max(pairs) + LEAST_GAP_PX) / (2 * math.sin(math.pi / len(sizes)))
+    for share in CLOSER:
+        for turn in range(TURNS):
+            angles = [2 * math.pi * (turn / TURNS + k / len(sizes)) for k in range(len(sizes))]
+            points = [
+                (centre[0] + share * ring * math.cos(angle), centre[1] + share * ring * math.sin(angle))
+                for angle in angles
+            ]
+            if all(_rests(point, radius, place.box, centre, lift) for point, radius in zip(points, reach, strict=True)):
+                return points
+    return [centre] * len(sizes)
+
+
+def _rests(point: Point, radius_px: float, box: Box, centre: Point, lift: Lift) -> bool:
+    """Whether a disc lies wholly on the floor of a place: at one height where that is seen, else within its outline."""
+    spots = [point, *((point[0] + radius_px * x, point[1] + radius_px * y) for x, y in ROUND)]
+    if not all(lift.inside(spot) and box.contains(spot) for spot in spots):
+        return False
+    if lift.camera is not None and lift.view.depth_m is not None:
+        floor, *heights = (lift.surface(spot, "floor").position_m for spot in (centre, *spots))
+        assert floor is not None
+        return all(height is not None and abs(height[2] - floor[2]) <= LEVEL_M for height in heights)
+    half = np.array([box.width, box.height]) / 2 * WITHIN
+    return all(np.hypot(*((np.array(spot) - box.centre) / half)) <= 1 for spot in spots)
+
+
+def share_px(share: Share, place: GroundedTarget, boxes: Sequence[Box | None], centre: Point, lift: Lift) -> Point:
+    """Where the centre of one of several things goes that share a place [px]."""
+    sizes = [half_extents(box, yaw) for box, yaw in zip(boxes, share.yaws_rad, strict=True)]
+    return parts_of(place, centre, sizes, lift)[share.index]

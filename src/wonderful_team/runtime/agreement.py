@@ -1,0 +1,226 @@
+"""Is an action what it says that it is: a known kind with sane numbers, and do step, sources and numbers agree?"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+from shapely import LineString, Point
+
+from wonderful_team.actions import (
+    ACTION_TYPES,
+    GRIPPER_STATES,
+    STEP_TYPES,
+    Action,
+    CloseStep,
+    EndEffectorDelta,
+    Gripper,
+    MoveTo,
+    Navigate,
+    OpenStep,
+    PickPlace,
+    PickPlaceStep,
+    Push,
+    RotateGripper,
+    RotateGripperStep,
+    Trajectory,
+    Vocabulary,
+    places_of,
+    steps_for,
+)
+from wonderful_team.geometry import wrap_angle
+from wonderful_team.geometry.arrays import Array
+from wonderful_team.types import GateCheck, NumberSource, PlannedAction, View
+
+MOST_TURN_RAD = 2 * math.pi
+"""Largest turn of one action [rad]: once round. A larger number is a mistake, and a robot might really turn so far."""
+SAME_M = 1e-6
+"""Numbers that differ by less are the same but for rounding [m]."""
+SAME_RAD = 1e-6
+SAME_PX = 3.0
+"""How far the pixel of a source may be from where its metres show: half a window of depth, rounding [px]."""
+
+
+def form_checks(planned: PlannedAction, vocabulary: Vocabulary) -> list[GateCheck]:
+    """Whether it is an action of a known class that the world runs, with numbers that mean something."""
+    action, step = planned.action, planned.step
+    if type(step) not in STEP_TYPES or (action is not None and type(action) not in ACTION_TYPES):
+        named = type(step if type(step) not in STEP_TYPES else action).__name__
+        known = ", ".join(kind.__name__ for kind in ACTION_TYPES)
+        return [GateCheck(None, "class of action", False, named, f"one of {known}, with one of our steps")]
+    kind, valid = (step.kind, vocabulary.step_kinds) if action is None else (action.kind, vocabulary.kinds)
+    checks = [GateCheck(None, "vocabulary", kind in valid, kind, ", ".join(valid))]
+    if action is not None:
+        checks.append(_finite(action))
+        if isinstance(action, Gripper):
+            state = action.state
+            ok = state in GRIPPER_STATES
+            checks.append(GateCheck(None, "gripper", ok, repr(state), ", ".join(GRIPPER_STATES)))
+        if checks[1].ok:
+            checks += _turns(action)
+    return checks
+
+
+def _finite(action: Action) -> GateCheck:
+    flat = np.concatenate([np.zeros(0), *(np.ravel(values) for values in _numbers(action))])
+    bad = int((~np.isfinite(flat)).sum())
+    return GateCheck(None, "numbers", bad == 0, f"{len(flat) - bad} of {len(flat)} finite", "all finite")
+
+
+def _numbers(action: Action) -> list[Array]:
+    match action:
+        case PickPlace():
+            return [action.pick_m, action.place_m, np.array([action.yaw_rad])]
+        case Push():
+            return [action.start_m, action.end_m]
+        case MoveTo():
+            return [action.pose.position_m, action.pose.quaternion_wxyz]
+        case RotateGripper():
+            return [np.array([action.yaw_rad])]
+        case Trajectory():
+            return [action.waypoints_m]
+        case Navigate():
+            return [action.path_m]
+        case EndEffectorDelta():
+            return [action.v7]
+    return []
+
+
+def _turns(action: Action) -> list[GateCheck]:
+    if isinstance(action, PickPlace | RotateGripper):
+        turns = [float(action.yaw_rad)]
+    elif isinstance(action, EndEffectorDelta):
+        turns = [float(value) for value in action.v7[3:6]]
+    else:
+        return []
+    most = max(turns, key=abs)
+    margin = MOST_TURN_RAD + SAME_RAD - abs(most)
+    limit = f"[{-MOST_TURN_RAD:.3f}, {MOST_TURN_RAD:.3f}] rad"
+    checks = [GateCheck(None, "turn", margin >= 0, f"{most:.3g} rad", limit, f"{margin:+.3g} rad")]
+    if isinstance(action, EndEffectorDelta):
+        grip = float(action.v7[6])
+        checks.append(GateCheck(None, "gripper", 0.0 <= grip <= 1.0, f"{grip:.3g}", "[0, 1]"))
+    return checks
+
+
+def agreement_checks(planned: PlannedAction, view: View, reach_px: float) -> list[GateCheck]:
+    """Whether step, sources and numbers of one action say the same.
+
+    Args:
+        planned: A step with its action, and where each of its points came from.
+        view: The main view, to which the sources' pixels belong.
+        reach_px: How far the pixel of a place may be from where its metres show: a thing is held at its pick point and
+            placed by its centre.
+    """
+    action, step = planned.action, planned.step
+    if action is None:
+        return _outside(planned.sources, view, ())
+    kinds = steps_for(action.kind)
+    said = GateCheck(
+        None, "step and action", not kinds or step.kind in kinds, f"{step.kind} for {action.kind}", ", ".join(kinds)
+    )
+    checks = [said] if not said.ok else [*_turn_agrees(planned), *_grip_agrees(planned)]
+    if planned.sources:
+        checks += _sources(planned, view, reach_px)
+    return checks or [said]
+
+
+def _turn_agrees(planned: PlannedAction) -> list[GateCheck]:
+    action, step = planned.action, planned.step
+    if not isinstance(action, PickPlace | RotateGripper) or not isinstance(step, PickPlaceStep | RotateGripperStep):
+        return []
+    stated = -math.radians(step.rotate_deg) if math.isfinite(step.rotate_deg) else math.nan
+    off = abs(wrap_angle(action.yaw_rad - stated)) if math.isfinite(stated) else math.inf
+    value = f"{math.degrees(-action.yaw_rad):.3f} degrees clockwise"
+    return [
+        GateCheck(None, "turn of the step", off <= SAME_RAD, value, f"{step.rotate_deg:.3f} degrees, as the step says")
+    ]
+
+
+def _grip_agrees(planned: PlannedAction) -> list[GateCheck]:
+    action, step = planned.action, planned.step
+    if not isinstance(action, Gripper):
+        return []
+    wanted = (
+        "open" if isinstance(step, OpenStep) else "tight" if isinstance(step, CloseStep) and step.tight else "close"
+    )
+    return [GateCheck(None, "grip of the step", action.state == wanted, repr(action.state), repr(wanted))]
+
+
+def _points(action: Action) -> list[tuple[str, Array]] | None:
+    """Roles and points of an action's sources, shape (2,) or (3,) each; None where sources are not bound to numbers."""
+    match action:
+        case PickPlace():
+            return [("pick", action.pick_m), ("place", action.place_m)]
+        case Push():
+            return [("push_start", action.start_m), ("push_end", action.end_m)]
+        case MoveTo():
+            return [("waypoint", action.pose.position_m)]
+        case Trajectory():
+            return [("waypoint", point) for point in action.waypoints_m]
+        case Navigate():
+            return [("waypoint", point) for point in action.path_m]
+    return None
+
+
+def _sources(planned: PlannedAction, view: View, reach_px: float) -> list[GateCheck]:
+    assert planned.action is not None
+    points = _points(planned.action)
+    if points is None:
+        return [GateCheck(None, "sources", False, f"{len(planned.sources)}", f"none for {planned.action.kind}")]
+    roles, wanted = [source.role for source in planned.sources], [role for role, _ in points]
+    if roles != wanted:
+        return [GateCheck(None, "sources", False, ", ".join(roles), ", ".join(wanted))]
+    problems = [
+        problem
+        for source, (role, point) in zip(planned.sources, points, strict=True)
+        for problem in _source(planned, source, role, point, view, reach_px)
+    ]
+    value = "; ".join(problems) or f"{len(roles)} of {len(roles)} agree"
+    checks = [GateCheck(None, "sources", not problems, value, "targets, pixels and metres of the step and the action")]
+    start_outside = ("push_start",) if isinstance(planned.action, Push) else ()
+    return [*checks, *_outside(planned.sources, view, start_outside)]
+
+
+def _source(
+    planned: PlannedAction, source: NumberSource, role: str, point: Array, view: View, reach_px: float
+) -> list[str]:
+    found = []
+    named = {"waypoint": "place"}.get(role, role)
+    place = dict(places_of(planned.step)).get(named)
+    if place is not None and source.target != place.target:
+        found.append(f"{role} of {source.target}, but the step says {place.target}")
+    if source.position_m is None:
+        return [*found, f"{role} has no metres, but the action has"]
+    off_m = float(np.abs(np.asarray(source.position_m)[: len(point)] - point).max())
+    if not off_m <= SAME_M:
+        return [*found, f"{role} is {off_m:.3f} m from the action's"]
+    if view.camera is None or len(point) != 3:
+        return found
+    # A tool over a place shows away from the place in a slanted view: the pixel lies between the point and the table.
+    ends = np.array([point, (point[0], point[1], min(0.0, float(point[2])))])
+    try:
+        (ax, ay), (bx, by) = view.camera.project(ends)
+    except ValueError:
+        return [*found, f"{role} lies behind the camera"]
+    off_px = float(LineString([(ax, ay), (bx, by)]).distance(Point(source.point_px)))
+    limit = SAME_PX + (reach_px if role in ("place", "waypoint") else 0.0)
+    if not off_px <= limit:
+        found.append(f"{role} shows {off_px:.0f} px from its pixel (limit {limit:.0f} px)")
+    return found
+
+
+def _outside(sources: Sequence[NumberSource], view: View, but: tuple[str, ...]) -> list[GateCheck]:
+    """Pixels that are not in the picture: nothing is known of them, and nothing can be watched there."""
+    width, height = view.size_px
+    lost = [
+        source
+        for source in sources
+        if source.role not in but and not (0 <= source.point_px[0] <= width and 0 <= source.point_px[1] <= height)
+    ]
+    if not lost:
+        return []
+    x, y = lost[0].point_px
+    value = f"{lost[0].role} at ({x:.0f}, {y:.0f}) px"
+    return [GateCheck(None, "inside the picture", False, value, f"[0, {width}] x [0, {height}] px")]

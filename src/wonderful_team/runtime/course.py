@@ -1,0 +1,295 @@
+"""How a plan changes what is seen: which points a thing has, where it goes, what it may rest on, action after action."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from shapely import Point, affinity
+
+from wonderful_team.actions import At, Beside, Gripper, MoveStep, OriginOf, PickPlace, PickPlaceStep, Push, PushStep
+from wonderful_team.geometry import Box
+from wonderful_team.geometry.arrays import Array
+from wonderful_team.runtime.keep_out import table_height_m
+from wonderful_team.runtime.relief import RAISED_M, Relief, covered, outline
+from wonderful_team.runtime.sweep import sweep_of
+from wonderful_team.types import GroundedTarget, Limits, Plan, PlannedAction, View
+
+RING_SHARE, LEAST_RING_PX = 0.15, 2.0
+"""How far round a box its support is looked for: share of its smaller side, and at least so many pixels."""
+_MOST_POINTS = 4000
+"""A thing is known well enough by so many points."""
+
+
+@dataclass(frozen=True, eq=False)
+class Carried:
+    """What a tool carries or pushes.
+
+    Attributes:
+        offsets_m: Its points from above, relative to the tool, shape (M, 2) [m]; None when its size is not known.
+        hanging_m: How far it hangs below the tool [m].
+    """
+
+    offsets_m: Array | None
+    hanging_m: float = 0.0
+
+    @property
+    def radius_m(self) -> float:
+        """How far it reaches from the tool [m]; 0 when that is not known."""
+        if self.offsets_m is None or not len(self.offsets_m):
+            return 0.0
+        return float(np.linalg.norm(self.offsets_m, axis=1).max())
+
+
+@dataclass(frozen=True, eq=False)
+class Stage:
+    """One action against the scene as it is expected before it.
+
+    Attributes:
+        relief: The surface; None without depth.
+        own: Which of its points belong to what is carried or pushed, shape (N,) bool.
+        carried: What is carried or pushed; None for the bare tool.
+        meant: What the thing (or tool) is meant to meet: a shape on the table; None for nothing.
+        level: Whether the place has to be level with its surroundings: nothing was named to stand on.
+        stated: Whether a plan names the place; otherwise its numbers have to agree with the surface.
+        restored: It goes back to where it stood, so what was seen beside it there leaves room for it.
+    """
+
+    planned: PlannedAction
+    relief: Relief | None
+    own: Array | None
+    carried: Carried | None
+    meant: Any | None
+    level: bool
+    stated: bool
+    restored: bool = False
+
+
+class Course:
+    """Follows a plan through the scene that a view shows."""
+
+    def __init__(self, view: View, plan: Plan | None, table_z_m: float, holding: bool = False) -> None:
+        self._view, self._table_z_m = view, table_z_m
+        self._grounded = dict(plan.grounded) if plan is not None else {}
+        self._relief = Relief.of(view)
+        self._held: tuple[str, Carried, Array] | None
+        self._things: dict[str, Array] = {}
+        self._bases: dict[str, float] = {}
+        self._regions: dict[str, Any] = {}
+        # What a robot holds from the start has a size that nobody has said.
+        self._held = ("", Carried(None), np.zeros(0, dtype=np.int64)) if holding else None
+        self._at: tuple[str, Array] | None = None
+
+    def next(self, planned: PlannedAction, tool_m: Array | None) -> Stage:
+        """The stage of the next action; the scene is afterwards as that action should leave it.
+
+        Args:
+            planned: The action.
+            tool_m: Where the tool stands before it, shape (3,) [m]; None when unknown.
+        """
+        action, step = planned.action, planned.step
+        if isinstance(action, PickPlace):
+            return self._pick_place(planned, action)
+        if isinstance(action, Push):
+            return self._push(planned, action)
+        if isinstance(action, Gripper):
+            self._grip(action, tool_m)
+        if isinstance(step, MoveStep):
+            self._at = (step.to.target, np.zeros(3)) if step.height == "at" else None
+        carried = self._held[1] if self._held is not None else None
+        own = self._mask(self._held[2]) if self._held is not None and self._relief is not None else None
+        return Stage(planned, self._relief, own, carried, self._met(planned), False, False)
+
+    def _pick_place(self, planned: PlannedAction, action: PickPlace) -> Stage:
+        step = planned.step
+        name = step.pick if isinstance(step, PickPlaceStep) else ""
+        own, base = self._own(name, action.pick_m)
+        carried = self._carried(name, own, action.pick_m, base)
+        meant, level, stated = self._place(step, action)
+        back = isinstance(step, PickPlaceStep) and isinstance(step.place, OriginOf) and step.place.target == name
+        stage = Stage(planned, self._relief, own, carried, meant, level, stated, back and action.yaw_rad == 0)
+        self._move(name, own, base, action.pick_m, action.place_m, action.yaw_rad)
+        return stage
+
+    def _place(self, step: Any, action: PickPlace) -> tuple[Any | None, bool, bool]:
+        """What a thing may rest on, whether the place must be level, and whether the plan names it."""
+        place = step.place if isinstance(step, PickPlaceStep) else None
+        target = self._grounded.get(place.target) if place is not None else None
+        if place is None or target is None:
+            standing = None if self._relief is None else self._relief.standing(action.place_m[:2], self._table_z_m)
+            return standing, False, False
+        if isinstance(place, OriginOf) or (isinstance(place, At) and place.target == step.pick):
+            return None, False, True
+        if isinstance(place, Beside):
+            return None, True, True
+        if target.target.kind == "object":
+            return self.region(place.target, action.place_m), False, True
+        # Free space on a thing that the plan names is meant to be on it.
+        for name, other in self._grounded.items():
+            if name != step.pick and other.target.kind == "object" and other.box is not None:
+                region = self.region(name, action.place_m)
+                if region is not None and region.contains(_point(action.place_m)):
+                    return region, False, True
+        return None, True, True
+
+    def _push(self, planned: PlannedAction, action: Push) -> Stage:
+        step = planned.step
+        name = step.start.target if isinstance(step, PushStep) else ""
+        own, base = self._own(name, action.start_m) if name in self._grounded else (None, self._table_z_m)
+        meant = None
+        if isinstance(step, PushStep) and isinstance(step.end, At) and step.end.target in self._grounded:
+            meant = self.region(step.end.target, action.end_m)
+        carried = self._carried(name, own, action.start_m, base)
+        stage = Stage(planned, self._relief, own, carried, meant, False, name in self._grounded)
+        way = action.end_m[:2] - action.start_m[:2]
+        length = float(np.linalg.norm(way))
+        if own is not None and self._relief is not None and own.any() and length > 1e-6:
+            along = (self._relief.xyz_m[own, :2] - action.start_m[:2]) @ (way / length)
+            shift = np.append(way / length * max(0.0, length - float(along.min())), 0.0)
+            self._move(
+                name, own, base, np.append(action.start_m[:2], base), np.append(action.start_m[:2], base) + shift, 0.0
+            )
+        return stage
+
+    def region(self, name: str, at_m: Array) -> Any | None:
+        """What a target covers of the table now, as a shape; None when nothing says so."""
+        if name in self._regions:
+            return self._regions[name]
+        target = self._grounded.get(name)
+        box = None if target is None else target.box
+        if box is None:
+            return None if self._relief is None else self._relief.standing(at_m[:2], self._table_z_m)
+        corners = self._corners(box)
+        return None if corners is None else outline(corners, 0.002)
+
+    def _corners(self, box: Box) -> Array | None:
+        """Points of the table that a box shows, shape (N, 2) [m]: those with depth in it, else its corners."""
+        if self._relief is not None:
+            inside = self._relief.in_box(box)
+            if inside.any():
+                return np.asarray(self._relief.xyz_m[inside, :2])
+        if self._view.camera is None:
+            return None
+        try:
+            return np.asarray(self._view.camera.on_plane(np.array(box.corners), self._table_z_m)[:, :2])
+        except ValueError:
+            return None
+
+    def _own(self, name: str, at_m: Array) -> tuple[Array | None, float]:
+        """Which points a thing has, shape (N,) bool, and the height of what it stands on [m]."""
+        relief = self._relief
+        if relief is None or not len(relief.xyz_m):
+            return None, self._table_z_m
+        heights = relief.xyz_m[:, 2]
+        if name in self._things:
+            return self._mask(self._things[name]), self._bases[name]
+        target: GroundedTarget | None = self._grounded.get(name)
+        if target is None or target.box is None:
+            return relief.patch(at_m[:2], self._table_z_m), self._table_z_m
+        box = target.box
+        ring = max(LEAST_RING_PX, RING_SHARE * min(box.width, box.height))
+        inside = relief.in_box(box)
+        round_it = relief.in_box(box.grown(ring, ring, ring, ring)) & ~inside
+        top = float(at_m[2])
+        lower = heights[round_it & (heights < top - RAISED_M)]
+        if not len(lower):
+            lower = heights[inside & (heights < top - RAISED_M)]
+        base = max(float(np.quantile(lower, 0.25)), self._table_z_m) if len(lower) else min(top, self._table_z_m)
+        raised = inside & (heights > base + RAISED_M * 0.75)
+        return (raised if raised.any() else inside), base
+
+    def _carried(self, name: str, own: Array | None, tool_m: Array, base: float) -> Carried:
+        hanging = max(0.0, float(tool_m[2]) - base)
+        target = self._grounded.get(name)
+        boxed = None
+        if target is not None and target.box is not None and name not in self._things:
+            boxed = self._corners(target.box)
+        if own is not None and own.any() and self._relief is not None:
+            points = self._relief.xyz_m[own, :2]
+            return Carried(points[:: max(1, len(points) // _MOST_POINTS)] - tool_m[:2], hanging)
+        return Carried(None if boxed is None else boxed - tool_m[:2], hanging)
+
+    def _move(self, name: str, own: Array | None, base: float, start: Array, end: Array, yaw_rad: float) -> None:
+        """The thing stands at its end now, and what it stood on shows where it was."""
+        region = self.region(name, start) if name in self._grounded else None
+        if region is not None:
+            turned = affinity.rotate(region, yaw_rad, origin=(float(start[0]), float(start[1])), use_radians=True)
+            self._regions[name] = affinity.translate(turned, float(end[0] - start[0]), float(end[1] - start[1]))
+        if own is None or self._relief is None or not own.any():
+            return
+        relief = self._relief
+        left = relief.xyz_m[own].copy()
+        left[:, 2] = base
+        points = relief.xyz_m.copy()
+        points[own] = _moved(points[own], base, start, end, yaw_rad)
+        px = relief.px.copy()
+        px[own] = np.nan
+        # What it covers there is not the surface any more; when it leaves again, its support is.
+        hidden = ~own & relief.inside(outline(points[own, :2], relief.cell_m))
+        hidden[hidden] = covered(points[own, :2], points[hidden, :2], relief.cell_m)
+        hidden &= points[:, 2] < end[2] + RAISED_M
+        points[hidden], px[hidden] = np.nan, np.nan
+        self._relief = Relief(
+            np.vstack([points, left]), np.vstack([px, np.full((len(left), 2), np.nan)]), relief.spacing_m
+        )
+        if name in self._grounded:
+            self._things[name] = np.flatnonzero(own)
+            self._bases[name] = float(end[2])
+
+    def _mask(self, indices: Array) -> Array:
+        assert self._relief is not None
+        own = np.zeros(len(self._relief.xyz_m), dtype=bool)
+        own[indices] = True
+        return own
+
+    def _grip(self, action: Gripper, tool_m: Array | None) -> None:
+        if action.state == "open":
+            if self._held is not None and tool_m is not None and self._relief is not None:
+                name, carried, indices = self._held
+                own = self._mask(indices)
+                middle = self._relief.xyz_m[own, :2].mean(axis=0) if own.any() else tool_m[:2]
+                base = float(self._relief.xyz_m[own, 2].min()) if own.any() else self._table_z_m
+                end = np.append(tool_m[:2], float(tool_m[2]) - carried.hanging_m)
+                self._move(name, own, base, np.append(middle, base), end, 0.0)
+            self._held = None
+        elif self._held is None:
+            if tool_m is None or self._at is None:
+                self._held = ("", Carried(None), np.zeros(0, dtype=np.int64))
+                return
+            name = self._at[0]
+            points, base = self._own(name, tool_m)
+            indices = np.zeros(0, dtype=np.int64) if points is None else np.flatnonzero(points)
+            self._held = (name, self._carried(name, points, tool_m, base), indices)
+
+    def _met(self, planned: PlannedAction) -> Any | None:
+        """What a move is meant to come near to: what its step names, or what stands at its end."""
+        step, action = planned.step, planned.action
+        if not isinstance(step, MoveStep) or action is None or self._relief is None:
+            return None
+        end = np.asarray(getattr(getattr(action, "pose", None), "position_m", np.zeros(3)))
+        if step.to.target in self._grounded:
+            return self.region(step.to.target, end)
+        return self._relief.standing(end[:2], self._table_z_m)
+
+
+def stages_of(actions: Sequence[PlannedAction], plan: Plan | None, view: View, limits: Limits) -> tuple[Stage, ...]:
+    """The scene as it is expected before each action."""
+    course, tool_m = Course(view, plan, table_height_m(limits)), None
+    stages = []
+    for planned in actions:
+        stages.append(course.next(planned, tool_m))
+        tool_m = None if planned.action is None else sweep_of(planned.action, limits, tool_m).after_m
+    return tuple(stages)
+
+
+def _moved(points: Array, base: float, start: Array, end: Array, yaw_rad: float) -> Array:
+    c, s = np.cos(yaw_rad), np.sin(yaw_rad)
+    offset = points[:, :2] - start[:2]
+    turned = offset @ np.array([[c, s], [-s, c]])
+    return np.column_stack([turned + end[:2], points[:, 2] - base + end[2]])
+
+
+def _point(at_m: Array) -> Any:
+    return Point(float(at_m[0]), float(at_m[1]))

@@ -1,0 +1,252 @@
+"""Does what depth shows leave room: heights that are known, free places, nothing on the way."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import shapely
+from shapely import LineString, Point
+
+from wonderful_team.actions import Action, MoveTo, PickPlace, Push, Trajectory
+from wonderful_team.geometry.arrays import Array
+from wonderful_team.runtime.course import Stage
+from wonderful_team.runtime.relief import Relief, covered, outline
+from wonderful_team.runtime.sweep import Sweep
+from wonderful_team.types import GateCheck, Limits, PlannedAction, View
+
+AGREE_M = 0.02
+"""How far the height of a pick or of a place that no plan names may be from the surface seen there [m]."""
+PROUD_M = 0.01
+"""How much higher than the place something may be before it stands in the way [m]; depth noise."""
+PUSHED_M = 0.015
+"""What is less than this higher than a push lies flat, such as a line or a sheet [m]."""
+OFF_M = 0.02
+"""How far from where it was expected a thing may have come to lie [m]."""
+SPECKS_SHARE, LEAST_SPECKS = 0.01, 3
+"""So few of the points of a place do not make a thing: edges that are seen unsharp."""
+LEVEL_SHARE = 0.5
+"""So much of what is round a place must not lie lower than the place, or it is the top of something."""
+AROUND_SHARE, LEAST_AROUND_M = 0.35, 0.012
+"""How far round a place is looked at: share of the thing's reach, and at least [m]."""
+
+
+def height_checks(action: Action, stage: Stage, limits: Limits, measured: bool) -> list[GateCheck]:
+    """Whether the heights of what is touched are known, and agree with what is seen there.
+
+    Args:
+        action: What will run.
+        stage: The scene before it.
+        limits: Gives the clearance under which surfaces must be known.
+        measured: Refuse heights that no depth shows.
+    """
+    points = _touched(action, limits)
+    if not points:
+        return []
+    relief = stage.relief
+    if relief is None:
+        if not measured:
+            return []
+        return [
+            GateCheck(None, "heights", False, "not measured: there is no depth", "depth at every point (--depth FILE)")
+        ]
+    found = [(role, point, relief.surface_m(point[:2])) for role, point in points]
+    unknown = [role for role, _, surface in found if surface is None]
+    if unknown:
+        return [GateCheck(None, "heights", False, f"no depth at {', '.join(unknown)}", "depth at every point")]
+    checks = [GateCheck(None, "heights", True, f"{len(found)} of {len(found)} seen", "depth at every point")]
+    for role, point, surface in found:
+        if role == "pick" or (role == "place" and not stage.stated):
+            assert surface is not None
+            under = surface if role == "pick" else relief.surface_m(point[:2], stage.own)
+            if under is None:
+                continue
+            off = abs(float(point[2]) - under)
+            value = f"{point[2]:.3f} m, where the surface is at {under:.3f} m"
+            limit = f"within {AGREE_M:.3f} m"
+            checks.append(GateCheck(None, f"{role} height", off <= AGREE_M, value, limit, f"{AGREE_M - off:+.3f} m"))
+    return checks
+
+
+def _touched(action: Action, limits: Limits) -> list[tuple[str, Array]]:
+    match action:
+        case PickPlace():
+            return [("pick", action.pick_m), ("place", action.place_m)]
+        case Push():
+            return [("push_end", action.end_m)]
+        case MoveTo():
+            named = [("waypoint", np.asarray(action.pose.position_m))]
+        case Trajectory():
+            named = [(f"waypoint {k}", point) for k, point in enumerate(action.waypoints_m, start=1)]
+        case _:
+            return []
+    return [(role, point) for role, point in named if point[2] < limits.clearance_m]
+
+
+def place_checks(action: Action, stage: Stage, limits: Limits) -> list[GateCheck]:
+    """Whether the place is free, but for what the thing is meant to rest on."""
+    if not isinstance(action, PickPlace) or stage.relief is None:
+        return []
+    others = np.ones(len(stage.relief.xyz_m), dtype=bool) if stage.own is None else ~stage.own
+    if stage.restored:
+        # What was seen beside it there left room for it; what the plan itself put there does not.
+        others &= np.isnan(stage.relief.px[:, 0])
+    place_z_m = float(action.place_m[2])
+    return free_checks(_placed(action, stage), place_z_m, stage.relief, others, stage.meant, stage.level, limits)
+
+
+def still_free_checks(planned: PlannedAction, stage: Stage, view: View, limits: Limits) -> list[GateCheck]:
+    """The same for an action that comes later, by the depth of a picture that was taken just before it."""
+    action, relief = planned.action, Relief.of(view)
+    if not isinstance(action, PickPlace) or relief is None or stage.relief is None or stage.restored:
+        return []
+    others = np.ones(len(relief.xyz_m), dtype=bool)
+    if stage.own is not None and stage.own.any():
+        others = ~relief.inside(outline(stage.relief.xyz_m[stage.own, :2], 2 * OFF_M))
+    place_z_m = float(action.place_m[2])
+    return free_checks(_placed(action, stage), place_z_m, relief, others, stage.meant, False, limits)
+
+
+def _placed(action: PickPlace, stage: Stage) -> Array:
+    """What the thing will cover of the table, as points from above, shape (M, 2) [m]."""
+    offsets = stage.carried.offsets_m if stage.carried is not None else None
+    if offsets is None:
+        angles = np.linspace(0, 2 * np.pi, 12, endpoint=False)
+        offsets = 0.01 * np.column_stack([np.cos(angles), np.sin(angles)])
+    c, s = np.cos(action.yaw_rad), np.sin(action.yaw_rad)
+    return np.asarray(offsets @ np.array([[c, s], [-s, c]]) + action.place_m[:2])
+
+
+def free_checks(
+    placed: Array, z_m: float, relief: Relief, others: Array, meant: Any | None, level: bool, limits: Limits
+) -> list[GateCheck]:
+    """Whether a thing that covers `placed`, shape (M, 2) [m], finds room at a height.
+
+    Args:
+        placed: Its points from above.
+        z_m: Height of the surface that it is put on [m].
+        relief: What is seen.
+        others: Which points are not the thing itself, shape (N,) bool.
+        meant: What it may touch.
+        level: Whether what is round the place must not lie lower.
+        limits: What lies outside the workspace is not looked at.
+    """
+    shape = outline(placed, relief.spacing_m)
+    nearby = others & relief.inside(shape.buffer(relief.cell_m))
+    under = nearby.copy()
+    under[nearby] = covered(placed, relief.xyz_m[nearby, :2], relief.cell_m)
+    if meant is not None:
+        under[under] = ~_within(relief.xyz_m[under, :2], meant)
+    specks = max(LEAST_SPECKS, int(SPECKS_SHARE * nearby.sum()))
+    heights = np.sort(relief.xyz_m[under, 2])[::-1]
+    top = float(heights[specks]) if len(heights) > specks else z_m
+    room = z_m + PROUD_M - top
+    value = "free" if len(heights) <= specks else f"{top:.3f} m is the highest there"
+    limit = f"at most {z_m + PROUD_M:.3f} m"
+    checks = [GateCheck(None, "place is free", room >= 0, value, limit, f"{room:+.3f} m")]
+    if level:
+        checks += _level(shape, z_m, relief, others, limits)
+    return checks
+
+
+def _level(shape: Any, z_m: float, relief: Relief, others: Array, limits: Limits) -> list[GateCheck]:
+    low_x, low_y, high_x, high_y = shape.bounds
+    width = max(LEAST_AROUND_M, AROUND_SHARE * min(high_x - low_x, high_y - low_y) / 2, 2 * relief.cell_m)
+    ring = shape.buffer(width).difference(shape.buffer(relief.cell_m / 2))
+    points = relief.xyz_m[others & relief.inside(ring)]
+    low, high = np.array(limits.low_m[:2]), np.array(limits.high_m[:2])
+    points = points[((points[:, :2] >= low) & (points[:, :2] <= high)).all(axis=1)]
+    if not len(points):
+        return [GateCheck(None, "place is level", False, "nothing is seen round it", "depth round the place")]
+    share = float((points[:, 2] >= z_m - PROUD_M).mean())
+    value = f"{100 * share:.0f} % of what is round it is as high"
+    margin = f"{100 * (share - LEVEL_SHARE):+.0f} %"
+    return [
+        GateCheck(None, "place is level", share >= LEVEL_SHARE, value, f"at least {100 * LEVEL_SHARE:.0f} %", margin)
+    ]
+
+
+def way_checks(action: Action, stage: Stage, sweep: Sweep, tool_radius_m: float) -> list[GateCheck]:
+    """Whether what is seen is lower than what passes over it."""
+    relief, carried = stage.relief, stage.carried
+    if relief is None or not len(relief.xyz_m) or sweep.path_m is None:
+        return []
+    checks = []
+    if sweep.transit_m is not None and action.kind in ("pick_place", "push"):
+        low = float(sweep.transit_m[:, 2].min())
+        checks.append(_over("on the way there", sweep.transit_m, tool_radius_m, low, relief, None))
+    if isinstance(action, PickPlace):
+        over = sweep.path_m[1:3]
+        hanging = carried.hanging_m if carried is not None else 0.0
+        reach = max(tool_radius_m, carried.radius_m if carried is not None else 0.0)
+        checks.append(_over("under the way", over, reach, float(over[:, 2].min()) - hanging, relief, stage.own))
+    elif isinstance(action, Push):
+        checks += _pushed(action, stage, relief, tool_radius_m)
+    elif isinstance(action, MoveTo | Trajectory):
+        path = sweep.path_m if sweep.transit_m is None else np.vstack([sweep.transit_m, sweep.path_m])
+        checks.append(_along(path, stage, relief, tool_radius_m))
+    return checks
+
+
+def _over(name: str, path: Array, reach_m: float, low_m: float, relief: Relief, own: Array | None) -> GateCheck:
+    """Nothing under a level way is as high as the lowest point of what passes."""
+    found = relief.inside(LineString(path[:, :2]).buffer(reach_m)) if len(path) > 1 else relief.near(path[0], reach_m)
+    if own is not None:
+        found &= ~own
+    heights = np.sort(relief.xyz_m[found, 2])[::-1]
+    top = float(heights[min(LEAST_SPECKS, len(heights) - 1)]) if len(heights) else -np.inf
+    room = low_m - PROUD_M - top
+    value = "nothing seen" if not len(heights) else f"{top:.3f} m is the highest there"
+    return GateCheck(None, name, room >= 0, value, f"below {low_m - PROUD_M:.3f} m", f"{room:+.3f} m")
+
+
+def _pushed(action: Push, stage: Stage, relief: Relief, tool_radius_m: float) -> list[GateCheck]:
+    """The tool comes down on free ground, and meets nothing on its way that the plan does not push."""
+    way = action.end_m[:2] - action.start_m[:2]
+    length = float(np.linalg.norm(way))
+    if length < 1e-6:
+        return []
+    lands = relief.near(action.start_m[:2] - way / length * tool_radius_m, tool_radius_m)
+    if stage.own is not None:
+        lands &= ~stage.own
+    heights = np.sort(relief.xyz_m[lands, 2])[::-1]
+    top = float(heights[LEAST_SPECKS]) if len(heights) > LEAST_SPECKS else float(action.start_m[2])
+    room = float(action.start_m[2]) + PUSHED_M - top
+    value = f"{top:.3f} m is the highest there"
+    limit = f"at most {float(action.start_m[2]) + PUSHED_M:.3f} m"
+    return [GateCheck(None, "push starts on free ground", room >= 0, value, limit, f"{room:+.3f} m")]
+
+
+def _along(path: Array, stage: Stage, relief: Relief, tool_radius_m: float) -> GateCheck:
+    """A tool that moves freely stays above what is seen, but for what it is sent to."""
+    carried = stage.carried
+    reach = max(tool_radius_m, carried.radius_m if carried is not None else 0.0)
+    hanging = carried.hanging_m if carried is not None else 0.0
+    others = np.ones(len(relief.xyz_m), dtype=bool) if stage.own is None else ~stage.own
+    room = np.inf
+    for start, end in zip(path[:-1], path[1:], strict=True) if len(path) > 1 else [(path[0], path[0])]:
+        flat = float(np.linalg.norm(end[:2] - start[:2]))
+        shape = LineString([start[:2], end[:2]]).buffer(reach) if flat > 1e-9 else _disc(end, reach)
+        found = others & relief.inside(shape)
+        points = relief.xyz_m[found]
+        if stage.meant is not None:
+            points = points[~_within(points[:, :2], stage.meant)]
+        if not len(points):
+            continue
+        share = np.zeros(len(points))
+        if flat > 1e-9:
+            share = np.clip((points[:, :2] - start[:2]) @ (end[:2] - start[:2]) / flat**2, 0.0, 1.0)
+        lowest = start[2] + share * (end[2] - start[2]) if flat > 1e-9 else np.full(len(points), min(start[2], end[2]))
+        gaps = np.sort(lowest - hanging + PROUD_M - points[:, 2])
+        room = min(room, float(gaps[min(LEAST_SPECKS, len(gaps) - 1)]))
+    value = "nothing seen" if not np.isfinite(room) else f"{room - PROUD_M:+.3f} m over what is seen"
+    margin = f"{room:+.3f} m" if np.isfinite(room) else ""
+    return GateCheck(None, "under the way", bool(room >= 0), value, f"at least {-PROUD_M:.3f} m", margin)
+
+
+def _disc(at_m: Array, radius_m: float) -> Any:
+    return Point(float(at_m[0]), float(at_m[1])).buffer(radius_m)
+
+
+def _within(points: Array, shape: Any) -> Array:
+    return np.asarray(shapely.contains_xy(shape, points[:, 0], points[:, 1]))

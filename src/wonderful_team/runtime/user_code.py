@@ -1,0 +1,128 @@
+"""Code that is not ours at the edges of a rollout: whatever a world, a method or a scorer raises or returns becomes a named error of its owner.
+
+A robot's motion that fails is the robot's fault, a camera's failure the world's, a method's exception the method's. Our own
+methods are left alone: what they raise unexpectedly is a defect of ours and must not look like a result.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, TypeVar, cast
+
+from wonderful_team.actions import Action, Vocabulary
+from wonderful_team.errors import (
+    MethodCodeError,
+    RobotFaultError,
+    WonderfulTeamError,
+    WorldUnavailableError,
+    code_of,
+)
+from wonderful_team.interfaces import Act, Decision, Done, GaveUp, Policy, Privileged, Score, Situation, World
+from wonderful_team.runtime.loop import Caller
+from wonderful_team.types import Instruction, Limits, Observation, Plan, PlannedAction, StepReport
+
+Kind = TypeVar("Kind")
+_OURS = "wonderful_team."
+
+
+def _checked(value: Any, kind: type[Kind] | tuple[type, ...], whose: str, error: type[WonderfulTeamError]) -> Kind:
+    if not isinstance(value, kind):
+        kinds = kind if isinstance(kind, tuple) else (kind,)
+        valid = ", ".join(one.__name__ for one in kinds)
+        raise error(f"{whose} is a {type(value).__name__}; valid: {valid}")
+    return cast(Kind, value)
+
+
+class GuardedWorld:
+    """A world whose failures are named: motion is the robot's, everything else the world's."""
+
+    def __init__(self, inner: World) -> None:
+        self.inner = inner
+        self._name = type(getattr(inner, "inner", inner)).__name__
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self.inner, name)
+
+    def _own(self, attribute: str, kind: type[Kind]) -> Kind:
+        with code_of(f"{attribute} of world {self._name}", WorldUnavailableError):
+            value = getattr(self.inner, attribute)
+        return _checked(value, kind, f"{attribute} of world {self._name}", WorldUnavailableError)
+
+    @property
+    def vocabulary(self) -> Vocabulary:
+        return self._own("vocabulary", Vocabulary)
+
+    @property
+    def limits(self) -> Limits:
+        return self._own("limits", Limits)
+
+    @property
+    def instruction(self) -> Instruction:
+        return self._own("instruction", Instruction)
+
+    @property
+    def horizon(self) -> int | None:
+        with code_of(f"horizon of world {self._name}", WorldUnavailableError):
+            held = getattr(self.inner, "horizon", None)
+        return None if held is None else _checked(held, int, f"horizon of world {self._name}", WorldUnavailableError)
+
+    def observe(self) -> Observation:
+        """What is seen; a camera that fails is a failure of the world."""
+        whose = f"observe() of world {self._name}"
+        with code_of(whose, WorldUnavailableError):
+            seen = self.inner.observe()
+        return _checked(seen, Observation, f"what {whose} returned", WorldUnavailableError)
+
+    def execute(self, action: Action) -> StepReport:
+        """What the robot did; motion that fails is the robot's fault."""
+        whose = f"execute({action.kind}) of world {self._name}"
+        with code_of(whose, RobotFaultError):
+            report = self.inner.execute(action)
+        return _checked(report, StepReport, f"what {whose} returned", RobotFaultError)
+
+    def stop(self) -> None:
+        with code_of(f"stop() of world {self._name}", RobotFaultError):
+            self.inner.stop()
+
+    def close(self) -> None:
+        with code_of(f"close() of world {self._name}", WorldUnavailableError):
+            self.inner.close()
+
+
+def decision_of(policy: Policy, situation: Situation, caller: Caller) -> Decision:
+    """What a method decides, checked; what somebody else's method raises, or returns that is no decision, is its failure."""
+    if type(policy).__module__.startswith(_OURS):
+        return cast(Decision, caller.wait_for(policy.decide(situation)))
+    with code_of(f"decide() of method {policy.name!r}", MethodCodeError):
+        decision = caller.wait_for(policy.decide(situation))
+    whose = f"what decide() of method {policy.name!r} returned"
+    settled: Decision = _checked(decision, (Act, Done, GaveUp), whose, MethodCodeError)
+    if isinstance(settled, Act):
+        _checked(settled.actions, (tuple, list), f"actions of {whose}", MethodCodeError)
+        for number, planned in enumerate(settled.actions, start=1):
+            _checked(planned, PlannedAction, f"action {number} of {whose}", MethodCodeError)
+    if not isinstance(settled, Done) and settled.plan is not None:
+        _checked(settled.plan, Plan, f"the plan of {whose}", MethodCodeError)
+    return settled
+
+
+class GuardedScorer:
+    """The truth of a world: a scorer that breaks could not judge, which is the world's failure."""
+
+    def __init__(self, inner: Privileged) -> None:
+        self.inner = inner
+
+    def score(self) -> Score:
+        """The scorer's word."""
+        whose = f"score() of {type(self.inner).__name__}"
+        with code_of(whose, WorldUnavailableError):
+            score = self.inner.score()
+        return _checked(score, Score, f"what {whose} returned", WorldUnavailableError)
+
+
+def close_world(world: World, warn: Callable[[str], None]) -> None:
+    """Close a world; what its `close` raises is told, and the result in hand is kept."""
+    try:
+        GuardedWorld(world).close()
+    except WonderfulTeamError as error:
+        warn(f"warning: {error}")

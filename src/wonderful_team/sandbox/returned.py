@@ -1,0 +1,94 @@
+"""What a function returned, described inside of the worker as text of bounded size, and parsed outside as untrusted input.
+
+A Python value that leaves the worker is rebuilt in this process, and a few characters of code can make one that needs
+gigabytes to rebuild or to print. So no value leaves it.
+"""
+
+from __future__ import annotations
+
+import math
+
+from wonderful_team.pictures import Point
+from wonderful_team.sandbox.errors import SandboxError
+
+MAX_COORDINATE_PX = 1e6
+"""Larger numbers are not pixels."""
+MAX_ERROR_CHARACTERS = 1000
+"""Longest error text; it goes back to the model, into the record and onto the page."""
+
+_DESCRIBING = """
+def _shown(value, depth):
+    if value is None or isinstance(value, bool):
+        return str(value)
+    if isinstance(value, int):
+        return str(value) if -{limit} <= value <= {limit} else 'a very large number'
+    if isinstance(value, float):
+        return str(value)
+    if isinstance(value, str):
+        return repr(value[:40]) + ('...' if len(value) > 40 else '')
+    if isinstance(value, (list, tuple)):
+        inside = ', '.join([_shown(item, depth + 1) for item in value[:4]]) if depth < 2 else '...'
+        return '(' + inside + (', ...' if len(value) > 4 else '') + ')'
+    return 'an object of type ' + type(value).__name__[:40]
+
+
+def _described(value):
+    if not isinstance(value, (list, tuple)):
+        return 'error path(boxes) must return a list of (x, y), it returned ' + _shown(value, 0)
+    if not 2 <= len(value) <= {most}:
+        return 'error path(boxes) returned ' + str(len(value)) + ' points; 2 to {most} are allowed'
+    lines = []
+    for number, point in enumerate(value):
+        name = 'error point ' + str(number + 1)
+        if not isinstance(point, (list, tuple)) or len(point) != 2:
+            return name + ' must be a pair (x, y), it is ' + _shown(point, 1)
+        for part in point:
+            if isinstance(part, bool) or not isinstance(part, (int, float)):
+                return name + ' must hold two numbers, it is ' + _shown(point, 1)
+            if not -{limit} <= part <= {limit}:
+                return name + ' is ' + _shown(point, 1) + '; both numbers must be finite pixels'
+        lines.append('point ' + str(float(point[0])) + ' ' + str(float(point[1])))
+    return '\\n'.join(lines)
+
+
+print(_described(_returned))
+"""
+"""Runs in the worker after the model's code. That code may have redefined any name used here: then the text is wrong, and still short
+and only text."""
+
+
+def describing(max_points: int) -> str:
+    """The program that describes the value `_returned` inside of the worker."""
+    return _DESCRIBING.format(limit=int(MAX_COORDINATE_PX), most=max_points)
+
+
+def parsed(text: str, max_points: int) -> tuple[Point, ...]:
+    """Points from the worker's description.
+
+    Raises:
+        SandboxError: The description names a problem, or is not a description of 2 to `max_points` points.
+    """
+    lines = text.strip().splitlines()
+    if lines and lines[0].startswith("error "):
+        raise SandboxError(cut(lines[0].removeprefix("error ")))
+    if not 2 <= len(lines) <= max_points:
+        raise SandboxError(f"path(boxes) described {len(lines)} points; 2 to {max_points} are allowed")
+    return tuple(_point(line, number) for number, line in enumerate(lines, start=1))
+
+
+def _point(line: str, number: int) -> Point:
+    words = line.split()
+    try:
+        kind, x, y = words[0], float(words[1]), float(words[2])
+    except (IndexError, ValueError):
+        kind, x, y = "", 0.0, 0.0
+    if kind != "point" or len(words) != 3:
+        raise SandboxError(f"point {number} must hold two numbers, the worker described it as {cut(line, 80)!r}")
+    if not (math.isfinite(x) and math.isfinite(y)) or max(abs(x), abs(y)) > MAX_COORDINATE_PX:
+        raise SandboxError(f"point {number} is ({x}, {y}); both numbers must be finite pixels")
+    return x, y
+
+
+def cut(text: str, most: int = MAX_ERROR_CHARACTERS) -> str:
+    """Text of at most `most` characters; says how many were left out."""
+    return text if len(text) <= most else f"{text[:most]}... ({len(text) - most} more characters)"

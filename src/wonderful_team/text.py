@@ -1,0 +1,69 @@
+"""Text for people: counts with their nouns, and characters that nobody could see made visible."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping
+from typing import TypeVar
+
+Text = TypeVar("Text", bound=str)
+
+PLACEHOLDER = re.compile(r"\{(\w+)\}")
+"""Where an instruction speaks of one of its pictures."""
+
+_HIDDEN = (
+    "\x00-\x1f\x7f-\x9f\u00ad\u034f\u061c\u070f\u115f\u1160\u17b4\u17b5\u180b-\u180f\u200b-\u200f\u2028-\u202e"
+    "\u2060-\u206f\u2800\u3164\ud800-\udfff\ufe00-\ufe0f\ufeff\uffa0\ufff0-\ufffb\U00013430-\U0001343f"
+    "\U0001bca0-\U0001bca3\U0001d173-\U0001d17a\U000e0000-\U000e0fff"
+)
+"""Control characters (C0, C1), what changes the direction of writing, what has no width, and lone surrogates."""
+_ANY = re.compile(f"[{_HIDDEN}]")
+_BUT_LAYOUT = re.compile(f"(?![\n\t])[{_HIDDEN}]")
+
+
+def counted(number: int, noun: str, plural: str | None = None) -> str:
+    """`3 calls`, `1 call`, `2 entries` with its own plural."""
+    return f"{number:,} {noun if number == 1 else plural or noun + 's'}"
+
+
+def visible(text: Text, *, layout: bool = False) -> Text:
+    """The text with every character that hides, moves or reorders what is read written as its escape (ESC: backslash, x1b).
+
+    Words of a model go through this at every way out: terminal, log, tables, pages, notebooks.
+
+    Args:
+        text: Any text; markup that is escaped already stays markup.
+        layout: Keep line ends and tabs, for text of several lines of our own; else they are escaped too.
+    """
+    pattern = _BUT_LAYOUT if layout else _ANY
+    return type(text)(pattern.sub(_escape, str(text)))
+
+
+def visible_json(text: str) -> str:
+    """A JSON document with the same characters escaped as JSON does it: it reads back as the same values."""
+    return _BUT_LAYOUT.sub(_json_escape, text)
+
+
+def _escape(found: re.Match[str]) -> str:
+    short = {"\n": "\\n", "\t": "\\t", "\r": "\\r"}.get(found[0])
+    code = ord(found[0])
+    return short or (f"\\x{code:02x}" if code < 0x100 else f"\\u{code:04x}" if code < 0x10000 else f"\\U{code:08x}")
+
+
+def _json_escape(found: re.Match[str]) -> str:
+    code = ord(found[0])
+    if code < 0x10000:
+        return f"\\u{code:04x}"
+    return f"\\u{0xD800 + ((code - 0x10000) >> 10):04x}\\u{0xDC00 + ((code - 0x10000) & 0x3FF):04x}"
+
+
+def picture_names(instruction: str, pictures: Iterable[str]) -> dict[str, str]:
+    """What people call an instruction's pictures: "picture 1", "picture 2", in the order in which the words name them."""
+    held = list(pictures)
+    named = [name for name in dict.fromkeys(PLACEHOLDER.findall(instruction)) if name in held]
+    return {name: f"picture {number}" for number, name in enumerate(dict.fromkeys([*named, *held]), start=1)}
+
+
+def spoken(text: str, names: Mapping[str, str]) -> str:
+    """The text with every `{name}` that stands for a picture replaced by what people call it: "[picture 1]"."""
+    return PLACEHOLDER.sub(lambda found: f"[{names[found[1]]}]" if found[1] in names else found[0], text)

@@ -1,0 +1,71 @@
+"""Several things that go to one place do not land on each other."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from tests.motion.block_scenes import LIMITS, Block, cameras, found, scene
+from wonderful_team.actions import At, OriginOf, PickPlace, PickPlaceStep, Place
+from wonderful_team.motion import ground_actions
+from wonderful_team.types import GroundedTarget
+
+CAMERAS = cameras()
+RED = Block(0.38, -0.30, 0.43, -0.25, 0.05)
+BLUE = Block(0.38, -0.20, 0.43, -0.15, 0.05)
+GREEN = Block(0.55, -0.30, 0.60, -0.25, 0.05)
+TRAY = Block(0.45, 0.05, 0.65, 0.25, 0.01)
+SMALL = Block(0.50, 0.05, 0.56, 0.11, 0.05)
+
+
+def put(pick: str, place: Place) -> PickPlaceStep:
+    return PickPlaceStep("G1", pick, place, 0.0)
+
+
+def grounded(camera: Any, place: Block = TRAY) -> dict[str, GroundedTarget]:
+    blocks = {"T1": RED, "T2": BLUE, "T4": GREEN}
+    middle = {"T3": found(camera, "T3", place, {"place": (0.5, 0.5)})}
+    return middle | {name: found(camera, name, block, {"pick": (0.5, 0.5)}) for name, block in blocks.items()}
+
+
+def ends(steps: list[PickPlaceStep], camera: Any, place: Block = TRAY) -> list[np.ndarray]:
+    view = scene(camera, RED, BLUE, GREEN, place)
+    actions = [planned.action for planned in ground_actions(steps, grounded(camera, place), view, LIMITS)]
+    assert all(isinstance(action, PickPlace) for action in actions)
+    return [action.place_m for action in actions if isinstance(action, PickPlace)]
+
+
+@pytest.mark.parametrize("name", ["affine", "pinhole", "tilted"])
+@pytest.mark.parametrize("count", [2, 3])
+def test_things_in_one_tray_lie_beside_each_other_and_inside(name: str, count: int) -> None:
+    steps = [put(thing, At("T3")) for thing in ("T1", "T2", "T4")[:count]]
+    places = ends(steps, CAMERAS[name])
+    gaps = [np.hypot(*(one - other)[:2]) for k, one in enumerate(places) for other in places[:k]]
+    assert min(gaps) > 0.05  # as wide as the blocks
+    for place in places:
+        assert TRAY.x0 + 0.02 < place[0] < TRAY.x1 - 0.02
+        assert TRAY.y0 + 0.02 < place[1] < TRAY.y1 - 0.02
+        assert place[2] == pytest.approx(TRAY.height, abs=0.004)
+
+
+def test_one_thing_alone_and_one_after_another_go_to_the_middle() -> None:
+    camera = CAMERAS["affine"]
+    alone = ends([put("T1", At("T3"))], camera)[0]
+    in_turn = ends([put("T1", At("T3")), put("T1", OriginOf("T1")), put("T2", At("T3"))], camera)
+    for place in (alone, in_turn[0], in_turn[2]):
+        assert place[:2] == pytest.approx((0.55, 0.15), abs=0.006)
+
+
+def test_where_there_is_no_room_things_are_stacked_on_the_point_itself() -> None:
+    first, second = ends([put("T1", At("T3")), put("T2", At("T3"))], CAMERAS["affine"], SMALL)
+    assert first[:2] == pytest.approx((0.53, 0.08), abs=0.006)
+    assert second[:2] == pytest.approx(first[:2], abs=1e-6)
+
+
+def test_the_source_of_the_number_says_that_a_place_is_shared() -> None:
+    camera = CAMERAS["affine"]
+    steps = [put("T1", At("T3")), put("T2", At("T3"))]
+    planned = ground_actions(steps, grounded(camera), scene(camera, RED, BLUE, GREEN, TRAY), LIMITS)
+    assert "part 2 of 2" in planned[1].sources[1].how

@@ -1,0 +1,81 @@
+"""The picture of a plan: a cross where something is put down, numbers that cover no arrow, pictures for names."""
+
+from __future__ import annotations
+
+import math
+import re
+
+from wonderful_team.runtime.page.figures import arrow_layer
+from wonderful_team.runtime.page.planted import sentence
+from wonderful_team.runtime.page.strips import overviews
+from wonderful_team.runtime.page.words import step_words
+
+NUMBER = r"-?\d+(?:\.\d+)?"
+SCENE = {"hash": "s", "size_px": [200, 100], "main": "top", "views": {"top": "gone"}}
+
+
+def grounded(name: str, box: tuple[float, float, float, float], role: str) -> dict:
+    x0, y0, x1, y1 = box
+    return {
+        "target": {"id": name, "words": f"thing {name}", "part": None, "where": ""},
+        "status": "found",
+        "box": {"x0": x0, "y0": y0, "x1": x1, "y1": y1},
+        "points": {role: [(x0 + x1) / 2, (y0 + y1) / 2]},
+    }
+
+
+class Shown:
+    size_px, number = (200, 100), 1
+
+
+class Album:
+    def get(self, key: str) -> Shown:
+        return Shown()
+
+
+def test_the_cross_of_left_of_a_thing_lies_beside_the_thing() -> None:
+    plan = {
+        "subgoals": [1],
+        "scene_hash": "s",
+        "grounded": {"T1": grounded("T1", (10, 10, 30, 30), "pick"), "T2": grounded("T2", (100, 40, 140, 80), "place")},
+        "actions": [
+            {"sources": [{"target": "T1", "point_px": [20, 20]}, {"target": "T2", "point_px": [80, 60]}]},
+        ],
+    }
+    record = {"planner": {"plans": [{"id": "p", "plan": plan}], "observations": [SCENE], "outlines": []}}
+    drawing = str(overviews(record, Album())[0]["drawing"])  # type: ignore[arg-type]
+    found = re.findall(rf'd="M({NUMBER}) ({NUMBER})L({NUMBER}) ({NUMBER})M[^"]*" class="cross t1"', drawing)
+    middles = [((float(a) + float(c)) / 2, (float(b) + float(d)) / 2) for a, b, c, d in found]
+    assert middles == [(80.0, 60.0)]
+
+
+def test_the_number_of_a_short_arrow_covers_neither_its_line_nor_its_head() -> None:
+    for end in ((60.0, 50.0), (50.0, 41.0), (44.0, 57.0)):
+        start, size = (50.0, 50.0), 6.0
+        drawn = str(arrow_layer([start, end], 1, size))
+        x, y, r = map(float, re.search(rf'cx="({NUMBER})" cy="({NUMBER})" r="({NUMBER})"', drawn).groups())  # type: ignore[union-attr]
+        assert math.dist((x, y), end) > r
+        assert math.dist((x, y), start) > r
+        bend = tuple(map(float, re.search(rf"Q({NUMBER}) ({NUMBER})", drawn).groups()))  # type: ignore[union-attr]
+        line = [
+            tuple((1 - t) ** 2 * a + 2 * t * (1 - t) * b + t * t * c for a, b, c in zip(start, bend, end, strict=True))
+            for t in (k / 20 for k in range(21))
+        ]
+        assert min(math.dist((x, y), point) for point in line) > r
+
+
+def test_steps_say_what_the_targets_are() -> None:
+    step = {
+        "type": "PickPlaceStep",
+        "pick": "T3",
+        "place": {"type": "Beside", "side": "left", "target": "T4"},
+        "rotate_deg": 0,
+    }
+    assert step_words(step, {"T3": "banana", "T4": "block"}) == "pick T3 banana, place left of T4 block"
+
+
+def test_planted_mistakes_that_nobody_caught_are_not_called_caught() -> None:
+    assert sentence([]) == ""
+    assert sentence([{"by": "Verification"}, {"by": ""}]) == "2 planted mistakes, 1 caught"
+    assert sentence([{"by": ""}]) == "1 planted mistake, 0 caught"
+    assert sentence([{"by": "a"}, {"by": "b"}]) == "2 planted mistakes, both caught"

@@ -93,7 +93,7 @@ def test_a_thing_that_is_not_there_is_not_found_and_nothing_moves():
     trial = run("visual_manipulation", 3, instruction="Put the olive crescent into the brown ring.")
     assert trial.outcome == "failure"
     assert trial.stage == "plan"
-    assert "no olive crescent is in the picture" in trial.reason
+    assert "No olive crescent is in the picture" in trial.reason
     assert not trial.reports
 
 

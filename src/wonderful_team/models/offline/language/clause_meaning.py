@@ -149,6 +149,17 @@ def read_tower(parts: Parts, meaning: Meaning) -> None:
     meaning.tower_of_pairs(list(zip(listed[1:], listed[:-1], strict=True)))
 
 
+def read_contain(parts: Parts, meaning: Meaning) -> None:
+    """The words "the bowl must contain the block", "cover the area with the block"."""
+    nps = parts.of("np")
+    if len(nps) < _TWO:
+        raise Unclear("it is not clear what goes where")
+    holder, *things = nps
+    for item in things:
+        for thing in split_colours(item):
+            meaning.put(thing, Destination("in", holder))
+
+
 def read_back(parts: Parts, meaning: Meaning) -> None:
     """Things go back to where they stood."""
     things = _things(parts, meaning)

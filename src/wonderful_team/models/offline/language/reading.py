@@ -26,7 +26,7 @@ from wonderful_team.models.offline.language.meaning import Meaning
 from wonderful_team.models.offline.language.ordering import in_order
 from wonderful_team.models.offline.language.plain_speech import put_plainly
 from wonderful_team.models.offline.language.references import with_noun, with_nouns
-from wonderful_team.models.offline.language.slots import BY_PARTS, gist_of_matching, read_clauses
+from wonderful_team.models.offline.language.slots import gist_of_matching, read_clauses
 from wonderful_team.models.offline.language.tokens import Token, refusal, tokenise
 from wonderful_team.models.offline.language.turns_of_phrase import turned
 from wonderful_team.models.offline.language.vocabulary import nearest_words
@@ -127,13 +127,6 @@ def _commands(tokens: list[Token], words: str, text: str) -> tuple[Command, ...]
     gathered = gist_of_gathering(tokens)
     if gathered is not None:
         return (gathered,)
-    tree = None if any(token.kind in BY_PARTS for token in tokens) else parse(tokens, "sentence")
-    missed = ""
-    if tree is not None:
-        try:
-            return Meaning().commands(tree)
-        except NotUnderstoodError as error:
-            missed = str(error)
     try:
         every = _joined(
             tokenise(re.sub(r"\b(?:if|when|whenever|wherever|provided)\b", " ", words, flags=re.IGNORECASE))
@@ -150,7 +143,7 @@ def _commands(tokens: list[Token], words: str, text: str) -> tuple[Command, ...]
         commands = whole_gist(tokens) if matching is None else (matching,)
         if commands:
             return commands
-        raise NotUnderstoodError(_no_sentence(text, tokens, missed or str(error))) from error
+        raise NotUnderstoodError(_no_sentence(text, tokens, str(error))) from error
     commands = commands or whole_gist(tokens)
     if not commands:
         raise NotUnderstoodError(_no_sentence(text, tokens, "nothing in it says what to do"))

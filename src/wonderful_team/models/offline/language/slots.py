@@ -13,6 +13,7 @@ from wonderful_team.models.offline.description import Description
 from wonderful_team.models.offline.language.clause_meaning import (
     read_accordingly,
     read_back,
+    read_contain,
     read_put,
     read_swap,
     read_tower,
@@ -21,7 +22,6 @@ from wonderful_team.models.offline.language.clause_meaning import (
 from wonderful_team.models.offline.language.clause_parts import PLACES, VERBS, Unclear, parts_of
 from wonderful_team.models.offline.language.commands import Command, Destination
 from wonderful_team.models.offline.language.gists import gist_of_gathering
-from wonderful_team.models.offline.language.grammar import parse
 from wonderful_team.models.offline.language.meaning import Meaning
 from wonderful_team.models.offline.language.tokens import Token
 from wonderful_team.models.offline.language.wording import render
@@ -41,6 +41,7 @@ def clauses(tokens: Sequence[Token]) -> list[tuple[list[Token], bool]]:
             token.kind in ("AND", "COMMA")
             and after in VERBS
             and any(t.kind in VERBS or t.kind in ("AUX", "SLOT", "NOUN", "SHAPE", "IT") for t in current)
+            and not (current[0].kind in PLACES and not any(t.kind in VERBS for t in current))
         )
         back = (
             token.kind in ("AND", "COMMA") and _back_follows(tokens, index) and any(t.kind in PLACES for t in current)
@@ -89,10 +90,6 @@ def _read(clause: Sequence[Token], meaning: Meaning) -> None:
         assert gathered.to is not None  # it goes into something
         meaning.put(gathered.thing, gathered.to)
         return
-    tree = None if any(token.kind in BY_PARTS for token in clause) else parse(list(clause), "sentence")
-    if tree is not None:
-        meaning.commands(tree)
-        return
     parts = parts_of(clause, meaning)
     kinds = parts.kinds
     if "SWAP" in kinds:
@@ -103,6 +100,8 @@ def _read(clause: Sequence[Token], meaning: Meaning) -> None:
         or (kinds & {"ROTATE", "FACE"} and not kinds & {"PUT", "place"})
     ):
         read_turn(parts, meaning)
+    elif kinds & {"CONTAIN", "FILL"}:
+        read_contain(parts, meaning)
     elif "STACK" in kinds:
         read_tower(parts, meaning)
     elif kinds & {"RETURN", "origin"} and "place" not in kinds:
@@ -124,7 +123,7 @@ def gist_of_matching(tokens: Sequence[Token]) -> Command | None:
                 "RIGHT_OF", "NEAR", "ABOVE", "BELOW", "SLOT", "ORIGIN", "RETURN", "EXCEPT", "REMOVE", "PUSH", "ROTATE", "FAR"}:  # fmt: skip
         return None
     says = kinds & {"MATCH", "SAME", "ACCORDING"} or (kinds & {"ITS", "BY"} and "ASPECT" in kinds)
-    if not says or not kinds & {"PUT", "SORT", "AUX", "GIVE", "TAKE"}:
+    if not says or not kinds & {"PUT", "SORT", "AUX", "GIVE", "TAKE", "MATCH"}:
         return None
     nouns: list[tuple[str, str]] = []
     for token in tokens:
@@ -135,6 +134,8 @@ def gist_of_matching(tokens: Sequence[Token]) -> Command | None:
                 nouns.append(item)
     places = [item for item in nouns if item[0] in ("area", "container")]
     moved = [item for item in nouns if item[0] not in ("area", "container")]
+    if not places and "SORT" in kinds:
+        places = [("area", "")]
     if len(moved) != 1 or len(places) != 1:
         return None
     aspect = next((str(token.value) for token in tokens if token.kind == "ASPECT"), "colour")

@@ -184,7 +184,10 @@ def read_put(parts: Parts, meaning: Meaning) -> None:
     passed_over = parts.kinds & {"origin", "angle", "again", "turn", "ASPECT", "MEASURE", "FACE", "OPPOSITE", "STACK"}
     if passed_over:
         raise Unclear(f"it is not clear what {', '.join(sorted(passed_over)).lower()} is for")
-    kind = "push" if "PUSH" in parts.kinds else "put"
+    goes = bool(parts.kinds & {"PUT", "PUSH", "RETURN"})
+    wants = goes or bool(parts.kinds & {"AUX", "WANT", "GIVE", "SORT", "TAKE", "LEAVE"})
+    again = not wants and bool(meaning.done) and meaning.done[-1].kind == "push"
+    kind = "push" if again or "PUSH" in parts.kinds else "put"
     special = next((reader for word, reader in _SPECIAL.items() if word in parts.kinds), None)
     if special is not None:
         special(parts, meaning, kind)
@@ -192,8 +195,8 @@ def read_put(parts: Parts, meaning: Meaning) -> None:
     things = _things(parts, meaning)
     pairs, source = _placed_pairs(parts)
     sides = parts.of("side")
-    goes = bool(parts.kinds & {"PUT", "PUSH", "RETURN"})
-    wants = goes or bool(parts.kinds & {"AUX", "WANT", "GIVE", "SORT", "TAKE", "LEAVE"})
+    if sides and pairs:
+        raise Unclear("it is not clear what is at that side")
     if "REMOVE" in parts.kinds or (source is not None and not pairs and not sides and wants):
         _away(things, source, meaning, sure="REMOVE" in parts.kinds)
     elif pairs:

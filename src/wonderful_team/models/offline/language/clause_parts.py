@@ -15,14 +15,16 @@ from wonderful_team.models.offline.language.wording import render
 
 _GOALS = frozenset(("place", "side", "between", "where", "there", "origin", "off", "from"))
 """Parts that say where to."""
+_SIDES = frozenset(("SIDE_POST", "CORNER"))
+_WITH = frozenset(("WITH", "FOR"))
 VERBS = frozenset(("PUT", "TAKE", "ROTATE", "STACK", "PUSH", "SORT", "SWAP", "RETURN", "REMOVE", "LEAVE"))
 PLACES = {"IN": "in", "INTO": "in", "TO": "in", "ON": "on", "ONTO": "on", "LEFT_OF": "left", "RIGHT_OF": "right",
            "ABOVE": "above", "BELOW": "below", "NEAR": "near", "BY": "near"}  # fmt: skip
 _IN_NOUN = frozenset(
     "EACH ALL NUMBER REST COLOUR ORANGE DARK PATTERN MATERIAL LOOK SHAPE SUPER SIDE ORDINAL FREE SLOT NOUN LETTER ONE EVERYTHING IT "
-    "THEY TABLE ASPECT ONE_OF OF_TWO SIDE_POST ON_TABLE CORNER LIKE SHAPED WITH OF THAT AUX AS SAME SHARE FROM EXCEPT FORMER LATTER BESIDE_IT".split()
+    "THEY TABLE ASPECT ONE_OF OF_TWO SIDE_POST ON_TABLE CORNER LIKE SHAPED WITH OF THAT AUX AS SAME SHARE FROM EXCEPT FORMER LATTER BESIDE_IT WHOSE".split()
 )
-_STARTS = frozenset(
+STARTS = frozenset(
     "EACH ALL NUMBER REST COLOUR ORANGE DARK PATTERN MATERIAL LOOK SHAPE SUPER SIDE ORDINAL FREE SLOT NOUN LETTER ONE EVERYTHING IT THEY "
     "TABLE ONE_OF FORMER LATTER THAT".split()
 )
@@ -56,14 +58,15 @@ class Parts:
 
 def parts_of(clause: Sequence[Token], meaning: Meaning) -> Parts:
     """Cut a clause into its parts; a side that the last thing is told by is where it goes when nothing else is said."""
-    parts = _cut(clause, meaning, frozenset())
-    if parts.kinds & {"PUT", "PUSH"} and not parts.kinds & _GOALS and clause[-1].kind in ("SIDE_POST", "CORNER"):
-        return _cut(clause, meaning, frozenset(("SIDE_POST", "CORNER")))
+    kinds = {token.kind for token in clause}
+    parts = _cut(clause, meaning, _WITH if kinds & {"SWAP", "FILL"} else frozenset())
+    if parts.kinds & {"PUT", "PUSH"} and not parts.kinds & _GOALS and kinds & _SIDES:
+        return _cut(clause, meaning, _SIDES)
     return parts
 
 
 def _cut(clause: Sequence[Token], meaning: Meaning, apart: frozenset[str]) -> Parts:
-    """The parts of a clause; no noun phrase ends in a word of the kinds `apart`."""
+    """The parts of a clause; no noun phrase holds a word of the kinds `apart`."""
     parts = Parts()
     at = 0
     while at < len(clause):
@@ -118,7 +121,7 @@ def _leave_out(parts: Parts, found: Description) -> None:
 
 def _noun_phrase(clause: Sequence[Token], at: int, apart: frozenset[str]) -> tuple[int, Description | None]:
     """The longest noun phrase that starts there: how many tokens it takes and what it says."""
-    if clause[at].kind not in _STARTS:
+    if clause[at].kind not in STARTS:
         return 0, None
     end, told = at, False
     while end < len(clause) and end - at < _LONGEST:
@@ -130,11 +133,11 @@ def _noun_phrase(clause: Sequence[Token], at: int, apart: frozenset[str]) -> tup
         inside = inside or (kind == "IN" and end > at and after in _LOOKS and _is_looks_alone(clause, end + 1))
         told = (told or (kind in (*PLACES, "BETWEEN") and _is_relative(clause, end))) and kind != "COMMA"
         joins = told and kind == "AND" and any(token.kind == "BETWEEN" for token in clause[at:end])
-        if not (kind in _IN_NOUN or looks or inside or joins or (told and _is_relative(clause, end))):
+        if kind in apart or not (kind in _IN_NOUN or looks or inside or joins or (told and _is_relative(clause, end))):
             break
         end += 1
     for stop in range(end, at, -1):
-        if clause[stop - 1].kind in ("AUX", "WITH", "OF", "THAT", "AS", "AND", "COMMA", "FROM", "SHARE", *apart):
+        if clause[stop - 1].kind in ("AUX", "WITH", "OF", "THAT", "AS", "AND", "COMMA", "FROM", "SHARE"):
             continue
         tree = parse(list(clause[at:stop]), "np")
         if tree is not None:
@@ -148,7 +151,9 @@ def _looks_follow(clause: Sequence[Token], at: int) -> bool:
 
 
 def _is_relative(clause: Sequence[Token], at: int) -> bool:
-    """Whether a place word comes right after "that is"."""
+    """Whether a place word says where something stands: after "that is", or "there is" at the front."""
+    if clause[0].kind == "ON_TABLE":
+        return True
     while at and clause[at - 1].kind == "AUX":
         at -= 1
     return at > 0 and clause[at - 1].kind == "THAT"
@@ -166,4 +171,4 @@ def _is_looks_alone(clause: Sequence[Token], at: int) -> bool:
     """Whether colours stand there without a noun ("the square in dark blue")."""
     while at < len(clause) and clause[at].kind in _LOOKS:
         at += 1
-    return at == len(clause) or clause[at].kind not in _STARTS
+    return at == len(clause) or clause[at].kind not in STARTS

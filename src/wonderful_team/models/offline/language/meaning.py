@@ -11,6 +11,7 @@ from wonderful_team.models.offline.language.changes import (
     PRONOUN,
 )
 from wonderful_team.models.offline.language.commands import Command, Destination
+from wonderful_team.models.offline.language.sharing import own_match
 from wonderful_team.models.offline.language.wording import render
 
 
@@ -33,9 +34,10 @@ class Meaning:
     def put(self, thing: Description, goal: Destination, kind: str = "put") -> None:
         """Bring a thing to a place, and remember both for pronouns."""
         self.last_thing = thing
+        goal = own_match(goal, thing)
         if goal.how != "origin":
             self.last_goal = goal
-        self._add(Command(kind, thing, goal))  # type: ignore[arg-type]
+        self._add(Command(kind, thing, goal, conditional=goal.how == "matching"))  # type: ignore[arg-type]
 
     def turn(self, thing: Description, amount_deg: float) -> None:
         """Turn a thing, clockwise positive."""

@@ -19,7 +19,7 @@ from wonderful_team.models.offline.language.clause_meaning import (
     read_tower,
     read_turn,
 )
-from wonderful_team.models.offline.language.clause_parts import PLACES, VERBS, Unclear, parts_of
+from wonderful_team.models.offline.language.clause_parts import PLACES, STARTS, VERBS, Unclear, parts_of
 from wonderful_team.models.offline.language.commands import Command, Destination
 from wonderful_team.models.offline.language.gists import gist_of_gathering
 from wonderful_team.models.offline.language.meaning import Meaning
@@ -28,6 +28,8 @@ from wonderful_team.models.offline.language.wording import render
 
 BY_PARTS = frozenset(("STACK", "FORMER", "LATTER", "AROUND", "RESPECTIVELY"))
 """Words whose clauses are always read by their parts."""
+
+_INTO = ("IN", "INTO", "ON", "ONTO", "TO")
 
 
 def clauses(tokens: Sequence[Token]) -> list[tuple[list[Token], bool]]:
@@ -41,12 +43,13 @@ def clauses(tokens: Sequence[Token]) -> list[tuple[list[Token], bool]]:
             token.kind in ("AND", "COMMA")
             and after in VERBS
             and any(t.kind in VERBS or t.kind in ("AUX", "SLOT", "NOUN", "SHAPE", "IT") for t in current)
-            and not (current[0].kind in PLACES and not any(t.kind in VERBS for t in current))
+            and not (not out and current[0].kind in PLACES and not any(t.kind in VERBS for t in current))
         )
         back = (
             token.kind in ("AND", "COMMA") and _back_follows(tokens, index) and any(t.kind in PLACES for t in current)
         )
-        if token.kind in ("SEP", "THEN") or joins or back:
+        again = token.kind in ("AND", "COMMA") and _goes_on(current, tokens[index + 1 :])
+        if token.kind in ("SEP", "THEN") or joins or back or again:
             if current:
                 out.append((current, then))
                 current, then = [], False
@@ -56,6 +59,16 @@ def clauses(tokens: Sequence[Token]) -> list[tuple[list[Token], bool]]:
     if current:
         out.append((current, then))
     return out
+
+
+def _goes_on(before: Sequence[Token], after: Sequence[Token]) -> bool:
+    """Whether another thing and its place follow: "the banana in the bowl and the apple on the plate"."""
+    end = next((k for k, token in enumerate(after) if token.kind in ("AND", "COMMA", "SEP", "THEN")), len(after))
+    kinds = [token.kind for token in after[:end]]
+    if not kinds or kinds[0] not in STARTS or set(kinds) & {"AUX", "CONTAIN", "THAT", *VERBS}:
+        return False
+    went = any(token.kind in _INTO for token in before) and before[-1].kind not in _INTO
+    return went and not any(token.kind == "STACK" for token in before) and any(kind in PLACES for kind in kinds[1:-1])
 
 
 def _back_follows(tokens: Sequence[Token], at: int) -> bool:
@@ -139,7 +152,7 @@ def gist_of_matching(tokens: Sequence[Token]) -> Command | None:
     if len(moved) != 1 or len(places) != 1:
         return None
     aspect = next((str(token.value) for token in tokens if token.kind == "ASPECT"), "colour")
-    thing = Description(moved[0][0], "", moved[0][1], quantity="each")
+    thing = Description(moved[0][0], "", moved[0][1], quantity="each" if "EACH" in kinds else "all")
     place = Description(places[0][0], "", places[0][1])
     goal = Destination("matching", replace(place, text=render(place)), aspect=aspect)  # type: ignore[arg-type]
     return Command("put", replace(thing, text=render(thing)), goal, conditional=True)

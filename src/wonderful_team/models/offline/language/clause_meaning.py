@@ -329,6 +329,10 @@ def _without_place(parts: Parts, things: list[Description], meaning: Meaning, go
     """Only names things, or goes on from the clause before."""
     if not things:
         raise Unclear("it names nothing to be moved")
+    if meaning.last_angle is not None and not meaning.done and not goes:
+        for thing in things:
+            meaning.turn(thing, meaning.last_angle)  # "by 30 degrees: the star"
+        return
     if goes and meaning.last_goal is None and len(things) == 1 and things[0].name != PRONOUN:
         meaning.pending_put = things[0]  # "move the block: it belongs in the bowl"
     elif goes and meaning.last_goal is None:

@@ -60,6 +60,8 @@ def parts_of(clause: Sequence[Token], meaning: Meaning) -> Parts:
     """Cut a clause into its parts; a side that the last thing is told by is where it goes when nothing else is said."""
     kinds = {token.kind for token in clause}
     parts = _cut(clause, meaning, _WITH if kinds & {"SWAP", "FILL"} else frozenset())
+    if parts.items and parts.items[-1] in (("place", "IN"), ("place", "INTO")) and meaning.last_goal is not None:
+        parts.items[-1] = ("there", None)  # "carry it to the bowl and drop it in"
     if parts.kinds & {"PUT", "PUSH"} and not parts.kinds & _GOALS and kinds & _SIDES:
         return _cut(clause, meaning, _SIDES)
     return parts
@@ -75,6 +77,9 @@ def _cut(clause: Sequence[Token], meaning: Meaning, apart: frozenset[str]) -> Pa
         if found is not None:
             at += taken
             if found.name == PRONOUN and parts.of("np"):
+                if parts.items[-1][0] == "place" and len(meaning.mentioned) == 1:
+                    parts.items.append(("np", meaning.mentioned[0]))
+                    continue  # "take the bowl and put the block in it"
                 if parts.items[-1][0] == "place":
                     raise Unclear("it is not clear what 'it' means; name the thing")
                 continue  # "so that it lies left of the bowl": the thing named before
@@ -133,7 +138,12 @@ def _noun_phrase(clause: Sequence[Token], at: int, apart: frozenset[str]) -> tup
         inside = inside or (kind == "IN" and end > at and after in _LOOKS and _is_looks_alone(clause, end + 1))
         told = (told or (kind in (*PLACES, "BETWEEN") and _is_relative(clause, end))) and kind != "COMMA"
         joins = told and kind == "AND" and any(token.kind == "BETWEEN" for token in clause[at:end])
-        if kind in apart or not (kind in _IN_NOUN or looks or inside or joins or (told and _is_relative(clause, end))):
+        two = [token.kind for token in clause[end - 1 : end + 1]] == ["SLOT", "SLOT"] and end > at
+        if (
+            kind in apart
+            or (two and clause[at - 1].kind in PLACES)
+            or not (kind in _IN_NOUN or looks or inside or joins or (told and _is_relative(clause, end)))
+        ):
             break
         end += 1
     for stop in range(end, at, -1):
@@ -164,7 +174,9 @@ def _is_shown(clause: Sequence[Token], start: int, at: int) -> bool:
     if at + 1 >= len(clause) or clause[at + 1].kind != "SLOT" or clause[at - 1].kind not in ("NOUN", "ONE", "SHAPE"):
         return False
     place = start > 0 and clause[start - 1].kind in PLACES
-    return place or any(token.kind in (*PLACES, "ANGLE", "ROTATE", "CONTAIN") for token in (*clause[:start], *clause[at + 2 :]))
+    return place or any(
+        token.kind in (*PLACES, "ANGLE", "ROTATE", "CONTAIN") for token in (*clause[:start], *clause[at + 2 :])
+    )
 
 
 def _is_looks_alone(clause: Sequence[Token], at: int) -> bool:

@@ -37,7 +37,7 @@ class Meaning:
         goal = own_match(goal, thing)
         if goal.how != "origin":
             self.last_goal = goal
-        self._add(Command(kind, thing, goal, conditional=goal.how == "matching"))  # type: ignore[arg-type]
+        self._add(Command(kind, thing, goal))  # type: ignore[arg-type]
 
     def turn(self, thing: Description, amount_deg: float) -> None:
         """Turn a thing, clockwise positive."""

@@ -155,4 +155,4 @@ def gist_of_matching(tokens: Sequence[Token]) -> Command | None:
     thing = Description(moved[0][0], "", moved[0][1], quantity="each" if "EACH" in kinds else "all")
     place = Description(places[0][0], "", places[0][1])
     goal = Destination("matching", replace(place, text=render(place)), aspect=aspect)  # type: ignore[arg-type]
-    return Command("put", replace(thing, text=render(thing)), goal, conditional=True)
+    return Command("put", replace(thing, text=render(thing)), goal, conditional="SORT" in kinds)

@@ -20,6 +20,7 @@ from wonderful_team.interfaces import Decision, Event, Policy, Privileged, Situa
 from wonderful_team.interrupts import ends_on_signal, held
 from wonderful_team.made import MadePlan, RecordedTrial
 from wonderful_team.methods import Method
+from wonderful_team.observe import Seen, seen
 from wonderful_team.planning import Team as Planner
 from wonderful_team.planning import Until
 from wonderful_team.runs import find_run, new_run_folder
@@ -29,6 +30,8 @@ from wonderful_team.runtime.loop import Caller
 from wonderful_team.runtime.page import write_page
 from wonderful_team.runtime.recorder import Recorder
 from wonderful_team.runtime.setup import setup_entry
+from wonderful_team.runtime.stored_run import StoredRun, load_stored_run
+from wonderful_team.runtime.user_code import close_world
 from wonderful_team.types import NO_WORKSPACE, GateReport, Instruction, KeepOut, Limits, Plan, Target, Usage
 
 
@@ -64,7 +67,7 @@ class Team(Method):
 
     def plan(
         self,
-        observation: types.Observation,
+        observation: Seen,
         instruction: str | Instruction,
         *,
         vocabulary: str | Vocabulary = PICK_PLACE,
@@ -75,7 +78,7 @@ class Team(Method):
         """Plan for what is seen; nothing moves.
 
         Args:
-            observation: A photo (`Observation.from_files`) or `world.observe()`.
+            observation: A photo (its path, its pixels, `Observation.from_files`) or `world.observe()`.
             instruction: What is wanted.
             vocabulary: Kinds of action that may be used: pick_place, push, arm, or a Vocabulary.
             limits: The workspace; default that of the photo's camera file or corners, if any.
@@ -90,7 +93,8 @@ class Team(Method):
             ModelUnavailableError: The provider did not answer.
         """
         self.check_ready()
-        wanted = instruction if isinstance(instruction, Instruction) else Instruction(instruction)
+        observation = seen(observation)
+        wanted = instruction_of(instruction)
         words = vocabulary_named(vocabulary)
         bounds = limits or getattr(observation, "limits", None) or NO_WORKSPACE
 
@@ -103,20 +107,20 @@ class Team(Method):
         setup = setup_entry("plan", words, bounds, until=until, keep_out=keep_out)
         return self._recorded(observation, wanted, words, bounds, setup, make)
 
-    def ground(
-        self, observation: types.Observation, objects: Sequence[str] = (), areas: Sequence[str] = ()
-    ) -> MadePlan:
+    def ground(self, observation: Seen, objects: str | Sequence[str] = (), areas: str | Sequence[str] = ()) -> MadePlan:
         """Find things in a picture: boxes and points, no plan.
 
         Args:
-            observation: Where to look: its main view.
-            objects: Descriptions of things that have an outline.
-            areas: Descriptions of free areas.
+            observation: Where to look, as for `plan`: its main view.
+            objects: One or several descriptions of things that have an outline.
+            areas: One or several descriptions of free areas.
 
         Raises:
             ConfigError: Nothing is asked for.
         """
         self.check_ready()
+        observation = seen(observation)
+        objects, areas = ([words] if isinstance(words, str) else list(words) for words in (objects, areas))
         targets = [Target(f"T{number}", "object", words) for number, words in enumerate(objects, start=1)]
         targets += [Target(f"T{number}", "area", words) for number, words in enumerate(areas, start=len(targets) + 1)]
         if not targets:
@@ -187,7 +191,7 @@ def make_world(
 
 def rollout(
     method: Method | Policy,
-    world: World,
+    world: World | str,
     *,
     plan: MadePlan | ReadPlan | Plan | str | Path | None = None,
     replans: int = 0,
@@ -203,7 +207,7 @@ def rollout(
 
     Args:
         method: A Team, a Method, or anything with the Policy interface.
-        world: Where it acts.
+        world: Where it acts: a world, or its name as `make_world` takes it, with `seed`; it is then closed at the end.
         plan: A plan that was read beforehand: what `team.plan` returned, or the folder of the run that made it. Exactly
             that plan runs, in its own instruction and scene, or nothing moves; after it ran, replans go on as asked.
             A bare `Plan` comes without its picture: then the scene must be the same pixel for pixel.
@@ -223,6 +227,28 @@ def rollout(
         KeyboardInterrupt: Ctrl-C. The world was stopped and the record is whole.
         SystemExit: SIGTERM or SIGHUP, likewise; its code is 128 + the signal's number.
     """
+    if isinstance(world, str):
+        made_here = make_world(world, seed or 0)
+        try:
+            return rollout(
+                method,
+                made_here,
+                plan=plan,
+                replans=replans,
+                looks=looks,
+                approval=approval,
+                seed=seed or 0,
+                scene=scene or registry.scene_name(world, seed or 0),
+                scored=scored,
+                out=out,
+                subscribers=subscribers,
+            )
+        finally:
+            close_world(made_here, lambda text: warnings.warn(text, stacklevel=2))
+    if not isinstance(method, Method) and not callable(getattr(method, "decide", None)):
+        raise ConfigError(
+            f"a {type(method).__name__} is no method; valid: a wt.Team, a wt.Method, or an object with decide(situation)"
+        )
     read = _read(plan)
     if isinstance(method, Method):
         method = method.in_world(world)
@@ -276,6 +302,33 @@ def task(name: str, *, instruction: str, horizon: int = 1, **more: Any) -> Calla
     from wonderful_team.sims.tabletop import task as tabletop_task
 
     return tabletop_task(name, instruction=instruction, horizon=horizon, **more)
+
+
+def instruction_of(words: str | Instruction) -> Instruction:
+    """An instruction of words.
+
+    Raises:
+        ConfigError: Neither words nor an instruction.
+    """
+    if isinstance(words, Instruction):
+        return words
+    if not isinstance(words, str):
+        raise ConfigError(f"a {type(words).__name__} is no instruction; valid: text, or a wt.Instruction")
+    return Instruction(words)
+
+
+def load_run(run: str | Path, out: str | Path | None = None) -> StoredRun:
+    """A recorded run.
+
+    Args:
+        run: Its folder, the folder's name or a part of it, or "latest".
+        out: Where run folders lie; default $WONDERFUL_TEAM_RUNS or `runs`.
+
+    Raises:
+        UnknownNameError: No such run.
+        ConfigError: Its record cannot be read.
+    """
+    return load_stored_run(find_run(str(run), out))
 
 
 def vocabulary_named(vocabulary: str | Vocabulary) -> Vocabulary:

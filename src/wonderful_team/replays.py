@@ -140,11 +140,12 @@ def branch(
         UnknownNameError: No such stage or model.
         ConfigError: As for replay.
     """
+    folder = folder.resolve()
     record = read_record(folder)
     recorded = ReplayModel(record)
     wanted: Mapping[str, str | Model] = model if isinstance(model, Mapping) else {registry.DEFAULT_ROLE: model}
     models = {role: Branching(recorded, registry.make_model(one), stage) for role, one in wanted.items()}
-    parent = {"run": folder.resolve().name, "from": stage}
+    parent = {"run": folder.name, "from": stage}
     setup = read_setup(record, str(folder))
     arguments = {**caps, "out": out, "subscribers": tuple(subscribers), "command": command, "parent": parent}
     team = _team(folder, record, models, **arguments)

@@ -72,7 +72,7 @@ def command(
     from wonderful_team.cli.report import report_trial
     from wonderful_team.cli.video import FRAME_S, Film, check_video_name
     from wonderful_team.errors import reading
-    from wonderful_team.interfaces import Filmed
+    from wonderful_team.interfaces import Filmed, offers
     from wonderful_team.methods import Method
     from wonderful_team.photos import read_keep_out
     from wonderful_team.registry import scene_name, team_way
@@ -92,7 +92,7 @@ def command(
     place = make_world(world, seed, instruction, regions)
     try:
         film = Film() if video is not None else None
-        if film is not None and isinstance(place, Filmed):
+        if film is not None and offers(place, Filmed):
             place.film(film.motion, FRAME_S)
         progress.header(method)
         progress.task(scene_name(world, seed), place.instruction)

@@ -37,8 +37,8 @@ def plan_exit_code(made: MadePlan) -> int:
 
 
 def trial_exit_code(trial: RecordedTrial) -> int:
-    """The exit code of `run`: an unscored trial that reached its end counts as done."""
-    if trial.outcome == "success" or (trial.outcome == "unscored" and trial.stage is None):
+    """The exit code of `run`: an unscored trial that reached its end counts as done, if anybody judged that."""
+    if trial.outcome == "success" or (trial.outcome == "unscored" and trial.stage is None and trial.judged):
         return 0
     if trial.outcome == "error":
         return 6 if trial.stage == "world" else 3
@@ -147,6 +147,14 @@ def _metres(action: Action | None) -> str:
     return " -> ".join(f"({', '.join(f'{value:.3f}' for value in point)})" for point in shown) + f" m{through}"
 
 
+def trial_word(trial: RecordedTrial) -> str:
+    """How a trial ended, in capitals; in a world without a scorer the method's own judgement is all that there is."""
+    last = {verdict.subgoal: verdict.status for verdict in trial.verdicts}
+    if trial.outcome == "unscored" and trial.stage is None and last and set(last.values()) == {"done"}:
+        return "DONE, as the team judges (no scorer)"
+    return trial.outcome.upper()
+
+
 def numbers_line(planned: PlannedAction) -> str:
     """What an action does, from its numbers alone: no word of a model stands in it."""
     action = planned.action
@@ -176,7 +184,7 @@ def _shown(name: str, value: Any) -> str:
 def trial_lines(trial: RecordedTrial) -> list[str]:
     """What `run` prints: outcome, stage, reason, and how every subgoal went."""
     stage = f" at {trial.stage}" if trial.stage else ""
-    lines = [f"{trial.outcome.upper()}{stage}  {visible(trial.reason)}"]
+    lines = [f"{trial_word(trial)}{stage}  {visible(trial.reason)}"]
     lines += [
         f"  {verdict.subgoal} {verdict.status.replace('_', ' ')}"
         + (f": {visible(verdict.cause)}" if verdict.cause else "")

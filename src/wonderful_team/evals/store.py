@@ -18,7 +18,7 @@ from wonderful_team.errors import ConfigError, reading
 from wonderful_team.evals.claims import LEASE_S, Owner, Surroundings
 from wonderful_team.evals.names import NO_MODEL
 from wonderful_team.evals.places import network_file_system
-from wonderful_team.evals.schema import JSON, RESULT, SCHEMA_VERSION, SPEC, make_tables
+from wonderful_team.evals.schema import JSON, RESULT, SCHEMA_VERSION, SPEC, check_values, make_tables
 from wonderful_team.evals.spending import UNITS, Allowance, Costs, Likely, Spending, WaitForCost, allow
 from wonderful_team.evals.trials import CONDITION, Condition, Row, SpendingCaps, TrialResult, TrialSpec
 
@@ -51,7 +51,7 @@ class Store:
             self._base = sqlite3.connect(self.path, timeout=60.0, isolation_level=None, check_same_thread=False)
             self._base.row_factory = sqlite3.Row
             self._open()
-        except (sqlite3.Error, OSError) as error:
+        except (sqlite3.Error, OSError, UnicodeDecodeError) as error:
             raise ConfigError(f"store {str(self.path)!r} cannot be used: {error}") from error
 
     def _open(self) -> None:
@@ -72,6 +72,7 @@ class Store:
             raise ConfigError(
                 f"store {str(self.path)!r}: schema version {version}; this release reads {SCHEMA_VERSION}"
             )
+        check_values(self._base, f"store {str(self.path)!r}")
 
     @contextmanager
     def _writing(self, *, durable: bool = True) -> Iterator[sqlite3.Connection]:
@@ -91,8 +92,10 @@ class Store:
     def __enter__(self) -> Store:
         return self
 
-    def __exit__(self, *_: object) -> None:
+    def __exit__(self, kind: object, error: BaseException | None, trace: object) -> None:
         self.close()
+        if isinstance(error, sqlite3.Error | UnicodeDecodeError):
+            raise ConfigError(f"store {str(self.path)!r} cannot be used: {error}") from error
 
     # -- what is wanted ----------------------------------------------------------------------------------------------
 

@@ -32,6 +32,7 @@ from wonderful_team.errors import (
 from wonderful_team.interfaces import Event, Model, Subscriber
 from wonderful_team.interrupts import start_thread
 from wonderful_team.models.budget import Budget, Ticket, hand_over
+from wonderful_team.models.wire import chat as _chat  # noqa: F401  gives requests their messages()
 from wonderful_team.models.wire.unreadable import Unreadable
 from wonderful_team.types import Answer, Request, Usage
 

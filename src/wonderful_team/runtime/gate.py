@@ -16,7 +16,7 @@ from wonderful_team.actions import Action, EndEffectorDelta, PickPlace, Vocabula
 from wonderful_team.geometry import Box
 from wonderful_team.geometry.arrays import Array
 from wonderful_team.jsonable import to_jsonable
-from wonderful_team.runtime.agreement import agreement_checks, form_checks
+from wonderful_team.runtime.agreement import agreement_checks, class_checks, form_checks
 from wonderful_team.runtime.approval import Approval, Declined, approval_checks, approved_id
 from wonderful_team.runtime.course import Course, Stage
 from wonderful_team.runtime.freshness import MAX_AGE_S, freshness_checks, watched
@@ -74,6 +74,9 @@ def check_gate(
     Returns:
         Every check with its value, limit and margin; `admitted` when none failed.
     """
+    foreign = class_checks(actions)
+    if foreign:
+        return GateReport(tuple(foreign))
     checks = _plan_checks(actions, plan, expected_plan_id)
     picture = (then or now).hash
     checks += approval_checks(approved_id(plan, actions), picture, page, approval, approval_required)
@@ -87,13 +90,10 @@ def check_gate(
             # What such an action does, and where the tool is after it, nobody knows.
             passage.lost()
         checks += [replace(check, action=index) for check in found]
-    sound = [
-        planned for planned in actions if not any(c.name == "class of action" for c in form_checks(planned, vocabulary))
-    ]
     checks += freshness_checks(
         then,
         now,
-        watched(sound, plan, now.main) if then is not None else (),
+        watched(actions, plan, now.main) if then is not None else (),
         scene_hash=plan.scene_hash if plan is not None else None,
         excused=excused,
         max_age_s=max_age_s,

@@ -14,7 +14,7 @@ from wonderful_team.errors import (
     WonderfulTeamError,
     WorldUnavailableError,
 )
-from wonderful_team.interfaces import Act, Done, GaveUp, Policy, Privileged, Situation, Subscriber, World
+from wonderful_team.interfaces import Act, Done, GaveUp, Policy, Privileged, Situation, Subscriber, World, offers
 from wonderful_team.runtime.approval import Approval, Approver
 from wonderful_team.runtime.execute import Execution
 from wonderful_team.runtime.freshness import MAX_AGE_S
@@ -24,6 +24,8 @@ from wonderful_team.runtime.plan_scene import ReadPlan
 from wonderful_team.runtime.progress import Ending, Progress
 from wonderful_team.runtime.user_code import GuardedScorer, GuardedWorld, decision_of
 from wonderful_team.types import Observation, Plan, Trial
+
+NOBODY_JUDGED = "; nobody judged the result: there is no scorer, and a method judges only where it may replan"
 
 MAX_ADVICE = 10
 """Most plans of one run that a person may decline with advice for another one."""
@@ -116,8 +118,8 @@ def _attempts(
     looks: int,
 ) -> Ending:
     """Ask, gate, execute, until the policy or a bound ends it."""
-    chunks = isinstance(policy, ChunkPolicy) and policy.chunks
-    horizon = world.horizon if isinstance(world, Horizon) else None
+    chunks = offers(policy, ChunkPolicy) and policy.chunks
+    horizon = world.horizon if offers(world, Horizon) else None
     attempt, first_run, left, advised = 0, 0, replans, 0
     refused, advice, halted = None, "", None
     replanning = False
@@ -214,7 +216,8 @@ def _stop(progress: Progress, error: BaseException) -> Trial:
 def _scored(progress: Progress, ending: Ending, scorer: Privileged | None) -> Trial:
     """Let truth decide, now that nothing can learn from it any more."""
     if scorer is None:
-        return progress.finish(Ending(ending.outcome or "unscored", ending.stage, ending.reason))
+        unjudged = NOBODY_JUDGED if ending.outcome is None and progress.unasked else ""
+        return progress.finish(Ending(ending.outcome or "unscored", ending.stage, f"{ending.reason}{unjudged}"))
     try:
         score = GuardedScorer(scorer).score()
     except WonderfulTeamError as error:

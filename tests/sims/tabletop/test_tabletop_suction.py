@@ -9,7 +9,7 @@ import pytest
 
 from wonderful_team.actions import Home, PickPlace
 from wonderful_team.errors import ConfigError
-from wonderful_team.interfaces import Privileged, World
+from wonderful_team.interfaces import Privileged, World, offers
 from wonderful_team.sims.tabletop import Scene, TabletopWorld, make_world, task
 
 
@@ -35,8 +35,8 @@ def _thing(world: TabletopWorld, name: str) -> dict:
 
 def test_it_is_a_world_with_its_truth_apart(world: TabletopWorld) -> None:
     assert isinstance(world, World)
-    assert isinstance(world.privileged, Privileged)
-    assert not isinstance(world, Privileged)
+    assert offers(world.privileged, Privileged)
+    assert not offers(world, Privileged)
 
 
 def test_the_centre_lands_at_place_plus_the_turned_offset(world: TabletopWorld) -> None:
@@ -99,6 +99,15 @@ def test_out_of_reach_stop_and_other_kinds(world: TabletopWorld) -> None:
     world.close()
     with pytest.raises(ConfigError, match="closed"):
         world.observe()
+
+
+@pytest.mark.parametrize("yaw_rad", [10_000.0, 1e300])
+def test_a_turn_of_more_than_once_round_is_a_fault_at_once(world: TabletopWorld, yaw_rad: float) -> None:
+    before = world.observe().main.time_s
+    report = world.execute(PickPlace((0.4, -0.3, 0.0), (0.5, 0.0, 0.0), yaw_rad))
+    assert not report.executed
+    assert "is more than once round (limit 6.283 rad)" in str(report.fault)
+    assert world.observe().main.time_s == before
 
 
 def test_a_nudge_shows_in_the_next_picture(world: TabletopWorld) -> None:

@@ -60,8 +60,10 @@ class ReplayModel:
         self._entries = {(entry["id"], entry["attempt"]): entry for entry in record["planner"]["requests"]}
         outcome = record.get("outcome") or {}
         plans = record["planner"]["plans"]
-        status = plans[-1]["plan"]["status"] if plans else ""
-        self._budget = str(outcome.get("reason") or "") if "budget" in (outcome.get("outcome"), status) else None
+        last = plans[-1]["plan"] if plans else {}
+        # The plan's own words: a scorer may have added to those of the outcome.
+        ended = last["message"] if last.get("status") == "budget" else outcome.get("reason")
+        self._budget = str(ended or "") if "budget" in (outcome.get("outcome"), last.get("status")) else None
 
     def holds(self, request: Request) -> bool:
         """Whether the record holds this very request, with an end to it."""

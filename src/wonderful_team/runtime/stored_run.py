@@ -9,9 +9,8 @@ from pathlib import Path
 from typing import Any
 
 from wonderful_team.errors import reading
-from wonderful_team.runtime.plan_file import plan_from_json
 from wonderful_team.runtime.record_schema import read_record
-from wonderful_team.runtime.stored import stored_instruction, stored_observation
+from wonderful_team.runtime.stored import stored_instruction, stored_observation, stored_plan
 from wonderful_team.types import Instruction, Observation, Plan
 
 
@@ -87,7 +86,8 @@ class StoredRun:
     def plans(self) -> tuple[Plan, ...]:
         """Every plan that was made; the last is the one that counts."""
         with reading(f"{self.folder}: the record"):
-            return tuple(plan_from_json(kept, str(self.folder)) for kept in self.record["planner"]["plans"])
+            numbers = range(len(self.record["planner"]["plans"]))
+            return tuple(stored_plan(self.folder, self.record, number) for number in numbers)
 
     @property
     def _ending(self) -> Mapping[str, Any]:

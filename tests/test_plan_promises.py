@@ -191,3 +191,10 @@ def test_consent_on_the_command_line(
     assert all(pages), "the page that the question names exists before it is asked"
     assert len(read_record(runs_folder / "latest")["planner"]["executions"]) == executed
     assert ("you declined" in told.out) == (code == 4)
+
+
+def test_runs_with_pictures_in_their_instruction_are_compared(capsys: pytest.CaptureFixture[str]) -> None:
+    for _ in range(2):
+        assert run(["run", "tabletop/rotate", "--seed", "3", "--json"]) == 0
+        folder = outcome(capsys)["folder"]
+    assert run(["show", "latest", "--diff", folder]) == 0

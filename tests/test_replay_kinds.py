@@ -109,6 +109,19 @@ def approved(out):
     return trial
 
 
+def declined(out):
+    trial = in_world(out, approval=lambda proposal: proposal.decline("a person"), replans=2)
+    assert trial.reports == ()
+    return trial
+
+
+def declined_with_advice(out):
+    answers = iter((lambda one: one.decline("a person", "it is the wrong one"), lambda one: one.approve("a person")))
+    trial = in_world(out, approval=lambda proposal: next(answers)(proposal), replans=2)
+    assert trial.outcome == "success"
+    return trial
+
+
 def own_world(out):
     world = wt.make_world(f"{DESK}/own_world.py:TileDesk", seed=4)
     return wt.rollout(wt.Team(out=out), world, seed=4, scene="own_world.py:TileDesk#4", replans=1)
@@ -161,7 +174,8 @@ def grounding(out):
 
 
 KINDS = (
-    looks, looks_then_a_replan, replans, refused, robot_fault, model_fault, model_fault_after_motion, approved, own_world,
+    looks, looks_then_a_replan, replans, refused, robot_fault, model_fault, model_fault_after_motion, approved, declined,
+    declined_with_advice, own_world,
     a_plan_that_was_read, photo, photo_in_metres, photo_with_a_model_fault, stopped_early, not_understood, out_of_budget,
     grounding,
 )  # fmt: skip

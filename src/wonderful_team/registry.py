@@ -286,7 +286,7 @@ def make_world(
             f'world {name!r} brings no instruction: say one, as in: run {name} "put the red cup on the tray"'
         )
     if whole and wanted is own and not keep_out:
-        return world
+        return cast(World, world)
     return cast(World, OwnWorld(world, wanted, tuple(keep_out)))
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 
 import pytest
@@ -197,11 +198,10 @@ def test_every_kind_of_run_replays(make, tmp_path, monkeypatch):
 
 @pytest.mark.parametrize("make", [looks, looks_then_a_replan, replans], ids=lambda kind: kind.__name__)
 def test_a_record_without_the_counts_of_attempts_replays_by_the_names_of_its_pictures(make, tmp_path):
-    """As records of earlier releases are; those counted the attempts that are left otherwise, which only words show."""
+    """As records of earlier releases are, which counted one replan fewer as left."""
     folder = make(tmp_path).folder
     record = read_record(folder)
     del record["planner"]["asked"]
-    (folder / "record.json").write_text(json.dumps(record), encoding="utf-8")
-    found = replay(folder, tolerant=True)
-    assert found.same
-    assert all("Attempts left" in text for text in found.differences)
+    text = re.sub(r"Attempts left: (\d+)\.", lambda left: f"Attempts left: {int(left[1]) - 1}.", json.dumps(record))
+    (folder / "record.json").write_text(text, encoding="utf-8")
+    assert replay(folder).same

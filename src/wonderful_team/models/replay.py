@@ -60,10 +60,12 @@ class ReplayModel:
         self._entries = {(entry["id"], entry["attempt"]): entry for entry in record["planner"]["requests"]}
         outcome = record.get("outcome") or {}
         plans = record["planner"]["plans"]
-        last = plans[-1]["plan"] if plans else {}
-        # The plan's own words: a scorer may have added to those of the outcome.
-        ended = last["message"] if last.get("status") == "budget" else outcome.get("reason")
-        self._budget = str(ended or "") if "budget" in (outcome.get("outcome"), last.get("status")) else None
+        status = plans[-1]["plan"]["status"] if plans else ""
+        # The plan's own words: the reason of a trial says more, such as which goals its scorer found unmet.
+        said = plans[-1]["plan"].get("message") if status == "budget" else None
+        self._budget = (
+            str(said or outcome.get("reason") or "") if "budget" in (outcome.get("outcome"), status) else None
+        )
 
     def holds(self, request: Request) -> bool:
         """Whether the record holds this very request, with an end to it."""

@@ -29,6 +29,15 @@ SAME = [
     ("Relocate the yellow block: it belongs left of the bowl.", "put the yellow block to the left of the bowl"),
     ("Once the lemon is in the bowl, move the lime to the box.", "put the lemon into the bowl, then put the lime into the box"),
     ("Shift the red block into the corner at the top left.", "put the red block in the top left corner"),
+    (
+        "Stack the block that is left of the bowl on the block that is right of the bowl.",
+        "put the block left of the bowl onto the block right of the bowl",
+    ),
+    ("Take the red block that is to the left of the bowl and place it in the box.", "put the red block left of the bowl into the box"),
+    ("On top of the orange block, put the purple one.", "put the purple block onto the orange block"),
+    ("Cover the light green square with the dark blue one.", "put the dark blue square onto the light green square"),
+    ("Nudge the green block to the left, please.", "push the green block to the left"),
+    ("The pear in the bowl and the plum on the plate, please.", "put the pear into the bowl, put the plum onto the plate"),
     ("Both the red and the green block belong on the blue area.", "put the red block and the green block onto the blue area"),
 ]  # fmt: skip
 
@@ -64,6 +73,20 @@ def test_that_no_more_is_to_be_done_is_kept() -> None:
 def test_a_sentence_that_asks_for_something_unknown_is_never_passed_over(aside: str) -> None:
     with pytest.raises(NotUnderstoodError, match="I do not know"):
         understand(f"{aside} Put the red block into the blue bowl.")
+
+
+@pytest.mark.parametrize("text", ["Take the block that lies between the star and the heart and put it in the bowl.",
+                                  "There is a block between the star and the heart. Put it into the bowl."])  # fmt: skip
+def test_where_a_thing_stands_is_no_place_to_put_it(text: str) -> None:
+    (command,) = understand(text).commands
+    assert [related.relation for related in command.thing.related] == ["between"]
+    assert command.to is not None
+    assert command.to.how == "in"
+
+
+def test_two_moves_that_are_a_swap_are_not_read_as_two_moves() -> None:
+    with pytest.raises(NotUnderstoodError, match="what goes where"):
+        understand("The apple goes where the pear is and the pear goes where the apple is.")
 
 
 @pytest.mark.parametrize("text", ["Put both red blocks into the bowl.", "Both of the red blocks go into the bowl."])

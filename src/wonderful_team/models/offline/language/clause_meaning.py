@@ -166,17 +166,6 @@ def read_back(parts: Parts, meaning: Meaning) -> None:
     meaning.back([thing for thing in things if thing.name != "table"])
 
 
-def read_accordingly(parts: Parts, meaning: Meaning) -> None:
-    """The words "Sort the fruits onto the areas accordingly": each goes to the one that shares its colour, or what is named."""
-    nps = parts.of("np")
-    aspect = next((str(value) for value in parts.of("ASPECT")), "colour")
-    things = _things(parts, meaning)
-    kinds = [item for item in nps if item not in things and item.noun in ("area", "container", "object")]
-    if len(things) != 1 or len(kinds) != 1:
-        raise Unclear("name what is sorted and where to")
-    meaning.match(things[0], kinds[0], aspect)
-
-
 def read_put(parts: Parts, meaning: Meaning) -> None:
     """Things go to a place, are taken away, or are only named for the next clause."""
     if "except" in parts.kinds:

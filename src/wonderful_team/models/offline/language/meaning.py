@@ -87,14 +87,6 @@ class Meaning:
         for thing in back:
             self.put(thing, Destination("origin"))
 
-    def match(self, thing: Description, kind: Description, aspect: str) -> None:
-        """Each of several things to the one of a kind that shares an aspect with it."""
-        many = thing if thing.quantity != "one" else replace(thing, quantity="all")
-        single = replace(kind, quantity="one", number=1)
-        goal = Destination("matching", replace(single, text=render(single)), aspect=aspect)  # type: ignore[arg-type]
-        self.last_thing = many
-        self._add(Command("put", many, goal, conditional=True))
-
     def there(self, things: Sequence[Description], kind: str) -> None:
         """Put things at the last place named."""
         if self.last_goal is None:

@@ -11,7 +11,6 @@ from dataclasses import replace
 
 from wonderful_team.models.offline.description import Description
 from wonderful_team.models.offline.language.clause_meaning import (
-    read_accordingly,
     read_back,
     read_contain,
     read_put,
@@ -116,8 +115,6 @@ def _read(clause: Sequence[Token], meaning: Meaning) -> None:
         read_tower(parts, meaning)
     elif kinds & {"RETURN", "origin"} and "place" not in kinds:
         read_back(parts, meaning)
-    elif "ACCORDING" in kinds:
-        read_accordingly(parts, meaning)
     else:
         read_put(parts, meaning)
 

@@ -29,7 +29,7 @@ from wonderful_team.runtime.page import write_page
 from wonderful_team.runtime.recorder import Recorder
 from wonderful_team.runtime.setup import setup_entry
 from wonderful_team.runtime.stored_run import StoredRun, load_stored_run
-from wonderful_team.runtime.user_code import close_world
+from wonderful_team.runtime.user_code import GuardedWorld, close_world
 from wonderful_team.types import NO_WORKSPACE, GateReport, Instruction, KeepOut, Limits, Plan, Target, Usage
 
 
@@ -261,7 +261,9 @@ def rollout(
     if isinstance(method, Method):
         method = method.in_world(world)
     named = method if isinstance(method, Method) else None
-    folder = new_run_folder(world.instruction.plain_text, out if out is not None else (named.out if named else None))
+    # Read as the rollout reads it: what a user's world raises or holds is named as the world's.
+    place = GuardedWorld(world)
+    folder = new_run_folder(place.instruction.plain_text, out if out is not None else (named.out if named else None))
     recorder = Recorder(folder, command=named.command if named else None)
     if named is not None:
         for text in named.warnings:
@@ -271,9 +273,9 @@ def rollout(
     given = made.plan if made is not None else plan
     setup = setup_entry(
         "run",
-        world.vocabulary,
-        world.limits,
-        keep_out=world.limits.keep_out,
+        place.vocabulary,
+        place.limits,
+        keep_out=place.limits.keep_out,
         scene=scene,
         seed=seed,
         replans=replans,

@@ -124,11 +124,13 @@ class Situation:
     """What a method is told each time it is asked what to do.
 
     Attributes:
-        attempt: 0 for the first plan, then one more per replan.
+        attempt: 0 for the first plan, then one more each time that the method is asked to go on.
+        replans_left: How many replans may still be made, one in answer to this question included.
         executed: What ran since the last question, subgoal by subgoal.
         looks_left: How often the method may still run a part of its plan and be asked again with a new picture.
         refused: The gate's report when the last answer was refused.
         plan: A plan that was read and approved beforehand and must be run as it is.
+        advice: Why a person declined the last plan; one new plan may heed it, and that is no replan.
     """
 
     observation: Observation
@@ -141,6 +143,7 @@ class Situation:
     refused: GateReport | None = None
     plan: Plan | None = None
     looks_left: int = 0
+    advice: str = ""
 
 
 @dataclass(frozen=True, eq=False)

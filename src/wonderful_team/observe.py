@@ -26,9 +26,11 @@ class Observation(types.Observation):
 
     Attributes:
         limits: The workspace that came with a camera file or corners; None without metres.
+        photo: It came from files: its time says nothing of when it was taken.
     """
 
     limits: Limits | None = None
+    photo: bool = False
 
     @classmethod
     def from_files(
@@ -75,7 +77,7 @@ class Observation(types.Observation):
             depth_m = None if depth is None else load_depth(depth, size_px)
             main, limits = replace(main, camera=found.camera, depth_m=depth_m), found.limits
         others = {name: load_view(path, name) for name, path in zip(names[1:], pictures[1:], strict=True)}
-        return cls({names[0]: main, **others}, None, limits)
+        return cls({names[0]: main, **others}, None, limits, photo=True)
 
 
 Seen: TypeAlias = "types.Observation | View | PathLike | Sequence[PathLike] | Array | Image"

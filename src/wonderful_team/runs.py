@@ -75,6 +75,8 @@ def all_runs(out: str | Path | None = None) -> list[Path]:
 
 
 def _slug(words: str) -> str:
+    # A picture among the words has no words of its own.
+    words = re.sub(r"\{[^{}]*\}", "pictured thing", words)
     return re.sub(r"[^a-z0-9]+", "-", words.lower()).strip("-")[:40].strip("-") or "run"
 
 

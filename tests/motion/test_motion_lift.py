@@ -85,6 +85,22 @@ def test_support_is_measured_round_a_box_despite_a_neighbour(name: str) -> None:
     assert lift.support_z_m(box) == pytest.approx(0.02, abs=0.002)
 
 
+@pytest.mark.parametrize("name", ["affine", "pinhole"])
+def test_a_thing_in_a_bowl_stands_on_the_floor_of_the_bowl_and_not_on_its_rim(name: str) -> None:
+    """A letter whose box touches the rim all round: what is higher than the thing itself does not support it."""
+    camera = CAMERAS[name]
+    rim = [Block(0.35, -0.15, 0.41, 0.15, 0.08), Block(0.59, -0.15, 0.65, 0.15, 0.08)]
+    rim += [Block(0.35, -0.15, 0.65, -0.09, 0.08), Block(0.35, 0.09, 0.65, 0.15, 0.08)]
+    floor = Block(0.4, -0.1, 0.6, 0.1, 0.005)
+    thing = [Block(0.42, -0.08, 0.58, -0.04, 0.04), Block(0.42, 0.04, 0.58, 0.08, 0.04)]
+    lift = Lift(scene(camera, floor, *rim, *thing))
+    corners = [(x, y, 0.04) for x in (0.42, 0.58) for y in (-0.08, 0.08)]
+    box = Box.bounding([(float(u), float(v)) for u, v in camera.project(corners)])
+    close = box.grown(3, 3, 3, 3)
+    assert lift.support_z_m(close) > 0.04
+    assert lift.support_z_m(close, 0.04) == pytest.approx(0.005, abs=0.002)
+
+
 def test_noise_just_below_the_table_is_the_table_and_the_floor_beside_it_is_not() -> None:
     view = scene(affine_top())
     low = with_depth(view, np.asarray(view.depth_m) + 0.004)

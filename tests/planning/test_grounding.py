@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import pytest
 
 from tests.planning.helpers import Tape, asked, draft, plan_with, scripted, subgoal
@@ -47,6 +49,24 @@ def test_a_box_is_moved_until_the_checker_stops(way):
     assert len(asked(model, "MoveBox")) == 3
     assert any("keep_before" in line for line in asked(model, "MoveBox")[1].question.history)
     assert any(moved.box.scaled(1.01).contains(point) for point in moved.points.values())
+
+
+@pytest.mark.parametrize("right_px", [60, -60])
+def test_a_move_is_told_in_the_pixels_in_which_boxes_are_told(right_px):
+    """The Mover speaks of its enlarged crop; people read of the view."""
+    model = scripted(
+        JudgeBox=for_target("T1", [REVISE], ACCEPT),
+        JudgeRevision=[{"reasoning": "", "decision": "take_after_stop"}],
+        MoveBox=[shift(right_px)],
+    )
+    history = plan_with(model).grounded["T1"].history
+    before, after = (next(event for event in history if event.what == what) for what in ("box", "move"))
+    moved_px = after.box.centre[0] - before.box.centre[0]
+    assert abs(moved_px) < 55, "the crop is enlarged, so that the units differ"
+    told = re.search(r"moved (\d+) px (left|right)", after.text)
+    assert told is not None, after.text
+    assert float(told[1]) == pytest.approx(abs(moved_px), abs=1)
+    assert told[2] == ("right" if right_px > 0 else "left")
 
 
 def test_a_rejected_box_starts_again_from_new_centres_that_avoid_the_old_one():

@@ -61,8 +61,10 @@ class PinholeCamera:
         K = frozen_array(self.K, (3, 3), "K")
         if K[0, 0] <= 0 or K[1, 1] <= 0:
             raise ValueError(f"K: focal lengths must be positive, got {K[0, 0]} and {K[1, 1]}")
-        if K[1, 0] != 0 or not np.array_equal(K[2], (0.0, 0.0, 1.0)):
-            raise ValueError(f"K: expected [[fx, skew, cx], [0, fy, cy], [0, 0, 1]] [px], got {K.tolist()}")
+        if not np.array_equal(K[2], (0.0, 0.0, 1.0)) or np.linalg.det(K) <= 1e-6 * K[0, 0] * K[1, 1]:
+            raise ValueError(
+                f"K: expected [[fx, skew, cx], [0, fy, cy], [0, 0, 1]] [px], or that turned in the picture, got {K.tolist()}"
+            )
         if not isinstance(self.T_base_cam, Pose):
             given = np.shape(self.T_base_cam) if isinstance(self.T_base_cam, np.ndarray | list | tuple) else ""
             raise TypeError(

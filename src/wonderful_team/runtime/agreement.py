@@ -42,13 +42,29 @@ SAME_PX = 3.0
 """How far the pixel of a source may be from where its metres show: half a window of depth, rounding [px]."""
 
 
+def class_checks(actions: Sequence[PlannedAction]) -> list[GateCheck]:
+    """A refusal for every action or step of a class that is not ours: nothing is known of what it would do."""
+    known = ", ".join(kind.__name__ for kind in ACTION_TYPES)
+    found = []
+    for index, planned in enumerate(actions):
+        foreign = [
+            part
+            for part, ours in (
+                (planned, (PlannedAction,)),
+                (getattr(planned, "step", None), STEP_TYPES),
+                (getattr(planned, "action", None), (*ACTION_TYPES, type(None))),
+            )
+            if type(part) not in ours
+        ]
+        if foreign:
+            limit = f"a PlannedAction with one of our steps and one of {known}"
+            found.append(GateCheck(index, "class of action", False, type(foreign[0]).__name__, limit))
+    return found
+
+
 def form_checks(planned: PlannedAction, vocabulary: Vocabulary) -> list[GateCheck]:
-    """Whether it is an action of a known class that the world runs, with numbers that mean something."""
+    """Whether it is an action that the world runs, with numbers that mean something."""
     action, step = planned.action, planned.step
-    if type(step) not in STEP_TYPES or (action is not None and type(action) not in ACTION_TYPES):
-        named = type(step if type(step) not in STEP_TYPES else action).__name__
-        known = ", ".join(kind.__name__ for kind in ACTION_TYPES)
-        return [GateCheck(None, "class of action", False, named, f"one of {known}, with one of our steps")]
     kind, valid = (step.kind, vocabulary.step_kinds) if action is None else (action.kind, vocabulary.kinds)
     checks = [GateCheck(None, "vocabulary", kind in valid, kind, ", ".join(valid))]
     if action is not None:

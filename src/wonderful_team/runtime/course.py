@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from shapely import Point, affinity
+from shapely import affinity
 
 from wonderful_team.actions import At, Beside, Gripper, MoveStep, OriginOf, PickPlace, PickPlaceStep, Push, PushStep
 from wonderful_team.geometry import Box
@@ -19,6 +19,8 @@ from wonderful_team.types import GroundedTarget, Limits, Plan, PlannedAction, Vi
 
 RING_SHARE, LEAST_RING_PX = 0.15, 2.0
 """How far round a box its support is looked for: share of its smaller side, and at least so many pixels."""
+GONE_M = -1e6
+"""Where points go that nothing shows any more [m]: far from every table."""
 _MOST_POINTS = 4000
 """A thing is known well enough by so many points."""
 
@@ -107,31 +109,31 @@ class Course:
         name = step.pick if isinstance(step, PickPlaceStep) else ""
         own, base = self._own(name, action.pick_m)
         carried = self._carried(name, own, action.pick_m, base)
-        meant, level, stated = self._place(step, action)
+        meant, level, stated = self._place(step, action, own)
         back = isinstance(step, PickPlaceStep) and isinstance(step.place, OriginOf) and step.place.target == name
         stage = Stage(planned, self._relief, own, carried, meant, level, stated, back and action.yaw_rad == 0)
         self._move(name, own, base, action.pick_m, action.place_m, action.yaw_rad)
         return stage
 
-    def _place(self, step: Any, action: PickPlace) -> tuple[Any | None, bool, bool]:
+    def _stated(self, place_m: Array, own: Array | None) -> Any | None:
+        """What a height says that a thing is put on: what stands at the place, where the surface is not the table."""
+        surface = None if self._relief is None else self._relief.surface_m(place_m[:2], own)
+        if self._relief is None or surface is None or surface <= self._table_z_m + RAISED_M:
+            return None
+        return self._relief.standing(place_m[:2], self._table_z_m)
+
+    def _place(self, step: Any, action: PickPlace, own: Array | None) -> tuple[Any | None, bool, bool]:
         """What a thing may rest on, whether the place must be level, and whether the plan names it."""
         place = step.place if isinstance(step, PickPlaceStep) else None
         target = self._grounded.get(place.target) if place is not None else None
         if place is None or target is None:
-            standing = None if self._relief is None else self._relief.standing(action.place_m[:2], self._table_z_m)
-            return standing, False, False
+            return self._stated(action.place_m, own), False, False
         if isinstance(place, OriginOf) or (isinstance(place, At) and place.target == step.pick):
             return None, False, True
         if isinstance(place, Beside):
             return None, True, True
         if target.target.kind == "object":
             return self.region(place.target, action.place_m), False, True
-        # Free space on a thing that the plan names is meant to be on it.
-        for name, other in self._grounded.items():
-            if name != step.pick and other.target.kind == "object" and other.box is not None:
-                region = self.region(name, action.place_m)
-                if region is not None and region.contains(_point(action.place_m)):
-                    return region, False, True
         return None, True, True
 
     def _push(self, planned: PlannedAction, action: Push) -> Stage:
@@ -202,14 +204,13 @@ class Course:
 
     def _carried(self, name: str, own: Array | None, tool_m: Array, base: float) -> Carried:
         hanging = max(0.0, float(tool_m[2]) - base)
-        target = self._grounded.get(name)
-        boxed = None
-        if target is not None and target.box is not None and name not in self._things:
-            boxed = self._corners(target.box)
         if own is not None and own.any() and self._relief is not None:
             points = self._relief.xyz_m[own, :2]
             return Carried(points[:: max(1, len(points) // _MOST_POINTS)] - tool_m[:2], hanging)
-        return Carried(None if boxed is None else boxed - tool_m[:2], hanging)
+        target = self._grounded.get(name)
+        region = self.region(name, tool_m) if target is not None and target.box is not None else None
+        corners = None if region is None else np.asarray(region.exterior.coords) - tool_m[:2]
+        return Carried(corners, hanging)
 
     def _move(self, name: str, own: Array | None, base: float, start: Array, end: Array, yaw_rad: float) -> None:
         """The thing stands at its end now, and what it stood on shows where it was."""
@@ -222,18 +223,16 @@ class Course:
         relief = self._relief
         left = relief.xyz_m[own].copy()
         left[:, 2] = base
-        points = relief.xyz_m.copy()
-        points[own] = _moved(points[own], base, start, end, yaw_rad)
-        px = relief.px.copy()
-        px[own] = np.nan
+        moved = _moved(relief.xyz_m[own], base, start, end, yaw_rad)
+        points, px = np.vstack([relief.xyz_m, left]), np.vstack([relief.px, np.full((len(left), 2), np.nan)])
         # What it covers there is not the surface any more; when it leaves again, its support is.
-        hidden = ~own & relief.inside(outline(points[own, :2], relief.cell_m))
-        hidden[hidden] = covered(points[own, :2], points[hidden, :2], relief.cell_m)
+        mine = np.append(own, np.zeros(len(left), dtype=bool))
+        hidden = ~mine & Relief(points, px, relief.spacing_m).inside(outline(moved[:, :2], relief.cell_m))
+        hidden[hidden] = covered(moved[:, :2], points[hidden, :2], relief.cell_m)
         hidden &= points[:, 2] < end[2] + RAISED_M
-        points[hidden], px[hidden] = np.nan, np.nan
-        self._relief = Relief(
-            np.vstack([points, left]), np.vstack([px, np.full((len(left), 2), np.nan)]), relief.spacing_m
-        )
+        points[hidden], px[hidden] = GONE_M, np.nan
+        points[mine], px[mine] = moved, np.nan
+        self._relief = Relief(points, px, relief.spacing_m)
         if name in self._grounded:
             self._things[name] = np.flatnonzero(own)
             self._bases[name] = float(end[2])
@@ -289,7 +288,3 @@ def _moved(points: Array, base: float, start: Array, end: Array, yaw_rad: float)
     offset = points[:, :2] - start[:2]
     turned = offset @ np.array([[c, s], [-s, c]])
     return np.column_stack([turned + end[:2], points[:, 2] - base + end[2]])
-
-
-def _point(at_m: Array) -> Any:
-    return Point(float(at_m[0]), float(at_m[1]))

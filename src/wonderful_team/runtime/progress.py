@@ -52,8 +52,14 @@ class Progress:
 
     def asking(self, situation: Situation) -> None:
         """Note what a method is told beside pictures and reports, so that it can be asked so again."""
-        counts = {name: getattr(situation, name) for name in ("attempt", "replans_left", "looks_left")}
-        self.tell("asking", f"attempt {situation.attempt}", counts)
+        told: dict[str, Any] = {
+            "attempt": situation.attempt,
+            "replans_left": situation.replans_left,
+            "looks_left": situation.looks_left,
+        }
+        if situation.advice:
+            told["advice"] = situation.advice
+        self.tell("asking", f"attempt {situation.attempt}", told)
 
     def decided(self, decision: Decision) -> None:
         """Note a decision and what it carries."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -42,6 +43,7 @@ def situations(folder: Path, record: Record, setup: Setup) -> Iterator[Situation
             refused=_refusal(record["planner"]["gates"][before["gates"] : now["gates"]]),
             plan=recorded_plan(folder, record, setup.plan) if number == 0 and setup.plan is not None else None,
             looks_left=asked["looks_left"],
+            advice=asked.get("advice", ""),
         )
         before = now
 
@@ -76,7 +78,8 @@ def recorded_plan(folder: Path, record: Record, plan_id: str) -> Plan:
     """
     for kept in record["planner"]["plans"]:
         if kept["id"] == plan_id:
-            return plan_from_json(kept, str(folder))
+            plan, instruction = plan_from_json(kept, str(folder), whole=False), stored_instruction(folder, record)
+            return replace(plan, instruction=instruction) if plan.instruction.text == instruction.text else plan
     known = ", ".join(str(kept["id"]) for kept in record["planner"]["plans"]) or "none"
     raise ConfigError(f"{folder}: the record does not hold the plan {plan_id}; it holds: {known}")
 
@@ -89,7 +92,7 @@ def _runs(folder: Path, record: Record, before: Mapping[str, int], now: Mapping[
         number = entry["plan"]
         if number is None:
             raise ConfigError(f"{folder}: subgoal {entry['subgoal']} belongs to no plan in the record")
-        plan = plan_from_json(planner["plans"][number], str(folder))
+        plan = plan_from_json(planner["plans"][number], str(folder), whole=False)
         first = done.get(number, 0)
         done[number] = last = first + entry["actions"]
         told = [

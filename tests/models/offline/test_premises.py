@@ -21,7 +21,7 @@ from wonderful_team.sims.tabletop import make_world
 from wonderful_team.types import Subgoal, Target, View
 
 HERE = Path(__file__).parent
-DESK = HERE.parents[2] / "examples" / "desk.png"
+DESK = Path(__file__).parents[3] / "examples" / "desk.png"
 
 
 def read_premises(name: str) -> list[tuple[str, str]]:

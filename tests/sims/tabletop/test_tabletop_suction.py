@@ -101,6 +101,15 @@ def test_out_of_reach_stop_and_other_kinds(world: TabletopWorld) -> None:
         world.observe()
 
 
+@pytest.mark.parametrize("yaw_rad", [10_000.0, 1e300])
+def test_a_turn_of_more_than_once_round_is_a_fault_at_once(world: TabletopWorld, yaw_rad: float) -> None:
+    before = world.observe().main.time_s
+    report = world.execute(PickPlace((0.4, -0.3, 0.0), (0.5, 0.0, 0.0), yaw_rad))
+    assert not report.executed
+    assert "is more than once round (limit 6.283 rad)" in str(report.fault)
+    assert world.observe().main.time_s == before
+
+
 def test_a_nudge_shows_in_the_next_picture(world: TabletopWorld) -> None:
     before, where = world.observe(), _thing(world, "letter")["position_m"]
     world.privileged.nudge("letter", dx_m=0.03, yaw_rad=0.2)

@@ -11,7 +11,9 @@ from wonderful_team.models.offline.answers.eyes import (
     NEARLY_EQUAL,
     Eyes,
     as_pictured,
+    is_shown_alone,
     one_of,
+    seen_as,
     side_words,
     told_apart,
     unique_words,
@@ -313,6 +315,8 @@ def _one(
         result.misses(single, eyes)
     if best is None or best.thing is None:
         return Named(single, None)
+    if is_shown_alone(single) and (seen := seen_as(eyes, best.thing)):
+        return Named(replace(single, text=seen), best.thing.number)
     plain = not (single.superlative or single.like or single.related)
     from_side = single.superlative in ("tallest", "shortest") and best.thing.height_m is None
     rivalled = plain and len(equal) == 1 and len(everything) > 1 and _rivalled(everything)

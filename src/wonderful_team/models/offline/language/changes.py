@@ -200,7 +200,7 @@ def _plain_post(tree: Tree[Token]) -> Change:
     def change(description: Description) -> Description:
         if "EXCEPT" in kinds:
             return _except(tree, description)
-        if "SAME" in kinds:
+        if "SAME" in kinds or "WHOSE" in kinds:
             aspect = str(value_of(next(token for token in tokens_in(tree) if token.type == "ASPECT")))
             reference = thing_of(next(trees(tree, "np")))
             return replace(description, related=(*description.related, Related(_SAME[aspect], (reference,))))  # type: ignore[arg-type]

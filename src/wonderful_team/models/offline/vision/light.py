@@ -87,7 +87,8 @@ def _relit(picture: Picture) -> Array | None:
         return None
     lab = to_lab(rgb.astype(np.uint8))
     table = find_table(lab, valid, depth)
-    bare = valid & ~table.stands_out
+    # What is brighter than the camera can tell has lost its colour.
+    bare = valid & ~table.stands_out & (rgb < 255).all(axis=-1)
     if table.raised is not None:
         bare &= ~table.raised
     if bare.mean() < 0.1 or (table.spread >= NO_TABLE).any():

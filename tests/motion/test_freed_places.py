@@ -1,0 +1,58 @@
+"""Heights where a picture shows a thing that will have left, or a thing stands inside of another."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from tests.motion.block_scenes import LIMITS, Block, affine_top, area, found, looking_down, scene
+from wonderful_team.actions import At, OriginOf, PickPlace, PickPlaceStep
+from wonderful_team.motion import ground_actions
+
+CAMERAS = {"affine": affine_top(), "pinhole": looking_down()}
+FLOOR_M, RIM_M = 0.002, 0.03
+RIM = [
+    Block(0.40, 0.05, 0.46, 0.20, RIM_M),
+    Block(0.54, 0.05, 0.60, 0.20, RIM_M),
+    Block(0.40, 0.05, 0.60, 0.09, RIM_M),
+    Block(0.40, 0.16, 0.60, 0.20, RIM_M),
+]
+
+
+@pytest.mark.parametrize("name", CAMERAS)
+def test_a_thing_lower_than_the_rim_round_it_is_put_down_on_the_table_and_brought_back(name: str) -> None:
+    """The floor shows between its bars. Were the rim taken for its support, it would have to go below the table, which the gate refuses."""
+    camera = CAMERAS[name]
+    thing = Block(0.465, 0.095, 0.535, 0.155, 0.012)
+    bars = [replace(thing, x1=0.485), replace(thing, x0=0.515)]
+    view = scene(camera, Block(0.40, 0.05, 0.60, 0.20, FLOOR_M), *RIM, *bars)
+    u, v = camera.project([(0.5, -0.3, 0.0)])[0]
+    grounded = {"T1": found(camera, "T1", thing, {"pick": (0.15, 0.5)}), "A1": area("A1", (float(u), float(v)))}
+    steps = (PickPlaceStep("G1", "T1", At("A1")), PickPlaceStep("G2", "T1", OriginOf("T1")))
+    there, back = (planned.action for planned in ground_actions(steps, grounded, view, LIMITS))
+    assert isinstance(there, PickPlace)
+    assert isinstance(back, PickPlace)
+    assert there.place_m[2] == pytest.approx(0.0, abs=1e-6)
+    assert back.pick_m[2] == pytest.approx(0.012 - FLOOR_M, abs=0.003)
+    assert back.place_m[2] == pytest.approx(FLOOR_M, abs=0.003)
+    assert min(float(point[2]) for action in (there, back) for point in (action.pick_m, action.place_m)) >= 0.0
+
+
+@pytest.mark.parametrize("name", CAMERAS)
+def test_a_place_that_was_left_has_the_height_of_what_was_under_it(name: str) -> None:
+    camera = CAMERAS[name]
+    one, other = Block(0.40, -0.30, 0.46, -0.24, 0.05), Block(0.50, 0.10, 0.56, 0.16, 0.04)
+    view = scene(camera, one, other)
+    (u, v), (a, b) = camera.project([other.top(), (0.35, 0.3, 0.0)])
+    grounded = {
+        "T1": found(camera, "T1", one),
+        "T2": found(camera, "T2", other),
+        "A1": area("A1", (float(u), float(v))),
+        "A2": area("A2", (float(a), float(b))),
+    }
+    steps = (PickPlaceStep("G1", "T2", At("A2")), PickPlaceStep("G2", "T1", At("A1")))
+    last = ground_actions(steps, grounded, view, LIMITS)[1]
+    assert isinstance(last.action, PickPlace)
+    assert last.action.place_m[2] == pytest.approx(0.0, abs=0.002)
+    assert "T2 has left it" in last.sources[1].how

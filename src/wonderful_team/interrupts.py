@@ -56,7 +56,7 @@ _state = _State()
 
 @contextlib.contextmanager
 def ends_on_signal(*, force: bool = False) -> Iterator[None]:
-    """Within it the first signal raises `Interrupted`, once, in the main thread.
+    """Within it the first signal raises `Interrupted` (Ctrl-C outside of a command line: `KeyboardInterrupt`) in the main thread.
 
     Signals that the program handles or ignores already (nohup, a background job) stay as they are. Does nothing in
     another thread or inside itself.
@@ -79,7 +79,7 @@ def ends_on_signal(*, force: bool = False) -> Iterator[None]:
     try:
         yield
     except Interrupted as error:
-        if force or error.number == signal.SIGINT:
+        if force:
             raise
         raise SystemExit(error.exit_code) from error
     finally:
@@ -101,7 +101,7 @@ def held() -> Iterator[None]:
         _state.holding -= 1
         if _state.holding == 0 and _state.pending is not None:
             number, _state.pending = _state.pending, None
-            raise Interrupted(number)
+            raise _interruption(number)
 
 
 @contextlib.contextmanager
@@ -146,7 +146,13 @@ def _on_signal(number: int, frame: FrameType | None) -> None:
         _state.pending = number
         return
     _state.pending = None
-    raise Interrupted(number)
+    raise _interruption(number)
+
+
+def _interruption(number: int) -> KeyboardInterrupt:
+    """Python ends a script with Ctrl-C's own exit code only for a plain KeyboardInterrupt."""
+    named = Interrupted(number)
+    return KeyboardInterrupt(str(named)) if number == signal.SIGINT and not _state.force else named
 
 
 def _say(text: str) -> None:

@@ -85,6 +85,14 @@ def test_replans_are_bounded():
     assert [situation.replans_left for situation in policy.asked] == [1, 1, 0]
 
 
+@pytest.mark.parametrize("replans", [0, 1, 3])
+def test_refused_plans_are_replanned_so_often_and_no_more(replans):
+    policy = MovesPolicy([[(RED, (400.0, 60.0))] for _ in range(9)])
+    trial = rollout(policy, SquaresWorld(), replans=replans)
+    assert (trial.outcome, trial.stage, len(trial.plans)) == ("failure", "gate", 1)
+    assert [asked.replans_left for asked in policy.asked] == [replans, *range(replans, 0, -1)]
+
+
 def test_an_object_nudged_between_two_actions_stops_the_second_one():
     world = SquaresWorld(nudge={4: ("blue", 3.0)})  # look 4 stands right before the second motion
     trial = rollout(MovesPolicy([[(RED, MIDDLE), (BLUE, RED)]]), world)

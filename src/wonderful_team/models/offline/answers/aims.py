@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from typing import Literal
 
@@ -400,11 +399,6 @@ def already(eyes: Eyes, thing: Named, to: Named) -> bool:
     if inner is None or outer is None or inner.number == outer.number:
         return False
     return inner.on == outer.number or (outer.area_px > inner.area_px and covers(outer, inner.centre))
-
-
-def same_aims(one: Sequence[Aim], other: Sequence[Aim]) -> bool:
-    """Whether both hold the same aims in the same order."""
-    return len(one) == len(other) and all(a.same(b) for a, b in zip(one, other, strict=True))
 
 
 def _family(how: str) -> str:

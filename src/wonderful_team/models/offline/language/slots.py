@@ -1,4 +1,4 @@
-"""Reading a clause by its parts where the grammar knows no such order of words.
+"""Reading a clause by its parts, whatever their order.
 
 A clause is cut into noun phrases, places, angles and verbs; what each part is follows from the words beside it. Every word
 must find its part, and the parts must make a whole: else the clause is refused.
@@ -25,9 +25,6 @@ from wonderful_team.models.offline.language.gists import gist_of_gathering
 from wonderful_team.models.offline.language.meaning import Meaning
 from wonderful_team.models.offline.language.tokens import Token
 from wonderful_team.models.offline.language.wording import render
-
-BY_PARTS = frozenset(("STACK", "FORMER", "LATTER", "AROUND", "RESPECTIVELY"))
-"""Words whose clauses are always read by their parts."""
 
 _INTO = ("IN", "INTO", "ON", "ONTO", "TO")
 

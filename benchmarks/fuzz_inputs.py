@@ -4,12 +4,13 @@
 
 Pictures, depth, cameras, records, stores, photo files, profiles, kept answers, prompts, own code and the values of options are spoiled
 in every round, and read by the commands that read them, in this process. Printed: how many of each kind were tried, which ended as a
-crash (exit code 70, an exit code that means nothing, --json that is no JSON) with the command, and the slowest.
+crash (exit code 70, an exit code that means nothing, --json that is no JSON, a minute and more) with the command, and the slowest.
 """
 
 from __future__ import annotations
 
 import argparse
+import faulthandler
 import sys
 import tempfile
 import time
@@ -23,6 +24,8 @@ from hypothesis import strategies as st
 from tests.fuzzing import KINDS, Desk, Kind, attempt
 
 ROUND = 20
+LONGEST_S = 60.0
+"""No input may take longer; what it does then is shown."""
 
 
 @dataclass
@@ -49,8 +52,12 @@ class Tally:
         @given(st.data())
         def tries(data: st.DataObject) -> None:
             started = time.monotonic()
+            faulthandler.dump_traceback_later(LONGEST_S)
             argv, said = attempt(self.desk, kind, data.draw)
+            faulthandler.cancel_dump_traceback_later()
             took = time.monotonic() - started
+            if took > LONGEST_S and not said:
+                said = f"took {took:.0f} s"
             name = kind.__name__
             self.tried[name] += 1
             self.slowest[name] = max(self.slowest.get(name, (0.0, "")), (took, str(argv)[:300]))

@@ -31,6 +31,7 @@ OWN_FILES = (
     "class W:\n    name = 3\n    def decide(self, situation): return 3", "def W(scene, rng): raise OSError('x')", "\x00", "\udc80",
     "class W:\n    def __getattr__(self, name): raise ValueError(name)", "class W:\n    def __init__(self, seed): self.limits = 3",
     "class W:\n    name = 'w'\n    async def answer(self, request): return '{' * 10000",
+    "import wonderful_team as wt\nclass W:\n    vocabulary = limits = 3\n    instruction = wt.Instruction('x')\n    observe = execute = lambda *_: 1",
     "class W:\n    vocabulary = limits = instruction = 3\n    observe = execute = stop = close = lambda *_: None",
 )  # fmt: skip
 
@@ -46,7 +47,8 @@ class Desk:
         np.save(folder / "depth.npy", np.full((240, 320), 0.8, np.float32))
         self.store = folder / "study.db"
         wt.Study(TASK, seeds=[0], store=self.store, controls=(), jobs=1, out=self.runs, pages="none").run()
-        self.scratch = folder / "scratch"
+        self.kept = self.good("desk.png")
+        self.scratch = folder
 
     def _plan(self) -> Path:
         seen = wt.Observation.from_files(
@@ -71,7 +73,8 @@ class Desk:
 
     @property
     def picture(self) -> str:
-        return str(self.folder / "desk.png")
+        """A copy for one example: an option may name it as what is to be written."""
+        return self.file("desk.png", self.kept)
 
 
 Argv = list[str]
@@ -105,7 +108,7 @@ def depths(desk: Desk, draw: st.DrawFn) -> Argv:
 
 def cameras(desk: Desk, draw: st.DrawFn) -> Argv:
     camera = json.loads(desk.good("camera.json"))
-    camera["workspace_m"] = [[0.2, -0.4, 0.0], [0.8, 0.4, 0.3]]
+    camera["workspace_m"] = {"low": [0.2, -0.4, 0.0], "high": [0.8, 0.4, 0.3]}
     spoiled = desk.file("camera.json", draw(damaged_json(json.dumps(camera))))
     return ["plan", desk.picture, WORDS, "--depth", str(desk.folder / "depth.png"), "--camera", spoiled]
 

@@ -31,7 +31,7 @@ from wonderful_team.runtime.page import write_page
 from wonderful_team.runtime.recorder import Recorder
 from wonderful_team.runtime.setup import setup_entry
 from wonderful_team.runtime.stored_run import StoredRun, load_stored_run
-from wonderful_team.runtime.user_code import close_world
+from wonderful_team.runtime.user_code import GuardedWorld, close_world
 from wonderful_team.types import NO_WORKSPACE, GateReport, Instruction, KeepOut, Limits, Plan, Target, Usage
 
 
@@ -253,12 +253,14 @@ def rollout(
     if isinstance(method, Method):
         method = method.in_world(world)
     named = method if isinstance(method, Method) else None
+    # Read as the rollout reads it: what a user's world raises or holds is named as the world's.
+    guarded = GuardedWorld(world)
     scorer: Privileged | None = registry.privileged(world) if scored else None
     setup = setup_entry(
         "run",
-        world.vocabulary,
-        world.limits,
-        keep_out=world.limits.keep_out,
+        guarded.vocabulary,
+        guarded.limits,
+        keep_out=guarded.limits.keep_out,
         scene=scene,
         seed=seed,
         replans=replans,
@@ -267,7 +269,7 @@ def rollout(
         scored=scorer is not None,
     )
     place, command = (out or named.out, named.command) if named else (out, None)
-    with _recording(world.instruction.plain_text, place, command) as recorder:
+    with _recording(guarded.instruction.plain_text, place, command) as recorder:
         everyone = (recorder, *subscribers, *(named.subscribers if named else ()))
         for text in named.warnings if named else ():
             tell(everyone, "warning", "setup", text)
@@ -285,8 +287,8 @@ def rollout(
                 scene=scene,
                 configuration={
                     **(named.configuration() if named else {}),
-                    "task": world.instruction,
-                    "limits": world.limits,
+                    "task": guarded.instruction,
+                    "limits": guarded.limits,
                     "setup": setup,
                     "words": named.words() if named else {},
                 },

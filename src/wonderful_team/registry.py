@@ -343,7 +343,8 @@ def _world_from_file(name: str, seed: int, harder: Mapping[str, int], arguments:
 
 def _whole(made: Any, what: str) -> Any:
     """The same object, when it has what a world needs."""
-    missing = [need for need in ("vocabulary", "limits", "observe", "execute") if not hasattr(made, need)]
+    with code_of(f"{what}: {type(made).__name__}", WorldUnavailableError):
+        missing = [need for need in ("vocabulary", "limits", "observe", "execute") if not hasattr(made, need)]
     if missing:
         raise ConfigError(
             f"{what}: {type(made).__name__} lacks {', '.join(missing)}; a world has vocabulary, limits, "

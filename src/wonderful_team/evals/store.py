@@ -14,6 +14,8 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
+from pydantic import TypeAdapter
+
 from wonderful_team.errors import ConfigError, reading
 from wonderful_team.evals.claims import LEASE_S, Owner, Surroundings
 from wonderful_team.evals.names import NO_MODEL
@@ -24,6 +26,8 @@ from wonderful_team.evals.trials import CONDITION, Condition, Row, SpendingCaps,
 
 CUT = "cut by the study's cap"
 """Why an attempt was discarded that had all it was allowed and wanted more."""
+_REQUEST, _RESULT = TypeAdapter(dict[str, Any]), TypeAdapter(TrialResult)
+"""What is read out of the file is of the types that it was written with."""
 MAX_CRASHES = 3
 """A trial whose worker process died so often is written as an error, ours, and not tried again."""
 
@@ -120,7 +124,7 @@ class Store:
         """What was asked for, study by study, oldest first."""
         with reading(f"store {str(self.path)!r}", "a store that bench wrote and nothing changed"):
             rows = self._base.execute("SELECT request FROM studies ORDER BY started, rowid").fetchall()
-            return [json.loads(row[0]) for row in rows]
+            return [_REQUEST.validate_json(row[0]) for row in rows]
 
     # -- handing out work --------------------------------------------------------------------------------------------
 
@@ -386,7 +390,7 @@ def _spec(row: sqlite3.Row) -> TrialSpec:
 
 def _result(row: sqlite3.Row) -> TrialResult:
     values = {name: json.loads(row[name]) if name in JSON else row[name] for name in RESULT}
-    return TrialResult(**{**values, "provenance": tuple(values["provenance"])})
+    return _RESULT.validate_python(values)
 
 
 def _now() -> str:

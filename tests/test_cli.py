@@ -276,7 +276,7 @@ def test_a_model_that_babbles_is_the_methods_failure(desk: Path, own: Path, caps
 
 
 def test_approval_that_is_refused_moves_nothing(own: Path, monkeypatch: pytest.MonkeyPatch, capsys: Any) -> None:
-    monkeypatch.setattr("click.confirm", lambda *_, **__: False)
+    monkeypatch.setattr("builtins.input", lambda: "n")
     argv = [
         "run",
         "tabletop/rotate",
@@ -296,7 +296,7 @@ def test_approval_that_is_refused_moves_nothing(own: Path, monkeypatch: pytest.M
 
 
 def test_approval_that_is_given_lets_it_run(own: Path, monkeypatch: pytest.MonkeyPatch, capsys: Any) -> None:
-    monkeypatch.setattr("click.confirm", lambda *_, **__: True)
+    monkeypatch.setattr("builtins.input", lambda: "y")
     argv = [
         "run",
         "tabletop/rotate",
@@ -322,7 +322,7 @@ def test_the_plan_that_was_read_is_the_plan_that_runs(capsys: pytest.CaptureFixt
     assert second["plan_ids"] == first["plan_ids"]
     assert film.stat().st_size > 1000
     assert run(["run", "tabletop/rotate", "--seed", "4", "--plan", first["folder"], "--replans", "0", "--json"]) == 4
-    assert any("scene" in reason for reason in document(capsys)["result"]["refusals"])
+    assert any("instruction of the plan" in reason for reason in document(capsys)["result"]["refusals"])
 
 
 def test_show_tells_the_story_and_one_role(desk: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -402,4 +402,4 @@ def test_a_script_without_input_approves_nothing(own: Path, runs_folder: Path) -
         [sys.executable, "-m", "wonderful_team", *argv], stdin=subprocess.DEVNULL, capture_output=True, text=True
     )
     assert done.returncode == 4
-    assert "approval: none" in done.stdout
+    assert "you declined" in done.stdout

@@ -39,7 +39,9 @@ def test_a_golden_record_opens_shows_and_replays(folder, tmp_path, capsys):
     assert run(["show", str(copy)]) == 0
     said = record["planner"]["instruction"]
     assert spoken(said["text"], picture_names(said["text"], said["slots"])) in capsys.readouterr().out
-    assert read_plan(copy).id == record["planner"]["plans"][-1]["id"]
+    last = record["planner"]["plans"][-1]
+    plan = read_plan(copy)
+    assert (plan.short_id() if last["schema_version"] == 1 else plan.id) == last["id"]
     # A later release may ask in other words: what was answered still makes the same plan.
     found = replay(copy, tolerant=True)
     assert found.now == found.then

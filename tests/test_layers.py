@@ -8,7 +8,18 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[1] / "src" / "wonderful_team"
-BASE = {"errors", "text", "notebook", "types", "pictures", "actions", "interfaces", "jsonable", "geometry"}
+BASE = {
+    "errors",
+    "text",
+    "notebook",
+    "types",
+    "pictures",
+    "actions",
+    "interfaces",
+    "interrupts",
+    "jsonable",
+    "geometry",
+}
 TOP = {
     "__init__",
     "__main__",

@@ -9,7 +9,7 @@ import pytest
 import wonderful_team as wt
 from wonderful_team import registry
 from wonderful_team.errors import ConfigError, UnknownNameError
-from wonderful_team.interfaces import Privileged
+from wonderful_team.interfaces import Privileged, offers
 from wonderful_team.planning import SETTINGS
 
 
@@ -104,7 +104,7 @@ def test_an_object_that_is_no_world_says_what_it_lacks() -> None:
 
 def test_the_truth_is_handed_out_for_the_worlds_own_instruction_only() -> None:
     world = wt.make_world("tabletop/rotate", seed=1)
-    assert isinstance(registry.privileged(world), Privileged)
+    assert offers(registry.privileged(world), Privileged)
     world.close()
     other = wt.make_world("tabletop/rotate", seed=1, instruction="put the largest thing on the left")
     assert registry.privileged(other) is None

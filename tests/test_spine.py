@@ -92,7 +92,8 @@ def test_replanning_carries_on_after_a_nudge():
 def test_a_thing_that_is_not_there_is_not_found_and_nothing_moves():
     trial = run("visual_manipulation", 3, instruction="Put the olive crescent into the brown ring.")
     assert trial.outcome == "failure"
-    assert trial.stage == "grounding"
+    assert trial.stage == "plan"
+    assert "No olive crescent is in the picture" in trial.reason
     assert not trial.reports
 
 

@@ -12,9 +12,9 @@ __version__ = "0.1.0"
 
 if TYPE_CHECKING:
     from wonderful_team.actions import ARM, PICK_PLACE, At, Beside, PickPlace, PickPlaceStep, Vocabulary
-    from wonderful_team.api import Team, make_world, rollout, task
+    from wonderful_team.api import Team, load_run, make_world, rollout, task
     from wonderful_team.errors import WonderfulTeamError
-    from wonderful_team.geometry import AffineCamera, Box, PinholeCamera, PlanarCamera
+    from wonderful_team.geometry import AffineCamera, Box, PinholeCamera, PlanarCamera, Pose
     from wonderful_team.interfaces import Act, Done, GaveUp, Model, Policy, Score, Situation, World
     from wonderful_team.made import FoundTarget, MadePlan, RecordedTrial
     from wonderful_team.methods import Method
@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from wonderful_team.probing import probe_model
     from wonderful_team.registry import make_model
     from wonderful_team.runtime import Approval
+    from wonderful_team.runtime.stored_run import StoredRun
     from wonderful_team.sims.tabletop import Scene
     from wonderful_team.studies import Study
     from wonderful_team.types import (
@@ -65,12 +66,14 @@ _HOMES: dict[str, str] = {
     "PlanarCamera": "geometry",
     "PlannedAction": "types",
     "Policy": "interfaces",
+    "Pose": "geometry",
     "RecordedTrial": "made",
     "Request": "types",
     "Scene": "sims.tabletop",
     "Score": "interfaces",
     "Situation": "interfaces",
     "StepReport": "types",
+    "StoredRun": "runtime.stored_run",
     "Study": "studies",
     "Team": "api",
     "Trial": "types",
@@ -81,6 +84,7 @@ _HOMES: dict[str, str] = {
     "instruction_with_pictures": "photos",
     "make_model": "registry",
     "probe_model": "probing",
+    "load_run": "api",
     "make_world": "api",
     "rollout": "api",
     "task": "api",
@@ -114,12 +118,14 @@ __all__ = [
     "PlanarCamera",
     "PlannedAction",
     "Policy",
+    "Pose",
     "RecordedTrial",
     "Request",
     "Scene",
     "Score",
     "Situation",
     "StepReport",
+    "StoredRun",
     "Study",
     "Team",
     "Trial",
@@ -129,6 +135,7 @@ __all__ = [
     "World",
     "__version__",
     "instruction_with_pictures",
+    "load_run",
     "make_model",
     "make_world",
     "probe_model",

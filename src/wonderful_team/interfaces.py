@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import inspect
 from collections.abc import Awaitable, Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Protocol, TypeAlias, runtime_checkable
+from typing import Any, Protocol, TypeAlias, TypeGuard, TypeVar, cast, runtime_checkable
 
 from wonderful_team.actions import Action, Vocabulary
 from wonderful_team.geometry.arrays import Array
@@ -23,6 +24,26 @@ from wonderful_team.types import (
     TrueThing,
     Verdict,
 )
+
+T = TypeVar("T")
+
+
+def offers(thing: object, protocol: Callable[..., T]) -> TypeGuard[T]:
+    """Whether a thing has what a protocol asks for, forwarded by `__getattr__` or not.
+
+    From Python 3.12 on, isinstance with a protocol does not see what a wrapper forwards, so the protocols of what is
+    optional are not made for it.
+    """
+    members = {
+        name: vars(home).get(name)
+        for home in inspect.getmro(cast(type, protocol))
+        for name in (*inspect.get_annotations(home), *vars(home))
+        if not name.startswith("_")
+    }
+    return all(
+        callable(getattr(thing, name, None)) if inspect.isfunction(member) else hasattr(thing, name)
+        for name, member in members.items()
+    )
 
 
 @runtime_checkable
@@ -51,7 +72,6 @@ class World(Protocol):
     def close(self) -> None: ...
 
 
-@runtime_checkable
 class Filmed(Protocol):
     """A world that can show its motion while an action runs: for people's films only, never for a planner."""
 
@@ -69,7 +89,6 @@ class Score:
     reason: str = ""
 
 
-@runtime_checkable
 class Privileged(Protocol):
     """Truth of a simulator. Handed by the registry to scorers and simulated models only, never to a planner."""
 
@@ -84,7 +103,6 @@ class Privileged(Protocol):
         ...
 
 
-@runtime_checkable
 class SceneTruth(Privileged, Protocol):
     """Truth that a simulated model can answer from: what stands where, and what each picture really shows."""
 
@@ -106,11 +124,13 @@ class Situation:
     """What a method is told each time it is asked what to do.
 
     Attributes:
-        attempt: 0 for the first plan, then one more per replan.
+        attempt: 0 for the first plan, then one more each time that the method is asked to go on.
+        replans_left: How many replans may still be made, one in answer to this question included.
         executed: What ran since the last question, subgoal by subgoal.
         looks_left: How often the method may still run a part of its plan and be asked again with a new picture.
         refused: The gate's report when the last answer was refused.
         plan: A plan that was read and approved beforehand and must be run as it is.
+        advice: Why a person declined the last plan; one new plan may heed it, and that is no replan.
     """
 
     observation: Observation
@@ -123,6 +143,7 @@ class Situation:
     refused: GateReport | None = None
     plan: Plan | None = None
     looks_left: int = 0
+    advice: str = ""
 
 
 @dataclass(frozen=True, eq=False)

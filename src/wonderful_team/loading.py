@@ -12,6 +12,7 @@ from types import ModuleType
 from typing import Any
 
 from wonderful_team.errors import ConfigError, UnknownNameError, WonderfulTeamError, code_of
+from wonderful_team.text import user_path
 
 
 def is_file_name(name: str) -> bool:
@@ -47,7 +48,7 @@ def load_from_file(name: str, what: str) -> Any:
     """
     name, _ = split_arguments(name)
     file_text, _, attribute = name.rpartition(":") if ".py:" in name else (name, "", "")
-    path = Path(file_text).expanduser()
+    path = user_path(file_text)
     if "\0" in file_text or not path.is_file():
         raise ConfigError(f"{what} {name!r}: there is no file {str(path)!r}; valid: FILE.py:NAME")
     module = _run_file(path.resolve(), what)

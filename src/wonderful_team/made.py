@@ -7,8 +7,10 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from wonderful_team.errors import ActionRefusedError
 from wonderful_team.jsonable import to_jsonable
 from wonderful_team.notebook import card
+from wonderful_team.runtime.approval import APPROVAL_S, Approval, Proposal
 from wonderful_team.text import counted, picture_names, spoken
 from wonderful_team.types import GateReport, Observation, Plan, PlannedAction, Subgoal, Target, Trial, Usage
 
@@ -66,13 +68,22 @@ class MadePlan:
 
     @property
     def status(self) -> str:
-        """Planned | draft | checked | grounded | not_found | not_understood | needs_clarification | refused | budget | failed."""
-        return self.plan.status
+        """Planned | draft | checked | grounded | not_found | not_understood | needs_clarification | refused | budget | failed.
+
+        refused: by Verification with `strict`, or by the safety gate; `message` says which and why.
+        """
+        return self.plan.status if self._admitted else "refused"
+
+    @property
+    def _admitted(self) -> bool:
+        return self.gate is None or self.gate.admitted
 
     @property
     def message(self) -> str:
         """Why it ended so, in a sentence."""
-        return self.plan.message
+        if self.gate is None or self.gate.admitted:
+            return self.plan.message
+        return str(ActionRefusedError(self.gate.reasons))
 
     @property
     def verified(self) -> bool:
@@ -111,6 +122,17 @@ class MadePlan:
     def page(self) -> Path | None:
         """The run's page."""
         return None if self.folder is None else self.folder / PAGE_NAME
+
+    def approve(self, by: str, note: str = "", valid_s: float = APPROVAL_S) -> Approval:
+        """Consent to run exactly this plan, made from this picture, as its page shows it now.
+
+        Args:
+            by: Who approves.
+            note: What they say, if anything.
+            valid_s: How long the consent holds [s].
+        """
+        gate = self.gate or GateReport(())
+        return Proposal(self.plan, self.actions, gate, self.observation.hash, self.page).approve(by, note, valid_s)
 
     def to_json(self) -> dict[str, Any]:
         """A JSON-ready summary; the whole plan stands in the run folder's plan.json."""

@@ -14,7 +14,7 @@ from wonderful_team.models.budget import Budget, Caps
 from wonderful_team.models.cache import CacheMode, cached_models
 from wonderful_team.models.cache_key import model_identity
 from wonderful_team.models.door import Door
-from wonderful_team.models.providers import check_prices, model_options
+from wonderful_team.models.providers import PriceChoice, check_prices, model_options
 from wonderful_team.planning import Team as Planner
 from wonderful_team.planning import TeamConfig
 from wonderful_team.simulated_models import waiting
@@ -33,7 +33,7 @@ class Method:
             "*" is for the roles not named.
         method: team, team:paper, team:s1 to team:s8, or FILE.py:NAME.
         thinking: off, low, medium or high, for all roles or by role; None leaves each model's own default.
-        price: "IN,OUT" in USD per million tokens, for all roles or by role, where no price is known.
+        price: "IN,OUT" or (IN, OUT) in USD per million tokens, for all roles or by role, where no price is known.
         allow_unpriced: Accept models of unknown price without a cap on tokens.
         local_only: Refuse models outside this machine and private networks.
         max_calls, max_tokens, max_seconds, max_usd: Caps of one plan or trial; None for no cap.
@@ -70,7 +70,7 @@ class Method:
     command: str | None = None
     parent: Mapping[str, str] | None = None
     thinking: str | Mapping[str, str] | None = None
-    price: str | Mapping[str, str] | None = None
+    price: PriceChoice | Mapping[str, PriceChoice] | None = None
     allow_unpriced: bool = False
     local_only: bool = False
     world: World | None = None

@@ -5,11 +5,19 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+import numpy as np
 
 from wonderful_team import types
 from wonderful_team.errors import ConfigError, reading
 from wonderful_team.photos import PathLike, corners_camera, load_camera, load_depth, load_view
-from wonderful_team.types import Limits
+from wonderful_team.types import Limits, View
+
+if TYPE_CHECKING:
+    from PIL.Image import Image
+
+    from wonderful_team.geometry.arrays import Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -18,9 +26,11 @@ class Observation(types.Observation):
 
     Attributes:
         limits: The workspace that came with a camera file or corners; None without metres.
+        photo: It came from files: its time says nothing of when it was taken.
     """
 
     limits: Limits | None = None
+    photo: bool = False
 
     @classmethod
     def from_files(
@@ -67,7 +77,38 @@ class Observation(types.Observation):
             depth_m = None if depth is None else load_depth(depth, size_px)
             main, limits = replace(main, camera=found.camera, depth_m=depth_m), found.limits
         others = {name: load_view(path, name) for name, path in zip(names[1:], pictures[1:], strict=True)}
-        return cls({names[0]: main, **others}, None, limits)
+        return cls({names[0]: main, **others}, None, limits, photo=True)
+
+
+Seen: TypeAlias = "types.Observation | View | PathLike | Sequence[PathLike] | Array | Image"
+"""What can be planned for: an observation, a view, picture files, or pixels."""
+
+
+def seen(what: Any) -> types.Observation:
+    """An observation of whatever shows a scene.
+
+    Args:
+        what: An observation; a view; the path of a picture, or several; pixels, shape (H, W, 3), uint8; or a PIL image.
+
+    Raises:
+        ConfigError: Anything else, or pictures that cannot be used.
+    """
+    if isinstance(what, types.Observation):
+        return what
+    if isinstance(what, View):
+        return Observation({what.camera_name: what})
+    if isinstance(what, str | Path):
+        return Observation.from_files(what)
+    if isinstance(what, list | tuple) and what and all(isinstance(one, str | Path) for one in what):
+        return Observation.from_files(*what)
+    rgb = what.convert("RGB") if callable(getattr(what, "convert", None)) else what
+    if isinstance(rgb, np.ndarray) or rgb is not what:
+        with reading("the picture"):
+            return Observation({"photo": View("photo", "photo", 0.0, np.asarray(rgb))})
+    raise ConfigError(
+        f"a {type(what).__name__} shows no scene; valid: a wt.Observation (Observation.from_files, world.observe()), a wt.View, "
+        "the path of a picture or a list of them, pixels of shape (H, W, 3) and type uint8, a PIL image"
+    )
 
 
 def _view_names(pictures: Sequence[PathLike]) -> list[str]:

@@ -8,7 +8,7 @@ from typing import Any, cast
 
 from wonderful_team.actions import Action, Vocabulary
 from wonderful_team.geometry.arrays import Array
-from wonderful_team.interfaces import Filmed
+from wonderful_team.interfaces import Filmed, offers
 from wonderful_team.types import Instruction, KeepOut, Limits, Observation, StepReport
 
 
@@ -48,7 +48,7 @@ class OwnWorld:
         return cast(StepReport, self.inner.execute(action))
 
     def film(self, each: Callable[[Mapping[str, Array]], None] | None, every_s: float = 0.1) -> None:
-        if isinstance(self.inner, Filmed):
+        if offers(self.inner, Filmed):
             self.inner.film(each, every_s)
 
     def stop(self) -> None:

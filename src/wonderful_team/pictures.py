@@ -50,11 +50,16 @@ def checked_depth(depth_m: Array | None, size: tuple[int, int], name: str = "dep
     return array
 
 
-def picture_hash(rgb: Array) -> str:
-    """Hash of an image's size and pixels: 16 hex digits."""
+def pixels_hash(rgb: Array) -> str:
+    """SHA-256 of an image's size and pixels: 64 hex digits."""
     digest = hashlib.sha256(repr(rgb.shape).encode())
     digest.update(np.ascontiguousarray(rgb).tobytes())
-    return digest.hexdigest()[:16]
+    return digest.hexdigest()
+
+
+def picture_hash(rgb: Array) -> str:
+    """A name for an image: the first 16 hex digits of its hash."""
+    return pixels_hash(rgb)[:16]
 
 
 @dataclass(frozen=True, eq=False)

@@ -19,7 +19,7 @@ from wonderful_team.errors import (
     WorldUnavailableError,
     code_of,
 )
-from wonderful_team.interfaces import Model, Policy, Privileged, World
+from wonderful_team.interfaces import Model, Policy, Privileged, World, offers
 from wonderful_team.loading import check_names_no_code, is_file_name, load_from_file, make_from_file
 from wonderful_team.own_world import OwnWorld
 from wonderful_team.simulated_models import SIMULATED, simulated_model
@@ -81,7 +81,9 @@ def make_model(
         ModelUnavailableError: A server that was to be asked for its models does not answer.
     """
     if not isinstance(model, str):
-        if not callable(getattr(model, "answer", None)):
+        with code_of(f"model {type(model).__name__}", ModelCodeError):
+            answers = callable(getattr(model, "answer", None))
+        if not answers:
             raise ConfigError(f"a model needs a method answer(request); {type(model).__name__} has none")
         return model
     if model.startswith(SIMULATED):
@@ -273,13 +275,18 @@ def make_world(
             world = _named_world(name, seed, harder)
     with code_of(f"instruction of world {name!r}", WorldUnavailableError):
         own = getattr(world, "instruction", None)
+        whole = offers(world, World)
+    if own is not None and not isinstance(own, Instruction):
+        raise WorldUnavailableError(
+            f"instruction of world {name!r} is a {type(own).__name__}; valid: a wt.Instruction, or None"
+        )
     wanted = _worded(instruction, own) if instruction is not None else own
     if wanted is None:
         raise ConfigError(
             f'world {name!r} brings no instruction: say one, as in: run {name} "put the red cup on the tray"'
         )
-    if isinstance(world, World) and wanted is own and not keep_out:
-        return world
+    if whole and wanted is own and not keep_out:
+        return cast(World, world)
     return cast(World, OwnWorld(world, wanted, tuple(keep_out)))
 
 
@@ -291,7 +298,7 @@ def scene_name(name: str, seed: int) -> str:
 def privileged(world: World) -> Privileged | None:
     """The truth behind a simulator, for its scorer; None for real robots, own worlds without one, and changed instructions."""
     truth = getattr(world, "privileged", None)
-    return truth if isinstance(truth, Privileged) else None
+    return truth if offers(truth, Privileged) else None
 
 
 def _take_none(name: str, arguments: Mapping[str, Any]) -> None:
@@ -336,7 +343,8 @@ def _world_from_file(name: str, seed: int, harder: Mapping[str, int], arguments:
 
 def _whole(made: Any, what: str) -> Any:
     """The same object, when it has what a world needs."""
-    missing = [need for need in ("vocabulary", "limits", "observe", "execute") if not hasattr(made, need)]
+    with code_of(f"{what}: {type(made).__name__}", WorldUnavailableError):
+        missing = [need for need in ("vocabulary", "limits", "observe", "execute") if not hasattr(made, need)]
     if missing:
         raise ConfigError(
             f"{what}: {type(made).__name__} lacks {', '.join(missing)}; a world has vocabulary, limits, "
@@ -349,6 +357,15 @@ def task_made_of(thing: Any) -> str | None:
     """The name of the tabletop task that a user's function was made into."""
     registering = importlib.import_module("wonderful_team.sims.tabletop.registering")
     return next((name for name in _tabletop().task_names() if registering.find_task(name).set_table is thing), None)
+
+
+def made_in_main(name: str) -> bool:
+    """Whether a task of the tabletop was made in the script that is running: only that script can make it again."""
+    task = name.removeprefix("tabletop/").partition("@")[0]
+    if not name.startswith("tabletop/") or is_file_name(name):
+        return False
+    registering = importlib.import_module("wonderful_team.sims.tabletop.registering")
+    return str(registering.find_task(task).set_table.__module__) in ("__main__", "__mp_main__")
 
 
 def _tabletop() -> Any:

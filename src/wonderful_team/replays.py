@@ -23,10 +23,12 @@ from wonderful_team.loading import check_names_no_code
 from wonderful_team.made import MadePlan, RecordedTrial
 from wonderful_team.models.replay import Branching, ReplayModel
 from wonderful_team.runtime.loop import Caller
+from wonderful_team.runtime.plan_file import has_short_id
 from wonderful_team.runtime.record_schema import read_record
 from wonderful_team.runtime.setup import Setup, read_setup, same_limits
 from wonderful_team.runtime.stored import stored_instruction, stored_observation
 from wonderful_team.runtime.story import recorded_plan, situations
+from wonderful_team.types import Observation, Plan
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,6 +76,7 @@ def replay(folder: Path, *, tolerant: bool = False, subscribers: Sequence[Subscr
                     asked = list(situations(folder, record, setup))
                 with Caller() as caller:
                     for situation in asked:
+                        plans.seen(situation.observation)
                         caller.wait_for(policy.decide(situation))
             else:
                 _plan_again(folder, record, setup, team)
@@ -81,22 +84,35 @@ def replay(folder: Path, *, tolerant: bool = False, subscribers: Sequence[Subscr
             # What ended the run then ends it again; anything else did not happen then.
             if error not in model.failed:
                 raise
-    if setup.plan is not None:
-        # A plan that was handed in is never told as one that was made.
-        plans.ids[:0] = [setup.plan]
-    then = dict.fromkeys(str(entry["id"]) for entry in record["planner"]["plans"])
-    return Replayed(tuple(then), tuple(dict.fromkeys(plans.ids)), model.replayed, tuple(model.differences))
+    plans_then = record["planner"]["plans"]
+    then = dict.fromkeys(str(entry["id"]) for entry in plans_then)
+    short = all(has_short_id(entry) for entry in plans_then)
+    # A plan that was handed in is never told as one that was made.
+    now = [] if setup.plan is None else [setup.plan]
+    now += [plans.short_id(plan) if short else plan.id for plan in plans.made]
+    return Replayed(tuple(then), tuple(dict.fromkeys(now)), model.replayed, tuple(model.differences))
 
 
 class _Plans:
-    """Hears which plans were made."""
+    """Hears which plans were made, and for which pictures."""
 
     def __init__(self) -> None:
-        self.ids: list[str] = []
+        self.made: list[Plan] = []
+        self._short_hashes: dict[str, str] = {}
 
     def on_event(self, event: Event) -> None:
         if event.kind == "plan":
-            self.ids.append(event.content.id)
+            self.made.append(event.content)
+        elif event.kind == "observe":
+            self.seen(event.content)
+
+    def seen(self, observation: Observation) -> None:
+        """A picture that a plan may be made for."""
+        self._short_hashes[observation.hash] = observation.short_hash
+
+    def short_id(self, plan: Plan) -> str:
+        """The plan's id as earlier releases had it."""
+        return plan.short_id(self._short_hashes.get(plan.scene_hash))
 
 
 def branch(
@@ -124,11 +140,12 @@ def branch(
         UnknownNameError: No such stage or model.
         ConfigError: As for replay.
     """
+    folder = folder.resolve()
     record = read_record(folder)
     recorded = ReplayModel(record)
     wanted: Mapping[str, str | Model] = model if isinstance(model, Mapping) else {registry.DEFAULT_ROLE: model}
     models = {role: Branching(recorded, registry.make_model(one), stage) for role, one in wanted.items()}
-    parent = {"run": folder.resolve().name, "from": stage}
+    parent = {"run": folder.name, "from": stage}
     setup = read_setup(record, str(folder))
     arguments = {**caps, "out": out, "subscribers": tuple(subscribers), "command": command, "parent": parent}
     team = _team(folder, record, models, **arguments)

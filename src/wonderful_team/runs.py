@@ -8,6 +8,7 @@ from datetime import datetime
 from pathlib import Path
 
 from wonderful_team.errors import ConfigError, UnknownNameError
+from wonderful_team.text import user_path
 
 OUT_VARIABLE = "WONDERFUL_TEAM_RUNS"
 LATEST = "latest"
@@ -16,7 +17,7 @@ RECORD_NAME = "record.json"
 
 def runs_folder(out: str | Path | None = None) -> Path:
     """Where run folders go: what is asked for, else $WONDERFUL_TEAM_RUNS, else `runs` in the working directory."""
-    return Path(out if out is not None else os.environ.get(OUT_VARIABLE, "runs")).expanduser()
+    return user_path(out if out is not None else os.environ.get(OUT_VARIABLE, "runs"))
 
 
 def new_run_folder(words: str, out: str | Path | None = None) -> Path:
@@ -48,7 +49,7 @@ def find_run(name: str, out: str | Path | None = None) -> Path:
         ConfigError: It is not a run's folder, or the name fits several.
     """
     root = runs_folder(out)
-    for folder in (Path(name).expanduser(), root / name):
+    for folder in (user_path(name), root / name):
         if folder.is_file() and folder.name in (RECORD_NAME, "page.html", "plan.json"):
             folder = folder.parent
         if (folder / RECORD_NAME).is_file():
@@ -74,6 +75,8 @@ def all_runs(out: str | Path | None = None) -> list[Path]:
 
 
 def _slug(words: str) -> str:
+    # A picture among the words has no words of its own.
+    words = re.sub(r"\{[^{}]*\}", "pictured thing", words)
     return re.sub(r"[^a-z0-9]+", "-", words.lower()).strip("-")[:40].strip("-") or "run"
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from wonderful_team.errors import ConfigError
-from wonderful_team.interfaces import Model, SceneTruth, World
+from wonderful_team.interfaces import Model, SceneTruth, World, offers
 
 SIMULATED = "simulated:"
 
@@ -34,7 +34,7 @@ def scene_truth(world: World, model: str) -> SceneTruth:
     from wonderful_team.registry import WORLDS, privileged
 
     truth = privileged(world)
-    if isinstance(truth, SceneTruth):
+    if offers(truth, SceneTruth):
         return truth
     inner = getattr(world, "inner", None)
     if truth is None and getattr(inner, "privileged", None) is not None:

@@ -17,13 +17,14 @@ from wonderful_team.evals.perturb import IN_PICTURE, read_tier, read_tiers
 from wonderful_team.evals.photos import count_photos
 from wonderful_team.evals.plan import OFFLINE, WHOLE, StudyPlan, of_photos, read_shard, split_names
 from wonderful_team.evals.store import Store
-from wonderful_team.evals.study import Finish, Report, run_study
+from wonderful_team.evals.study import Finish, Report, run_study, started_by_spawn
 from wonderful_team.evals.suites import PARTITIONS, Suite, all_suites, read_seeds, resolve
 from wonderful_team.evals.summary import Summary, summarise
 from wonderful_team.evals.trials import Condition, RunSettings, SpendingCaps, TrialResult, TrialSpec
 from wonderful_team.evals.workers import run_safely
 from wonderful_team.loading import is_file_name
 from wonderful_team.models.cache import CacheMode
+from wonderful_team.models.providers import PriceChoice
 from wonderful_team.role_models import choice_of, read_choices, text_of
 from wonderful_team.runs import runs_folder
 from wonderful_team.trial_runs import check_isolation, check_names, code_of_names, run_trial
@@ -41,7 +42,7 @@ class Study:
 
     Args:
         suite: A suite, a task, FILE.py:TASK, PHOTOS.json, or several.
-        methods, models: Names; objects cannot be sent to worker processes. A model may be a mapping from role to name,
+        methods, models: A name or several; objects cannot be sent to worker processes. A model may be a mapping from role to name,
             with "*" for the rest.
         seeds: For every task; None for the suite's own, from 1000 on.
         store: File that keeps what ended; the same study on the same file resumes.
@@ -58,8 +59,8 @@ class Study:
     """
 
     suite: str | Sequence[str]
-    methods: Sequence[str] = ("team",)
-    models: Sequence[str | Mapping[str, str]] = (OFFLINE,)
+    methods: str | Sequence[str] = ("team",)
+    models: str | Mapping[str, str] | Sequence[str | Mapping[str, str]] = (OFFLINE,)
     seeds: Iterable[int] | None = None
     store: str | Path = "study.db"
     repeats: int = 1
@@ -76,7 +77,7 @@ class Study:
     out: str | Path | None = None
     prompts: str | Path | None = None
     thinking: str | Mapping[str, str] | None = None
-    price: str | Mapping[str, str] | None = None
+    price: PriceChoice | Mapping[str, PriceChoice] | None = None
     allow_unpriced: bool = False
     local_only: bool = False
     cache: CacheMode | None = None
@@ -88,6 +89,12 @@ class Study:
     command: str = ""
 
     def __post_init__(self) -> None:
+        self.methods, self.controls = _listed(self.methods), _listed(self.controls)
+        self.models = [self.models] if isinstance(self.models, str | Mapping) else list(self.models)
+        if isinstance(self.seeds, int):
+            raise ConfigError(
+                f"seeds {self.seeds}: valid is a sequence, as in range(1000, 1020), or None for the suite's own"
+            )
         models = [text_of(one) if isinstance(one, Mapping) else one for one in self.models]
         for name in (*self.methods, *models):
             if not isinstance(name, str):
@@ -205,6 +212,13 @@ class Study:
         Raises:
             KeyboardInterrupt: After the trials in flight; the same study goes on where it stopped.
         """
+        tasks = [task for suite in self.plan.suites for task in suite.tasks]
+        needs_main = any(registry.made_in_main(task) for task in tasks)
+        if needs_main and started_by_spawn():
+            raise ConfigError(
+                "a study of tasks that stand in the script itself starts processes that run the script again: put "
+                'study.run() under if __name__ == "__main__":, or the tasks into a file of their own (FILE.py:NAME)'
+            )
         return run_study(
             self.plan,
             self.store,
@@ -216,6 +230,7 @@ class Study:
             calls_at_once=self.concurrency,
             retry_errors=self.retry_errors,
             ray=self.ray,
+            needs_main=needs_main,
             report=report,
         )
 

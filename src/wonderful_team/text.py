@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import os
 import re
 from collections.abc import Iterable, Mapping
+from pathlib import Path
 from typing import TypeVar
 
 Text = TypeVar("Text", bound=str)
@@ -67,3 +69,8 @@ def picture_names(instruction: str, pictures: Iterable[str]) -> dict[str, str]:
 def spoken(text: str, names: Mapping[str, str]) -> str:
     """The text with every `{name}` that stands for a picture replaced by what people call it: "[picture 1]"."""
     return PLACEHOLDER.sub(lambda found: f"[{names[found[1]]}]" if found[1] in names else found[0], text)
+
+
+def user_path(path: str | Path) -> Path:
+    """A path as a user writes it: ~ is a home folder where there is one of that name."""
+    return Path(os.path.expanduser(path))

@@ -34,6 +34,7 @@ from wonderful_team.models.providers import model_options
 from wonderful_team.role_models import REST, choice_of
 from wonderful_team.runtime import rollout as roll_out
 from wonderful_team.runtime.versions import versions
+from wonderful_team.text import user_path
 from wonderful_team.types import Instruction, Observation, Request, StepReport, Trial, Usage, View
 
 SUCCESS_EVERY = 10
@@ -322,7 +323,7 @@ def _versions() -> dict[str, str]:
 
 @lru_cache
 def _file_hash(name: str) -> str:
-    path = Path(name.rpartition(":")[0] or name).expanduser()
+    path = user_path(name.rpartition(":")[0] or name)
     return hashlib.sha256(path.read_bytes()).hexdigest()[:12] if path.is_file() else "missing"
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from dataclasses import replace
 
 import numpy as np
@@ -21,8 +22,8 @@ from wonderful_team.actions import (
     Vocabulary,
 )
 from wonderful_team.geometry import Box, Pose
-from wonderful_team.runtime import Approval, actions_id, check_gate
-from wonderful_team.types import KeepOut, Limits, NumberSource, Observation, PlannedAction, RobotState, View
+from wonderful_team.runtime import Approval, Proposal, actions_id, check_gate
+from wonderful_team.types import GateReport, KeepOut, Limits, NumberSource, Observation, PlannedAction, RobotState, View
 
 LIMITS = Limits((0.25, -0.5, 0.0), (0.75, 0.5, 0.3))
 MOVE = ((60.0, 60.0), (200.0, 30.0))
@@ -155,12 +156,26 @@ def test_an_approval_must_be_for_this_very_plan_and_by_somebody():
     now = SquaresWorld().observe()
     plan = make_plan(now, [MOVE])
     common = {"plan": plan, "then": now, "now": now, "approval_required": True}
-    assert gate(plan.actions, **common, approval=Approval(plan.id, "Ada")).admitted
+    consent = Proposal(plan, plan.actions, GateReport(()), now.hash).approve("Ada")
+    assert gate(plan.actions, **common, approval=consent).admitted
     assert failed(gate(plan.actions, **common)) == {"approval"}
-    assert failed(gate(plan.actions, **common, approval=Approval("0123456789ab", "Ada"))) == {"approval"}
-    assert failed(gate(plan.actions, **common, approval=Approval(plan.id, " "))) == {"approval"}
+
+    def without(**change):
+        return failed(gate(plan.actions, **common, approval=replace(consent, **change)))
+
+    assert without(plan_id=plan.id[:12]) == {"approval"}
+    assert without(by=" ") == {"approval"}
+    assert without(picture="") == {"approved picture"}
+    assert without(page="0" * 64) == {"approved page"}
+    assert without(expires_s=time.time() - 1) == {"approval still holds"}
+    assert without(expires_s=0.0) == {"approval still holds"}
+    assert failed(gate(plan.actions, **common, approval=consent, page="0" * 64)) == {"approved page"}
+    bare = Approval(plan.id, "Ada")
+    assert failed(gate(plan.actions, **common, approval=bare)) == {"approved picture", "approval still holds"}
     free = [planned(1, *MOVE)]
-    assert gate(free, approval=Approval(actions_id(free), "Ada"), approval_required=True).admitted
+    consent = Proposal(None, free, GateReport(()), now.hash).approve("Ada")
+    assert consent.plan_id == actions_id(free)
+    assert gate(free, approval=consent, approval_required=True).admitted
 
 
 def test_the_plan_that_was_read_is_the_plan_that_runs():

@@ -186,11 +186,12 @@ def test_nothing_is_carried_against_a_tower() -> None:
 def test_a_push_comes_down_on_free_ground() -> None:
     camera = affine_top()
     view = scene(camera, RED, BLUE)
+    seen = Observation({"top": view}).hash
 
     def push(start: tuple[float, float]) -> Plan:
         action = Push(np.array([*start, 0.0]), np.array([start[0], start[1] + 0.1, 0.0]))
         step = PushStep("G1", At("T9"), At("A9"))
-        return Plan(Instruction("push"), "planned", actions=(PlannedAction(step, action),), scene_hash="")
+        return Plan(Instruction("push"), "planned", actions=(PlannedAction(step, action),), scene_hash=seen)
 
     assert gate(push((0.53, -0.1)), view).admitted
     assert failed(gate(push((0.53, 0.14)), view)) == {"push starts on free ground"}

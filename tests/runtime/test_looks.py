@@ -58,8 +58,9 @@ def test_without_looks_an_act_is_the_whole_attempt():
     policy = Looker([(RED, MIDDLE), (MIDDLE, UP)], always=True)
     assert len(rollout(policy, SquaresWorld()).runs) == 1
     policy = Looker([(RED, MIDDLE), (MIDDLE, UP)], always=True)
-    rollout(policy, SquaresWorld(), replans=1)
-    assert [situation.attempt for situation in policy.asked] == [0, 1]
+    assert len(rollout(policy, SquaresWorld(), replans=1).runs) == 2
+    # Asked once more, for its judgement of what ran last.
+    assert [(situation.attempt, situation.replans_left) for situation in policy.asked] == [(0, 1), (1, 1), (2, 0)]
 
 
 def test_what_did_not_run_is_no_look():

@@ -62,7 +62,7 @@ def test_a_file_can_be_named_by_its_run_folder(tmp_path):
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        (lambda d: d.update(schema_version=0), r"schema version 0 cannot be read; this release reads 1"),
+        (lambda d: d.update(schema_version=0), r"schema version 0 cannot be read; this release reads 1 and 2"),
         (lambda d: d.update(format="coco"), r"not a plan file \(found format 'coco'"),
         (lambda d: d["plan"]["actions"][0]["action"]["pick_m"].__setitem__(0, 0.3), "changed after it was written"),
         (lambda d: d["plan"].pop("steps"), r"Plan lacks \['steps'\]"),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+from dataclasses import replace
 
 import pytest
 from runtime_fakes import Listener, MovesPolicy, SquaresTruth, SquaresWorld, make_plan
@@ -16,8 +17,8 @@ from wonderful_team.errors import (
     SafetyStopError,
 )
 from wonderful_team.interfaces import Act, GaveUp, Score
-from wonderful_team.runtime import Approval, rollout
-from wonderful_team.types import Usage
+from wonderful_team.runtime import Proposal, rollout
+from wonderful_team.types import GateReport, Usage
 
 RED, BLUE = (60.0, 60.0), (160.0, 90.0)
 UP, MIDDLE = (200.0, 30.0), (120.0, 60.0)
@@ -71,7 +72,7 @@ def test_replans_are_asked_for_with_what_was_executed():
     policy = MovesPolicy([[(RED, MIDDLE)], [(MIDDLE, UP)]])
     trial = rollout(policy, world, replans=3, scorer=goal(world))
     assert trial.outcome == "success"
-    assert [(s.attempt, s.replans_left, len(s.executed)) for s in policy.asked] == [(0, 3, 0), (1, 2, 1), (2, 1, 1)]
+    assert [(s.attempt, s.replans_left, len(s.executed)) for s in policy.asked] == [(0, 3, 0), (1, 3, 1), (2, 2, 1)]
     assert len(trial.plans) == 2
 
 
@@ -79,7 +80,17 @@ def test_replans_are_bounded():
     world = SquaresWorld()
     policy = MovesPolicy([[(RED, MIDDLE)], [(MIDDLE, RED)], [(RED, MIDDLE)]])
     trial = rollout(policy, world, replans=1, scorer=goal(world))
-    assert (trial.outcome, len(policy.asked), world.ran) == ("failure", 2, 2)
+    # N replans are N plans after the first one, and one question more for the judgement of the last.
+    assert (trial.outcome, len(policy.asked), world.ran) == ("failure", 3, 2)
+    assert [situation.replans_left for situation in policy.asked] == [1, 1, 0]
+
+
+@pytest.mark.parametrize("replans", [0, 1, 3])
+def test_refused_plans_are_replanned_so_often_and_no_more(replans):
+    policy = MovesPolicy([[(RED, (400.0, 60.0))] for _ in range(9)])
+    trial = rollout(policy, SquaresWorld(), replans=replans)
+    assert (trial.outcome, trial.stage, len(trial.plans)) == ("failure", "gate", 1)
+    assert [asked.replans_left for asked in policy.asked] == [replans, *range(replans, 0, -1)]
 
 
 def test_an_object_nudged_between_two_actions_stops_the_second_one():
@@ -133,18 +144,21 @@ def test_a_plan_of_another_scene_does_not_run():
 
 def test_approval_is_required_when_asked_for():
     world = SquaresWorld()
-    plan = make_plan(world.observe(), [(RED, UP)])
-    assert rollout(MovesPolicy([]), world, plan=plan, approval=Approval(plan.id, "Ada")).stage is None
-    refused = rollout(MovesPolicy([]), SquaresWorld(), plan=plan, approval=Approval("000000000000", "Ada"))
+    seen = world.observe()
+    plan = make_plan(seen, [(RED, UP)])
+    consent = Proposal(plan, plan.actions, GateReport(()), seen.hash).approve("Ada")
+    assert rollout(MovesPolicy([]), world, plan=plan, approval=consent).stage is None
+    refused = rollout(MovesPolicy([]), SquaresWorld(), plan=plan, approval=replace(consent, plan_id="0" * 64))
     assert (refused.stage, refused.runs) == ("gate", ())
     asked = []
 
-    def approver(plan, actions, report):
-        asked.append((plan.id, report.admitted))
-        return None
+    def approver(proposal):
+        asked.append((proposal.id, proposal.gate.admitted, proposal.picture))
 
-    assert rollout(MovesPolicy([]), SquaresWorld(), plan=plan, approval=approver).stage == "gate"
-    assert asked == [(plan.id, True)]
+    no = rollout(MovesPolicy([]), SquaresWorld(), plan=plan, approval=approver)
+    assert (no.stage, no.runs) == ("gate", ())
+    assert "you declined" in no.reason
+    assert asked == [(plan.id, True, seen.hash)]
 
 
 @pytest.mark.parametrize(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import importlib
 import io
 import sys
@@ -12,6 +13,7 @@ import click
 
 from wonderful_team import __version__
 from wonderful_team.cli.output import Document, say, wants_json
+from wonderful_team.interrupts import Interrupted, ends_on_signal, leave
 
 if TYPE_CHECKING:
     from wonderful_team.errors import WonderfulTeamError
@@ -80,7 +82,7 @@ def group(debug: bool) -> None:
 
 def main(argv: Sequence[str] | None = None) -> None:
     """Run one command and exit with its code."""
-    sys.exit(run(list(sys.argv[1:] if argv is None else argv)))
+    leave(run(list(sys.argv[1:] if argv is None else argv)))
 
 
 def run(argv: list[str]) -> int:
@@ -96,12 +98,13 @@ def run(argv: list[str]) -> int:
             [word for word in argv if word not in foreign], "UsageError", f"{foreign[0]!r} is not text in UTF-8", 2
         )
     try:
-        code: Any = group.main(args=argv, prog_name="wonderful-team", standalone_mode=False, obj=tuple(argv))
+        with ends_on_signal(force=True):
+            code: Any = group.main(args=argv, prog_name="wonderful-team", standalone_mode=False, obj=tuple(argv))
         return code if isinstance(code, int) else 0
     except click.exceptions.Exit as ending:
         return ending.exit_code
-    except (click.exceptions.Abort, KeyboardInterrupt):
-        return _fail(argv, "Interrupted", "interrupted; what was recorded so far is kept", INTERRUPTED)
+    except (click.exceptions.Abort, KeyboardInterrupt) as error:
+        return _interrupted(argv, error)
     except click.ClickException as error:
         hint = error.ctx.command_path if isinstance(error, click.UsageError) and error.ctx else "wonderful-team"
         return _fail(argv, "UsageError", f"{error.format_message()} (see {hint} --help)", 2)
@@ -112,6 +115,13 @@ def run(argv: list[str]) -> int:
         if "--debug" in argv:
             raise
         return _tell(argv, error)
+
+
+def _interrupted(argv: list[str], error: BaseException) -> int:
+    """Click turns an interrupt into an Abort of its own and keeps the interrupt as its cause."""
+    cause = error if isinstance(error, KeyboardInterrupt) else error.__cause__
+    name, code = ("SIGINT", INTERRUPTED) if not isinstance(cause, Interrupted) else (cause.name, cause.exit_code)
+    return _fail(argv, "Interrupted", f"interrupted by {name}; what was recorded so far is kept", code)
 
 
 def _write_anything() -> None:
@@ -148,7 +158,8 @@ def _fail(argv: list[str], name: str, message: str, code: int, error: WonderfulT
 
         for line in trace_lines(error.trace):
             say(f"    {line}", err=True)
-    say(f"error: {message}" if code != INTERRUPTED else message, err=True)
+    with contextlib.suppress(OSError):  # the terminal may be gone
+        say(f"error: {message}" if name != "Interrupted" else message, err=True)
     if page is not None:
         say(f"page: {page}", err=True)
     return code

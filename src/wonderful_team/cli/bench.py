@@ -14,11 +14,12 @@ import click
 
 from wonderful_team.cli.options import PATH
 from wonderful_team.cli.output import finish
+from wonderful_team.interrupts import as_keyboard, exit_code
 
 if TYPE_CHECKING:
     from wonderful_team.evals.study import Standing
 
-INTERRUPTED, BUDGET = 130, 5
+BUDGET = 5
 QUIET_S = 10.0
 
 
@@ -116,8 +117,9 @@ def command(**options: Any) -> int:
         click.echo("a few pilot trials are run where nothing is recorded, on development seeds", err=True)
         estimate = study.estimate(options["pilot"] or PILOT, paid_pilot=options["pilot"] is not None)
         return finish("bench", text=estimate.text(), result=estimate.to_json(), as_json=options["as_json"], code=0)
-    ended = study.run(report=Teller())
-    code = 0 if not ended.why else BUDGET if "cap" in ended.why else INTERRUPTED
+    with as_keyboard():
+        ended = study.run(report=Teller())
+    code = 0 if not ended.why else BUDGET if "cap" in ended.why else exit_code()
     lines = study.lines()
     if ended.why:
         lines.append(f"stopped: {ended.why}")

@@ -105,9 +105,9 @@ def _ends(one: tuple[Path, Mapping[str, Any]], two: tuple[Path, Mapping[str, Any
 
 
 def _plans(folder: Path, record: Mapping[str, Any]) -> list[Plan]:
-    from wonderful_team.runtime.plan_file import plan_from_json
+    from wonderful_team.runtime.stored import stored_plan
 
-    return [plan_from_json(kept, str(folder)) for kept in record["planner"]["plans"]]
+    return [stored_plan(folder, record, number) for number in range(len(record["planner"]["plans"]))]
 
 
 def _plan_rows(left: Plan | None, right: Plan | None) -> list[Row]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import keyword
+import shlex
 from pathlib import Path
 from string import Template
 
@@ -10,6 +11,7 @@ import click
 
 from wonderful_team.cli.options import PATH
 from wonderful_team.cli.output import finish
+from wonderful_team.cli.report import program
 from wonderful_team.errors import ConfigError
 
 KINDS = ("world", "method", "task", "model")
@@ -35,15 +37,18 @@ def command(kind: str, name: str, out: Path, as_json: bool) -> int:
         raise ConfigError(f"{', '.join(taken)}: exists already; choose another name or --out DIR")
     out.mkdir(parents=True, exist_ok=True)
     for path, template in made.items():
-        # Only $name and $file are filled: the files hold braces of their own.
-        text = Template((_FILES / template).read_text(encoding="utf-8")).safe_substitute(name=name, file=file)
+        # Only $name, $file and $path are filled: the files hold braces of their own.
+        text = Template((_FILES / template).read_text(encoding="utf-8")).safe_substitute(
+            name=name, file=file, path=shlex.quote(f"{out / file}:{name}")
+        )
         path.write_text(text, encoding="utf-8")
     path = out / file
+    called, name_there = program(), shlex.quote(f"{path}:{name}")
     text = "\n".join(
         [
             *(f"wrote {one}" for one in made),
-            f"check it: wonderful-team check {path}:{name}",
-            f"test it:  pytest {out / ('test_' + file)}",
+            f"check it: {called} check {name_there}",
+            f"test it:  pytest {shlex.quote(str(out / ('test_' + file)))}",
         ]
     )
     return finish(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import sys
 import time
 from collections.abc import Callable, Mapping
@@ -28,6 +29,12 @@ class Named(Protocol):
     def model_name(self) -> str: ...
 
 
+def _to_stderr(line: str) -> None:
+    """A terminal that is gone is no reason to leave a robot where it is: signals say what to do."""
+    with contextlib.suppress(OSError):
+        say(line, err=True)
+
+
 class Progress:
     """Prints what happens while it happens; on a terminal a last line moves while models think.
 
@@ -42,7 +49,7 @@ class Progress:
 
     def __init__(
         self,
-        write: Callable[[str], None] = lambda line: say(line, err=True),
+        write: Callable[[str], None] = lambda line: _to_stderr(line),
         clock: Callable[[], float] = time.monotonic,
         *,
         live: bool = True,
@@ -100,7 +107,11 @@ class Progress:
                 self.line(event.name, _text(event.content))
             case "gate":
                 checks = counted(len(event.content.checks), "check")
-                self.line("gate", f"{event.name}: " + (f"admitted ({checks})" if event.content.admitted else "refused"))
+                self.line(
+                    "gate", f"{event.name}: " + (f"admitted ({checks})" if event.content.admitted else "refused:")
+                )
+                for reason in event.content.reasons:
+                    self._write(f"{'':9}{'':<{NAME_WIDTH}} {reason}")
             case "execute":
                 planned, report = event.content
                 self.line(

@@ -122,13 +122,15 @@ def _branch(folder: Path, stage: str, words: Sequence[str], out: Path | None, as
     from wonderful_team.replays import branch
 
     progress = Progress(live=not as_json)
+    # "latest" points at the new run once there is one.
+    folder = folder.resolve()
     command = shlex.join(["wonderful-team", *(click.get_current_context().obj or ())])
     # Where its parent lies, unless another place is asked for.
     made = branch(
         folder,
         stage,
         read_models(words),
-        out=folder.resolve().parent if out is None else out,
+        out=folder.parent if out is None else out,
         subscribers=(progress,),
         command=command,
     )
@@ -137,7 +139,7 @@ def _branch(folder: Path, stage: str, words: Sequence[str], out: Path | None, as
         lines, result, code = plan_lines(made), made.to_json(), plan_exit_code(made)
     else:
         lines, result, code = trial_lines(made), trial_json(made), trial_exit_code(made)
-    parent = {"run": folder.resolve().name, "from": stage}
+    parent = {"run": folder.name, "from": stage}
     if open_page and made.page is not None:
         click.launch(made.page.resolve().as_uri())
     last = "" if made.page is None else f"page: {shown_path(made.page)}"

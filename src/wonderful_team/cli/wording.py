@@ -3,6 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import fields, is_dataclass
+from typing import Any
+
+import numpy as np
 
 from wonderful_team.actions import Action, MoveTo, Navigate, PickPlace, Place, Push, Step, Trajectory, places_of
 from wonderful_team.geometry.arrays import Array
@@ -33,8 +37,8 @@ def plan_exit_code(made: MadePlan) -> int:
 
 
 def trial_exit_code(trial: RecordedTrial) -> int:
-    """The exit code of `run`: an unscored trial that reached its end counts as done."""
-    if trial.outcome == "success" or (trial.outcome == "unscored" and trial.stage is None):
+    """The exit code of `run`: an unscored trial that reached its end counts as done, if anybody judged that."""
+    if trial.outcome == "success" or (trial.outcome == "unscored" and trial.stage is None and trial.judged):
         return 0
     if trial.outcome == "error":
         return 6 if trial.stage == "world" else 3
@@ -48,15 +52,16 @@ def plan_lines(made: MadePlan) -> list[str]:
     """What `plan` prints: how it ended, then what would run."""
     words = words_of(made.plan)
     lines = []
-    if made.status not in ("planned", "grounded", "checked", "draft"):
+    if made.gate is not None and not made.gate.admitted:
+        lines.append("REFUSED by the safety gate")
+        lines += [f"  {reason}" for reason in made.gate.reasons]
+    elif made.status not in ("planned", "grounded", "checked", "draft"):
         ending = made.status.replace("_", " ")
         said = made.message.removeprefix(f"{ending}: ").partition(" Choices: ")[0]
         lines.append(f"{ending.upper()}  {said_of(made.plan.instruction, said)}")
         lines += [f"  choice: {visible(choice)}" for choice in made.choices]
     elif made.message:
         lines.append(said_of(made.plan.instruction, made.message))
-    if made.gate is not None and not made.gate.admitted:
-        lines += [f"REFUSED by the safety gate  {reason}" for reason in made.gate.reasons]
     if made.actions:
         lines += [f"PLAN  {action_line(planned, words)}" for planned in made.actions]
     else:
@@ -142,10 +147,44 @@ def _metres(action: Action | None) -> str:
     return " -> ".join(f"({', '.join(f'{value:.3f}' for value in point)})" for point in shown) + f" m{through}"
 
 
+def trial_word(trial: RecordedTrial) -> str:
+    """How a trial ended, in capitals; in a world without a scorer the method's own judgement is all that there is."""
+    last = {verdict.subgoal: verdict.status for verdict in trial.verdicts}
+    if trial.outcome == "unscored" and trial.stage is None and last and set(last.values()) == {"done"}:
+        return "DONE, as the team judges (no scorer)"
+    return trial.outcome.upper()
+
+
+def numbers_line(planned: PlannedAction) -> str:
+    """What an action does, from its numbers alone: no word of a model stands in it."""
+    action = planned.action
+    if action is None:
+        points = (
+            f"{source.role} ({source.point_px[0]:.1f}, {source.point_px[1]:.1f}) px" for source in planned.sources
+        )
+        return f"{planned.step.kind}  {'  '.join(points)}"
+    numbers = [f"{item.name} {_shown(item.name, getattr(action, item.name))}" for item in fields(action)]
+    return f"{action.kind}  {'  '.join(numbers)}".rstrip()
+
+
+def _shown(name: str, value: Any) -> str:
+    """A number or several with their unit, which is the end of the name; waypoints count and end."""
+    if isinstance(value, tuple | list) and value and is_dataclass(value[0]):
+        ends = "; ".join(_shown(name, one) for one in (value[0], value[-1]))
+        return f"({len(value)}: first and last {ends})"
+    if is_dataclass(value) and not isinstance(value, type):
+        return ", ".join(f"{item.name} {_shown(item.name, getattr(value, item.name))}" for item in fields(value))
+    if isinstance(value, str | bool) or value is None:
+        return str(value)
+    flat = np.round(np.asarray(value, dtype=np.float64), 3) + 0.0
+    unit = next((f" {unit}" for unit in ("m", "rad", "s", "px") if name.endswith(f"_{unit}")), "")
+    return f"{np.array2string(flat, separator=', ', threshold=64)}{unit}"
+
+
 def trial_lines(trial: RecordedTrial) -> list[str]:
     """What `run` prints: outcome, stage, reason, and how every subgoal went."""
     stage = f" at {trial.stage}" if trial.stage else ""
-    lines = [f"{trial.outcome.upper()}{stage}  {visible(trial.reason)}"]
+    lines = [f"{trial_word(trial)}{stage}  {visible(trial.reason)}"]
     lines += [
         f"  {verdict.subgoal} {verdict.status.replace('_', ' ')}"
         + (f": {visible(verdict.cause)}" if verdict.cause else "")

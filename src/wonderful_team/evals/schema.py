@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import sqlite3
 
+from wonderful_team.errors import ConfigError
+
 SCHEMA_VERSION = 3
 """1: first release. 2: `how` and `looks` of a condition, and what a trial in flight holds of the study's caps. 3: leases by a clock that
 does not jump; whose a discarded attempt was, and what it was allowed."""
@@ -13,6 +15,7 @@ RESULT = (
     *("provenance", "by_role", "page", "instruction", "versions", "facts"),
 )
 JSON = ("provenance", "by_role", "versions", "facts")
+_NUMBERS = ("calls", "tokens", "pictures", "usd", "seconds", "rounds")
 _HELD = ("held_calls", "held_tokens", "held_usd")
 _ALLOWED = ("allowed_calls", "allowed_tokens", "allowed_usd")
 _TABLES = f"""
@@ -55,3 +58,26 @@ def make_tables(base: sqlite3.Connection) -> str:
         version = str(SCHEMA_VERSION)
         base.execute("UPDATE meta SET value=? WHERE name='schema_version'", (version,))
     return version
+
+
+def check_values(base: sqlite3.Connection, whose: str) -> None:
+    """Whether every value is of its column's type: SQLite itself takes any, and whatever else changed the file may have.
+
+    Raises:
+        ConfigError: One is not; names where it stands.
+    """
+    for (table,) in base.execute("SELECT name FROM sqlite_master WHERE type='table'").fetchall():
+        for column in base.execute(f"PRAGMA table_info('{table}')").fetchall():
+            name = column["name"]
+            number = name in _NUMBERS or column["type"] in ("INTEGER", "REAL")
+            valid = ("integer", "real") if number else ("text",)
+            marks = ", ".join("?" * len(valid))
+            wrong = f"typeof({name}) NOT IN ({marks}, 'null')"
+            found = base.execute(f"SELECT typeof({name}) FROM {table} WHERE {wrong} LIMIT 1", valid).fetchone()
+            if found is not None:
+                raise ConfigError(
+                    f"{whose}: {name} of {table} holds a value of type {found[0]}; valid: {' or '.join(valid)}"
+                )
+    empty = " OR ".join(f"{name} IS NULL" for name in ("outcome", "calls", "tokens", "pictures", "seconds", "rounds"))
+    if base.execute(f"SELECT 1 FROM trials WHERE state = 'done' AND ({empty}) LIMIT 1").fetchone() is not None:
+        raise ConfigError(f"{whose}: a trial that ended lacks its outcome or what it took")

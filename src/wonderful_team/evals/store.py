@@ -14,16 +14,20 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
+from pydantic import TypeAdapter
+
 from wonderful_team.errors import ConfigError, reading
 from wonderful_team.evals.claims import LEASE_S, Owner, Surroundings
 from wonderful_team.evals.names import NO_MODEL
 from wonderful_team.evals.places import network_file_system
-from wonderful_team.evals.schema import JSON, RESULT, SCHEMA_VERSION, SPEC, make_tables
+from wonderful_team.evals.schema import JSON, RESULT, SCHEMA_VERSION, SPEC, check_values, make_tables
 from wonderful_team.evals.spending import UNITS, Allowance, Costs, Likely, Spending, WaitForCost, allow
 from wonderful_team.evals.trials import CONDITION, Condition, Row, SpendingCaps, TrialResult, TrialSpec
 
 CUT = "cut by the study's cap"
 """Why an attempt was discarded that had all it was allowed and wanted more."""
+_REQUEST, _RESULT = TypeAdapter(dict[str, Any]), TypeAdapter(TrialResult)
+"""What is read out of the file is of the types that it was written with."""
 MAX_CRASHES = 3
 """A trial whose worker process died so often is written as an error, ours, and not tried again."""
 
@@ -51,7 +55,7 @@ class Store:
             self._base = sqlite3.connect(self.path, timeout=60.0, isolation_level=None, check_same_thread=False)
             self._base.row_factory = sqlite3.Row
             self._open()
-        except (sqlite3.Error, OSError) as error:
+        except (sqlite3.Error, OSError, UnicodeDecodeError) as error:
             raise ConfigError(f"store {str(self.path)!r} cannot be used: {error}") from error
 
     def _open(self) -> None:
@@ -72,6 +76,7 @@ class Store:
             raise ConfigError(
                 f"store {str(self.path)!r}: schema version {version}; this release reads {SCHEMA_VERSION}"
             )
+        check_values(self._base, f"store {str(self.path)!r}")
 
     @contextmanager
     def _writing(self, *, durable: bool = True) -> Iterator[sqlite3.Connection]:
@@ -91,8 +96,10 @@ class Store:
     def __enter__(self) -> Store:
         return self
 
-    def __exit__(self, *_: object) -> None:
+    def __exit__(self, kind: object, error: BaseException | None, trace: object) -> None:
         self.close()
+        if isinstance(error, sqlite3.Error | UnicodeDecodeError):
+            raise ConfigError(f"store {str(self.path)!r} cannot be used: {error}") from error
 
     # -- what is wanted ----------------------------------------------------------------------------------------------
 
@@ -117,7 +124,7 @@ class Store:
         """What was asked for, study by study, oldest first."""
         with reading(f"store {str(self.path)!r}", "a store that bench wrote and nothing changed"):
             rows = self._base.execute("SELECT request FROM studies ORDER BY started, rowid").fetchall()
-            return [json.loads(row[0]) for row in rows]
+            return [_REQUEST.validate_json(row[0]) for row in rows]
 
     # -- handing out work --------------------------------------------------------------------------------------------
 
@@ -383,7 +390,7 @@ def _spec(row: sqlite3.Row) -> TrialSpec:
 
 def _result(row: sqlite3.Row) -> TrialResult:
     values = {name: json.loads(row[name]) if name in JSON else row[name] for name in RESULT}
-    return TrialResult(**{**values, "provenance": tuple(values["provenance"])})
+    return _RESULT.validate_python(values)
 
 
 def _now() -> str:

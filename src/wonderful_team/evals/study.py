@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import contextlib
 import multiprocessing
 import multiprocessing.connection
 import os
 import socket
+import sys
 import time
+import types
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
@@ -81,6 +84,7 @@ def run_study(
     calls_at_once: int | None = None,
     retry_errors: bool = False,
     ray: str | None = None,
+    needs_main: bool = True,
     report: Report = lambda text, standing: None,
 ) -> Finish:
     """Run what is missing of a study.
@@ -96,6 +100,8 @@ def run_study(
         calls_at_once: Most model calls in flight over all workers; None for each trial's own limit.
         retry_errors: Run trials again that ended as errors.
         ray: Address of a Ray cluster ("local" starts one here): its workers run the trials instead.
+        needs_main: Worker processes run the calling script again, because something that they need stands in it. Without
+            it they start also from a script that guards nothing with `if __name__ == "__main__":`.
         report: Told how it goes.
 
     Raises:
@@ -125,7 +131,7 @@ def run_study(
         elif jobs == 1 and calls_at_once is None:
             work_until_done(work, lambda: watch.look() and False)
         else:
-            _run_processes(work, watch, min(jobs, watch.missing), calls_at_once)
+            _run_processes(work, watch, min(jobs, watch.missing), calls_at_once, needs_main)
         report("", watch.standing())
         if caps.usd is not None and (unpriced := watch.standing().spent.unpriced):
             report(
@@ -181,7 +187,7 @@ class Watch:
         return f"not ended yet: {counted(self.missing, 'trial')}; the same command goes on with them"
 
 
-def _run_processes(work: Work, watch: Watch, jobs: int, calls_at_once: int | None) -> None:
+def _run_processes(work: Work, watch: Watch, jobs: int, calls_at_once: int | None, needs_main: bool) -> None:
     """Spawn workers, replace those that die, and end them when told to."""
     context = multiprocessing.get_context("spawn")
     stopping = context.Event()
@@ -193,7 +199,8 @@ def _run_processes(work: Work, watch: Watch, jobs: int, calls_at_once: int | Non
 
     def start() -> Any:
         process = context.Process(target=worker_main, args=(work, stopping), daemon=False)
-        process.start()
+        with contextlib.nullcontext() if needs_main else _without_main():
+            process.start()
         return process
 
     with _one_thread_each():
@@ -220,6 +227,22 @@ def _run_processes(work: Work, watch: Watch, jobs: int, calls_at_once: int | Non
             stopping.set()
             _end(processes, watch, patient=isinstance(error, KeyboardInterrupt))
             raise
+
+
+def started_by_spawn() -> bool:
+    """Whether this process is a worker that is just running its parent's script again."""
+    return bool(getattr(multiprocessing.current_process(), "_inheriting", False))
+
+
+@contextlib.contextmanager
+def _without_main() -> Iterator[None]:
+    """Start a process that does not run the calling script again: it is told of an empty one."""
+    script = sys.modules["__main__"]
+    sys.modules["__main__"] = types.ModuleType("__main__")
+    try:
+        yield
+    finally:
+        sys.modules["__main__"] = script
 
 
 def _end(processes: list[Any], watch: Watch, *, patient: bool) -> None:

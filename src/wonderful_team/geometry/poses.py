@@ -36,6 +36,8 @@ class Pose:
         norm = float(np.linalg.norm(quaternion))
         if norm < 1e-9:
             raise ValueError("quaternion_wxyz: length must not be zero")
+        # What is of length 1 already stays as it is, so that a pose survives its file to the last digit.
+        norm = 1.0 if abs(norm - 1.0) < 1e-12 else norm
         object.__setattr__(self, "position_m", frozen_array(self.position_m, (3,), "position_m"))
         object.__setattr__(self, "quaternion_wxyz", frozen_array(quaternion / norm, (4,), "quaternion_wxyz"))
 

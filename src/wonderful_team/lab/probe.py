@@ -282,9 +282,7 @@ class _Run:
         if most == 1 and self.subject.provider:
             profile = replace(profile, max_pictures=1, max_pictures_reached=True)
             return await self._pasted(profile)
-        return replace(
-            profile, max_pictures=most if self.subject.provider or reached else None, max_pictures_reached=reached
-        )
+        return replace(profile, max_pictures=most, max_pictures_reached=reached)
 
     async def _pasted(self, profile: Profile) -> Profile:
         """Check that places are found on a sheet with several pictures."""

@@ -19,6 +19,7 @@ from pathlib import Path
 from typing import Any
 
 from wonderful_team.errors import ConfigError
+from wonderful_team.text import user_path
 
 APPLICATION_ID = 0x57544331
 """Marks the file as ours in SQLite's header: "WTC1"."""
@@ -69,14 +70,14 @@ def default_cache_file() -> Path:
     """$WONDERFUL_TEAM_CACHE, else `answers.sqlite` in the user's cache folder of this system."""
     named = os.environ.get(FILE_VARIABLE)
     if named:
-        return Path(named).expanduser()
+        return user_path(named)
     if sys.platform == "win32":
         root = Path(os.environ.get("LOCALAPPDATA", "~/AppData/Local"))
     elif sys.platform == "darwin":
         root = Path("~/Library/Caches")
     else:
         root = Path(os.environ.get("XDG_CACHE_HOME") or "~/.cache")
-    return root.expanduser() / "wonderful-team" / "answers.sqlite"
+    return user_path(root) / "wonderful-team" / "answers.sqlite"
 
 
 class CacheStore:
@@ -91,7 +92,7 @@ class CacheStore:
     """
 
     def __init__(self, path: str | Path | None = None) -> None:
-        self.path = Path(path).expanduser() if path is not None else default_cache_file()
+        self.path = user_path(path) if path is not None else default_cache_file()
         self._lock = threading.RLock()
         self._connection: sqlite3.Connection | None = None
         self._process = os.getpid()

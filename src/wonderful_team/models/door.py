@@ -12,7 +12,6 @@ import contextvars
 import inspect
 import json
 import reprlib
-import threading
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
@@ -31,7 +30,9 @@ from wonderful_team.errors import (
     code_of,
 )
 from wonderful_team.interfaces import Event, Model, Subscriber
+from wonderful_team.interrupts import start_thread
 from wonderful_team.models.budget import Budget, Ticket, hand_over
+from wonderful_team.models.wire import chat as _chat  # noqa: F401  gives requests their messages()
 from wonderful_team.models.wire.unreadable import Unreadable
 from wonderful_team.types import Answer, Request, Usage
 
@@ -238,7 +239,7 @@ async def _in_thread(answer: Callable[[Request], Any], request: Request) -> Any:
             # The loop may have ended meanwhile: then nobody waits any more.
             loop.call_soon_threadsafe(settle, result, failed)
 
-    threading.Thread(target=contextvars.copy_context().run, args=(work,), name="model", daemon=True).start()
+    start_thread(contextvars.copy_context().run, work, name="model")
     return await future
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Protocol
 
@@ -72,12 +73,13 @@ class TablePrice:
         return float(found.total_price)
 
 
-def read_price(text: str) -> GivenPrice:
-    """A price from "IN,OUT" or "IN,OUT,CACHED": US dollars per million tokens.
+def read_price(given: str | Sequence[float]) -> GivenPrice:
+    """A price from "IN,OUT" or "IN,OUT,CACHED", or such numbers: US dollars per million tokens.
 
     Raises:
         ConfigError: Another form.
     """
+    text = ",".join(map(str, given)) if isinstance(given, list | tuple) else str(given)
     try:
         numbers = [float(word) for word in text.split(",")]
     except ValueError:

@@ -19,6 +19,7 @@ from pydantic import TypeAdapter, ValidationError
 from wonderful_team.errors import ConfigError, UnknownNameError, reading
 from wonderful_team.models.conventions import PIXELS, Convention, Resize, Shape
 from wonderful_team.models.error_profile import ErrorProfile
+from wonderful_team.text import user_path
 
 SCHEMA_VERSION = 1
 CONFIG_VARIABLE = "WONDERFUL_TEAM_CONFIG"
@@ -195,12 +196,12 @@ def config_folder(environment: Mapping[str, str] | None = None) -> Path:
     """Where our configuration lies: $WONDERFUL_TEAM_CONFIG, else the platform's usual place."""
     held = os.environ if environment is None else environment
     if held.get(CONFIG_VARIABLE):
-        return Path(held[CONFIG_VARIABLE]).expanduser()
+        return user_path(held[CONFIG_VARIABLE])
     if sys.platform == "win32":
         return Path(held.get("APPDATA") or Path.home() / "AppData" / "Roaming") / "wonderful-team"
     if sys.platform == "darwin":
         return Path.home() / "Library" / "Application Support" / "wonderful-team"
-    return Path(held.get("XDG_CONFIG_HOME") or Path.home() / ".config").expanduser() / "wonderful-team"
+    return user_path(held.get("XDG_CONFIG_HOME") or Path.home() / ".config") / "wonderful-team"
 
 
 def profiles_folder() -> Path:

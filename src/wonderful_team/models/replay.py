@@ -61,7 +61,11 @@ class ReplayModel:
         outcome = record.get("outcome") or {}
         plans = record["planner"]["plans"]
         status = plans[-1]["plan"]["status"] if plans else ""
-        self._budget = str(outcome.get("reason") or "") if "budget" in (outcome.get("outcome"), status) else None
+        # The plan's own words: the reason of a trial says more, such as which goals its scorer found unmet.
+        said = plans[-1]["plan"].get("message") if status == "budget" else None
+        self._budget = (
+            str(said or outcome.get("reason") or "") if "budget" in (outcome.get("outcome"), status) else None
+        )
 
     def holds(self, request: Request) -> bool:
         """Whether the record holds this very request, with an end to it."""

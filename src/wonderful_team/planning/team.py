@@ -270,6 +270,8 @@ class Team:
 
     async def _after_refusal(self, situation: Situation, plan: Plan) -> Decision:
         assert situation.refused is not None
+        if situation.advice:
+            return await self._next_plan(situation, (f"A person declined the plan: {situation.advice}",), plan)
         reasons = situation.refused.reasons
         if situation.replans_left <= 0:
             return GaveUp(str(ActionRefusedError(reasons)), "gate", plan)

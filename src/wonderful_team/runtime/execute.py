@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
+from pathlib import Path
 
+from wonderful_team.errors import ConfigError
 from wonderful_team.geometry import Box
 from wonderful_team.interfaces import Act, World
-from wonderful_team.runtime.approval import Approval, Approver
+from wonderful_team.runtime.approval import Approval, Approver, Declined, Proposal, file_hash
 from wonderful_team.runtime.course import Stage, stages_of
 from wonderful_team.runtime.freshness import freshness_checks, touched, watched
 from wonderful_team.runtime.gate import check_gate
+from wonderful_team.runtime.plan_scene import ReadPlan, read_plan_checks
 from wonderful_team.runtime.progress import Ending, Progress
 from wonderful_team.runtime.seen_checks import still_free_checks
 from wonderful_team.text import counted
@@ -20,8 +23,17 @@ from wonderful_team.types import GateReport, Observation, Plan, PlannedAction, S
 class Execution:
     """Runs what a policy decided, in one world.
 
+    Args:
+        world: Where it runs.
+        progress: Is told.
+        approval: Consent to one plan, or whom to ask for it.
+        max_age_s: Oldest picture that may be acted upon [s]; None for no limit.
+        page: Writes the page that a person reads before she is asked; None where nothing is recorded.
+        strict: Refuse a plan that was read beforehand and that Verification did not approve.
+
     Attributes:
         refusal: The report of the gate that refused the last run; None when it was admitted.
+        declined: What a person said instead of her consent to the last run; None when she was not asked, or agreed.
     """
 
     def __init__(
@@ -30,54 +42,102 @@ class Execution:
         progress: Progress,
         approval: Approval | Approver | None,
         max_age_s: float | None,
-        read_plan: Plan | None,
+        page: Callable[[], Path | None] | None = None,
+        strict: bool = False,
     ) -> None:
         self._world = world
         self._progress = progress
         self._approval = approval
         self._max_age_s = max_age_s
-        self._read_plan = read_plan
+        self._page = page
+        self._strict = strict
+        self._age_limit_s: float | None = None
         self.refusal: GateReport | None = None
+        self.declined: Declined | None = None
 
     def run(
-        self, decision: Act, then: Observation | None, horizon: int | None, *, expected: Plan | None
+        self, decision: Act, then: Observation | None, horizon: int | None, *, read: ReadPlan | None = None
     ) -> Ending | None:
-        """Gate and execute; None when all actions ran, else why not. `final` when no further attempt makes sense."""
-        self.refusal = None
-        now = self._world.observe()
-        report = self._gate(decision, then, now, expected)
+        """Gate and execute; None when all actions ran, else why not. `final` when no further attempt makes sense.
+
+        Args:
+            decision: What the policy wants to run.
+            then: The picture that it was made from; None when that is not at hand.
+            horizon: The world's limit on actions, over the whole run.
+            read: The plan that was read beforehand, if this is where it has to run: it runs, or nothing does.
+        """
+        self.refusal = self.declined = None
+        self._age_limit_s = self._max_age_s if read is None or read.same_clock else None
+        now, report = self._gate(decision, then, read)
         self._progress.passed_gate("before motion", report)
         if not report.admitted:
             self.refusal = report
-            return Ending("failure", "gate", "refused by the safety gate: " + "; ".join(report.reasons))
+            return self._refused_ending(report, read)
         self._progress.observed("before", now)
-        return self._run_all(decision, then or now, now, horizon)
+        return self._run_all(decision, then or now, now, horizon, read)
 
-    def _gate(self, decision: Act, then: Observation | None, now: Observation, expected: Plan | None) -> GateReport:
-        def check(approval: Approval | None, required: bool) -> GateReport:
-            return check_gate(
-                decision.actions,
-                vocabulary=self._world.vocabulary,
-                limits=self._world.limits,
-                plan=decision.plan,
-                then=then,
-                now=now,
-                approval=approval,
-                approval_required=required,
-                expected_plan_id=expected.id if expected is not None else None,
-                must_run=True,
-                max_age_s=self._max_age_s,
-            )
+    def _refused_ending(self, report: GateReport, read: ReadPlan | None) -> Ending:
+        if self.declined is not None and not (self.declined.because and read is None):
+            by = f" ({self.declined.by})" if self.declined.by else ""
+            why = f": {self.declined.because}" if self.declined.because else ""
+            return Ending("failure", "gate", f"you declined{by}{why}; nothing moved", final=True)
+        # A consent that was given beforehand is to one plan: no other plan could be admitted.
+        final = read is not None or (isinstance(self._approval, Approval) and _only_consent(report))
+        reason = "refused by the safety gate: " + "; ".join(report.reasons)
+        return Ending("failure", "gate", reason, final=final)
 
+    def _gate(self, decision: Act, then: Observation | None, read: ReadPlan | None) -> tuple[Observation, GateReport]:
+        """The scene just before motion, and what the gate says."""
         if not callable(self._approval):
-            return check(self._approval, self._approval is not None)
-        report = check(None, False)
+            page = read.page_hash if read is not None else ""
+            return self._check(decision, then, read, self._approval, page)
+        now, report = self._check(decision, then, read, None, "")
         if not report.admitted:
-            return report
-        # Nobody is asked to approve what would be refused anyway.
-        return check(self._approval(decision.plan, decision.actions, report), True)
+            # Nobody is asked to approve what would be refused anyway.
+            return now, report
+        self._progress.passed_gate("before the question", report)
+        page_file = self._page() if self._page is not None else None
+        picture = (then or now).hash
+        answer = self._approval(Proposal(decision.plan, decision.actions, report, picture, page_file))
+        said = Declined() if answer is None else answer
+        if not isinstance(said, Approval | Declined):
+            raise ConfigError(
+                f"the approval function returned a {type(said).__name__}; valid: proposal.approve(by), "
+                "proposal.decline(by, because) or None"
+            )
+        self.declined = said if isinstance(said, Declined) else None
+        # The scene may have changed while she was reading: it is looked at again.
+        return self._check(decision, then, read, said, file_hash(page_file))
 
-    def _run_all(self, decision: Act, then: Observation, now: Observation, horizon: int | None) -> Ending | None:
+    def _check(
+        self,
+        decision: Act,
+        then: Observation | None,
+        read: ReadPlan | None,
+        approval: Approval | Declined | None,
+        page: str,
+    ) -> tuple[Observation, GateReport]:
+        now = self._world.observe()
+        report = check_gate(
+            decision.actions,
+            vocabulary=self._world.vocabulary,
+            limits=self._world.limits,
+            plan=decision.plan,
+            then=then,
+            now=now,
+            approval=approval,
+            page=page,
+            expected_plan_id=read.plan.id if read is not None else None,
+            must_run=True,
+            max_age_s=self._age_limit_s,
+        )
+        if read is None:
+            return now, report
+        return now, GateReport((*read_plan_checks(read, self._world.instruction, now, self._strict), *report.checks))
+
+    def _run_all(
+        self, decision: Act, then: Observation, now: Observation, horizon: int | None, read: ReadPlan | None
+    ) -> Ending | None:
         actions, plan = decision.actions, decision.plan
         excused: list[Box] = []
         stages = stages_of(actions, plan, now.main, self._world.limits)
@@ -91,7 +151,7 @@ class Execution:
                 )
             if index > 0 and not self._still_fresh(planned, index, plan, then, last, excused, stages[index]):
                 self._close(actions[index - 1], before, last, reports)
-                return Ending("failure", "gate", "; ".join(self._refused().reasons))
+                return Ending("failure", "gate", "; ".join(self._refused().reasons), final=read is not None)
             report = self._execute(planned, before, reports)
             seen = self._world.observe()
             excused += touched(planned, plan, last.main, seen.main)
@@ -136,7 +196,7 @@ class Execution:
         """
         now = self._world.observe()
         regions = watched((planned,), plan, now.main, first=index)
-        checks = freshness_checks(then, now, regions, excused=excused, max_age_s=self._max_age_s)
+        checks = freshness_checks(then, now, regions, excused=excused, max_age_s=self._age_limit_s)
         checks += freshness_checks(last, now, regions, max_age_s=self._max_age_s)
         found = still_free_checks(planned, stage, now.main, self._world.limits)
         report = GateReport((*checks, *(replace(check, action=index) for check in found)))
@@ -155,3 +215,9 @@ class Execution:
             run = SubgoalRun(planned.step.subgoal, before, after, tuple(reports))
             self._progress.observed(f"after {planned.step.subgoal}", after)
             self._progress.ran_subgoal(run)
+
+
+def _only_consent(report: GateReport) -> bool:
+    """Whether nothing but the consent is missing."""
+    failed = [check.name for check in report.checks if not check.ok]
+    return all(name.startswith("approv") for name in failed)

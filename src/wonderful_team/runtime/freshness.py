@@ -132,7 +132,7 @@ def freshness_checks(
     now: Observation,
     regions: Sequence[Region],
     *,
-    scene_hash: str = "",
+    scene_hash: str | None = None,
     excused: Sequence[Box] = (),
     max_age_s: float | None = MAX_AGE_S,
 ) -> list[GateCheck]:
@@ -142,18 +142,24 @@ def freshness_checks(
         then: What the plan was made from, or what its last step left; None when it is not at hand.
         now: The scene just before motion.
         regions: What the coming actions rely on.
-        scene_hash: The hash that the plan says its picture has; "" skips that check.
+        scene_hash: The hash that the plan says its picture has; None for actions that come without a plan.
         excused: Parts that the plan's own earlier actions changed.
         max_age_s: Limit on the picture's age [s]; None for no limit.
     """
     if then is None:
-        same = not scene_hash or scene_hash == now.hash
-        value = "the same picture" if same else f"now {now.hash}; the picture of the plan is not at hand"
-        return [GateCheck(None, "scene", same, value, f"picture {scene_hash}" if scene_hash else "none stated")]
+        if scene_hash is None:
+            return [GateCheck(None, "scene", True, "no plan, no picture", "none stated")]
+        same = now.is_called(scene_hash)
+        value = "the same picture" if same else f"now {now.hash[:12]}; the picture of the plan is not at hand"
+        return [GateCheck(None, "scene", same, value, f"picture {scene_hash[:12] or '(the plan names none)'}")]
     checks = []
-    if scene_hash:
-        ok = then.hash == scene_hash
-        checks.append(GateCheck(None, "picture of the plan", ok, then.hash, scene_hash))
+    if scene_hash is not None:
+        ok, limit = then.is_called(scene_hash), scene_hash[:12] or "a picture that the plan names"
+        checks.append(
+            GateCheck(
+                None, "picture of the plan", ok, (then.hash if len(scene_hash) != 16 else then.short_hash)[:12], limit
+            )
+        )
     checks.append(_age(then, now, max_age_s))
     same = then.hash == now.hash
     checks.append(GateCheck(None, "scene", True, "the same picture" if same else "changed somewhere", "regions decide"))

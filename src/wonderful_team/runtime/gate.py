@@ -17,7 +17,7 @@ from wonderful_team.geometry import Box
 from wonderful_team.geometry.arrays import Array
 from wonderful_team.jsonable import to_jsonable
 from wonderful_team.runtime.agreement import agreement_checks, class_checks, form_checks
-from wonderful_team.runtime.approval import Approval, approved_id
+from wonderful_team.runtime.approval import Approval, Declined, approval_checks, approved_id
 from wonderful_team.runtime.course import Course, Stage
 from wonderful_team.runtime.freshness import MAX_AGE_S, freshness_checks, watched
 from wonderful_team.runtime.keep_out import table_height_m
@@ -41,8 +41,9 @@ def check_gate(
     plan: Plan | None,
     then: Observation | None,
     now: Observation,
-    approval: Approval | None = None,
+    approval: Approval | Declined | None = None,
     approval_required: bool = False,
+    page: str = "",
     expected_plan_id: str | None = None,
     must_run: bool = False,
     excused: Sequence[Box] = (),
@@ -61,6 +62,7 @@ def check_gate(
         now: The scene just before motion; its depth, where it has any, says what stands where.
         approval: A person's consent, checked whenever it is given.
         approval_required: Refuse without consent.
+        page: Hash of the page that shows the plan; a consent must name it.
         expected_plan_id: Id of the plan that was read; another plan is refused.
         must_run: Refuse actions that have no metres; otherwise a plan in pixels is checked in pixels.
         excused: Parts of the main view [px] that the plan's own earlier actions changed.
@@ -76,7 +78,8 @@ def check_gate(
     if foreign:
         return GateReport(tuple(foreign))
     checks = _plan_checks(actions, plan, expected_plan_id)
-    checks += _approval_checks(actions, plan, approval, approval_required)
+    picture = (then or now).hash
+    checks += approval_checks(approved_id(plan, actions), picture, page, approval, approval_required)
     regions = (*limits.keep_out, *(plan.keep_out if plan is not None else ()))
     passage = _Passage(plan, limits, now, regions, must_run, tool_radius_m, measured_heights)
     for index, planned in enumerate(actions):
@@ -91,7 +94,7 @@ def check_gate(
         then,
         now,
         watched(actions, plan, now.main) if then is not None else (),
-        scene_hash=plan.scene_hash if plan is not None else "",
+        scene_hash=plan.scene_hash if plan is not None else None,
         excused=excused,
         max_age_s=max_age_s,
     )
@@ -206,12 +209,13 @@ def _plan_checks(actions: Sequence[PlannedAction], plan: Plan | None, expected_i
     checks = []
     if expected_id is not None:
         have = plan.id if plan is not None else "no plan"
-        checks.append(GateCheck(None, "plan that was read", have == expected_id, f"plan {have}", f"plan {expected_id}"))
+        value, limit = f"plan {have[:12]}", f"plan {expected_id[:12]}"
+        checks.append(GateCheck(None, "plan that was read", have == expected_id, value, limit))
     if plan is not None:
         ours, theirs = _texts(actions), _texts(plan.actions)
         same = ours == theirs
         value = counted(len(actions), "action") + ("" if same else ", not those of the plan")
-        checks.append(GateCheck(None, "actions of the plan", same, value, f"the {len(theirs)} of plan {plan.id}"))
+        checks.append(GateCheck(None, "actions of the plan", same, value, f"the {len(theirs)} of plan {plan.id[:12]}"))
     if not actions:
         checks.append(GateCheck(None, "actions", False, "0", "at least 1"))
     return checks
@@ -219,17 +223,6 @@ def _plan_checks(actions: Sequence[PlannedAction], plan: Plan | None, expected_i
 
 def _texts(actions: Sequence[PlannedAction]) -> list[str]:
     return [json.dumps(to_jsonable((planned.step, planned.action)), sort_keys=True) for planned in actions]
-
-
-def _approval_checks(
-    actions: Sequence[PlannedAction], plan: Plan | None, approval: Approval | None, required: bool
-) -> list[GateCheck]:
-    wanted = approved_id(plan, actions)
-    if approval is None:
-        return [GateCheck(None, "approval", False, "none", f"for plan {wanted}")] if required else []
-    same = approval.plan_id == wanted and bool(approval.by.strip())
-    value = f"plan {approval.plan_id} by {approval.by.strip() or 'nobody'}"
-    return [GateCheck(None, "approval", same, value, f"for plan {wanted}, by a named person")]
 
 
 def _axis_check(path: Array, axis: int, limits: Limits) -> GateCheck:

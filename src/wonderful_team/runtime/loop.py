@@ -1,47 +1,52 @@
-"""One event loop for a whole rollout, also where one is running already (a notebook)."""
+"""One event loop for a whole rollout, in a thread of its own."""
 
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import inspect
-import threading
 from collections.abc import Awaitable
 from types import TracebackType
 from typing import Any
+
+from wonderful_team.interrupts import start_thread
+
+CLOSE_S = 10.0
+"""Longest wait for what the loop still has to end [s]."""
+HALT_S = 1.0
+"""The same after an error or an interrupt [s]: somebody waits."""
 
 
 class Caller:
     """Call plain or async functions from synchronous code and wait for their result.
 
-    Clients of models keep connections that belong to one event loop, so all calls of a rollout share one. Where the
-    calling thread runs a loop already, ours lives in a thread of its own; the world stays in the calling thread.
+    Clients of models keep connections that belong to one event loop, so all calls of a rollout share one. It lives in a
+    thread of its own: that works where a loop is running already (a notebook), and an interrupt reaches the calling
+    thread at once, where the world stays.
     """
 
     def __enter__(self) -> Caller:
-        self._runner = asyncio.Runner()
-        self._loop: asyncio.AbstractEventLoop | None = None
-        if _loop_is_running():
-            self._loop = asyncio.new_event_loop()
-            self._thread = threading.Thread(target=self._loop.run_forever, name="rollout", daemon=True)
-            self._thread.start()
+        self._loop = asyncio.new_event_loop()
+        self._thread = start_thread(_run, self._loop, name="rollout")
         return self
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        if self._loop is not None:
-            asyncio.run_coroutine_threadsafe(self._loop.shutdown_asyncgens(), self._loop).result()
-            self._loop.call_soon_threadsafe(self._loop.stop)
-            self._thread.join()
+        patience_s = CLOSE_S if kind is None else HALT_S
+        ended = asyncio.run_coroutine_threadsafe(_wind_up(), self._loop)
+        # What takes longer is left behind: the loop stops as soon as it has ended.
+        ended.add_done_callback(lambda _: self._loop.call_soon_threadsafe(self._loop.stop))
+        with contextlib.suppress(TimeoutError):
+            ended.result(patience_s)
+            self._thread.join(patience_s)
+        if not self._thread.is_alive():
             self._loop.close()
-        self._runner.close()
 
     def wait_for(self, result: Any) -> Any:
         """The value itself, or what it turns into once awaited."""
         if not inspect.isawaitable(result):
             return result
-        if self._loop is None:
-            return self._runner.run(_as_coroutine(result))
         future = asyncio.run_coroutine_threadsafe(_as_coroutine(result), self._loop)
         try:
             return future.result()
@@ -50,13 +55,24 @@ class Caller:
             raise
 
 
+def _run(loop: asyncio.AbstractEventLoop) -> None:
+    """Until it is stopped: a method that raises SystemExit ends its own task, not the loop that others wait for."""
+    while True:
+        try:
+            return loop.run_forever()
+        except (SystemExit, KeyboardInterrupt):
+            continue
+
+
+async def _wind_up() -> None:
+    """Cancel what is still running and wait until it has ended."""
+    others = asyncio.all_tasks() - {asyncio.current_task()}
+    for task in others:
+        task.cancel()
+    await asyncio.gather(*others, return_exceptions=True)
+    await asyncio.get_running_loop().shutdown_asyncgens()
+    await asyncio.get_running_loop().shutdown_default_executor()
+
+
 async def _as_coroutine(awaitable: Awaitable[Any]) -> Any:
     return await awaitable
-
-
-def _loop_is_running() -> bool:
-    try:
-        asyncio.get_running_loop()
-    except RuntimeError:
-        return False
-    return True

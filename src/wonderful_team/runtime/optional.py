@@ -1,28 +1,25 @@
-"""What a world or a policy may offer beyond its protocol; checked with isinstance, never assumed."""
+"""What a world or a policy may offer beyond its protocol; asked for with `offers`, never assumed."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any, Protocol, runtime_checkable
+from typing import Any, Protocol
 
 from wonderful_team.types import Provenance, Usage
 
 
-@runtime_checkable
 class Horizon(Protocol):
     """A world that ends after so many actions; None for no end."""
 
     horizon: int | None
 
 
-@runtime_checkable
 class ChunkPolicy(Protocol):
     """A policy that is asked again after every few actions, which is not a replan (learned policies)."""
 
     chunks: bool
 
 
-@runtime_checkable
 class Accounting(Protocol):
     """A policy that knows what its calls cost, per role."""
 
@@ -30,7 +27,6 @@ class Accounting(Protocol):
     def usage_by_role(self) -> Mapping[str, Usage]: ...
 
 
-@runtime_checkable
 class NamedModel(Protocol):
     """A policy that says which model serves it."""
 
@@ -38,7 +34,6 @@ class NamedModel(Protocol):
     def model_name(self) -> str: ...
 
 
-@runtime_checkable
 class Configured(Protocol):
     """A policy that says how it is set up, in plain values."""
 
@@ -46,7 +41,6 @@ class Configured(Protocol):
     def setting(self) -> Mapping[str, Any]: ...
 
 
-@runtime_checkable
 class Sourced(Protocol):
     """A policy that says where its answers came from: model, offline, simulated, …"""
 

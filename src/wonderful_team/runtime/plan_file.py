@@ -1,4 +1,8 @@
-"""A plan as JSON and back: what `plan.json` holds and `run --plan` takes. The plan that comes back has the same id."""
+"""A plan as JSON and back: what `plan.json` holds and `run --plan` takes. The plan that comes back has the same id.
+
+A plan file is data of unknown origin. Reading it checks types and numbers, and that its content is what its id says; whether
+it may run is for the gate, which checks every number against the world as it is.
+"""
 
 from __future__ import annotations
 
@@ -11,7 +15,9 @@ from wonderful_team.errors import ConfigError
 from wonderful_team.runtime.values_file import decode, encode
 from wonderful_team.types import Plan
 
-PLAN_SCHEMA_VERSION = 1
+PLAN_SCHEMA_VERSION = 2
+_SHORT_IDS = 1
+"""Schema version of plans with ids of 12 hex digits. They open; the plan then goes by its new id."""
 PLAN_FORMAT = "wonderful-team plan"
 
 
@@ -20,12 +26,13 @@ def plan_to_json(plan: Plan) -> dict[str, Any]:
     return {"format": PLAN_FORMAT, "schema_version": PLAN_SCHEMA_VERSION, "id": plan.id, "plan": encode(plan)}
 
 
-def plan_from_json(data: Any, where: str = "plan") -> Plan:
+def plan_from_json(data: Any, where: str = "plan", *, whole: bool = True) -> Plan:
     """The plan that `plan_to_json` wrote.
 
     Args:
         data: The parsed JSON.
         where: What to call it in messages, such as the file's name.
+        whole: It holds everything that its id is over; a record keeps the instruction's pictures elsewhere.
 
     Raises:
         ConfigError: Not a plan of ours, another schema version, a broken or changed content.
@@ -34,22 +41,28 @@ def plan_from_json(data: Any, where: str = "plan") -> Plan:
         found = f"format {data.get('format')!r}" if isinstance(data, Mapping) else f"a {type(data).__name__}"
         raise ConfigError(f"{where}: not a plan file (found {found}, expected format {PLAN_FORMAT!r})")
     version = data.get("schema_version")
-    if version != PLAN_SCHEMA_VERSION:
+    if version not in (PLAN_SCHEMA_VERSION, _SHORT_IDS) or isinstance(version, bool):
         raise ConfigError(
-            f"{where}: plan schema version {version!r} cannot be read; this release reads {PLAN_SCHEMA_VERSION}. "
-            "Make the plan again, or use the release that wrote it"
+            f"{where}: plan schema version {version!r} cannot be read; this release reads {_SHORT_IDS} and "
+            f"{PLAN_SCHEMA_VERSION}. Make the plan again, or use the release that wrote it"
         )
     try:
         plan = decode(data.get("plan"), Plan)
-    except (ValueError, TypeError, ConfigError) as error:
+        assert isinstance(plan, Plan)
+        found = plan.id if version == PLAN_SCHEMA_VERSION else plan.short_id()
+    except (ValueError, TypeError, ConfigError, RecursionError, OverflowError) as error:
         raise ConfigError(f"{where}: broken plan: {error}") from error
-    assert isinstance(plan, Plan)
-    if plan.id != data.get("id"):
+    if whole and found != data.get("id"):
         raise ConfigError(
-            f"{where}: the content has id {plan.id}, the file says {data.get('id')!r}: it was changed after it was "
-            "written. A changed plan must be made and approved again"
+            f"{where}: the content has id {found}, the file says {str(data.get('id'))[:80]!r}: it was changed after it "
+            "was written. A changed plan must be made and approved again"
         )
     return plan
+
+
+def has_short_id(data: Mapping[str, Any]) -> bool:
+    """Whether a plan was written by an earlier release, whose ids have 12 hex digits."""
+    return data.get("schema_version") == _SHORT_IDS
 
 
 def write_plan(plan: Plan, path: Path) -> None:
@@ -70,6 +83,6 @@ def read_plan(path: Path) -> Plan:
         raise ConfigError(
             f"{file}: no plan to read ({error.strerror}); give a run's folder or its plan.json"
         ) from error
-    except ValueError as error:
+    except (ValueError, RecursionError) as error:
         raise ConfigError(f"{file}: not JSON: {error}") from error
     return plan_from_json(data, str(file))

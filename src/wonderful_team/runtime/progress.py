@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import Any, Literal
 
 from wonderful_team.errors import WonderfulTeamError
-from wonderful_team.interfaces import Act, Decision, Event, Policy, Situation, Subscriber, World
+from wonderful_team.interfaces import Act, Decision, Event, Policy, Situation, Subscriber, World, offers
 from wonderful_team.runtime.optional import Accounting, Configured, NamedModel, Sourced
 from wonderful_team.types import GateReport, Observation, Plan, PlannedAction, StepReport, SubgoalRun, Trial, Verdict
 
@@ -35,6 +35,7 @@ class Progress:
     runs: list[SubgoalRun] = field(default_factory=list)
     verdicts: list[Verdict] = field(default_factory=list)
     executed: int = 0
+    last: Decision | None = None
 
     def tell(self, kind: str, name: str, content: Any = None) -> None:
         for subscriber in self.subscribers:
@@ -51,15 +52,18 @@ class Progress:
 
     def asking(self, situation: Situation) -> None:
         """Note what a method is told beside pictures and reports, so that it can be asked so again."""
-        counts = {
+        told: dict[str, Any] = {
             "attempt": situation.attempt,
             "replans_left": situation.replans_left,
             "looks_left": situation.looks_left,
         }
-        self.tell("asking", f"attempt {situation.attempt}", counts)
+        if situation.advice:
+            told["advice"] = situation.advice
+        self.tell("asking", f"attempt {situation.attempt}", told)
 
     def decided(self, decision: Decision) -> None:
         """Note a decision and what it carries."""
+        self.last = decision
         name = type(decision).__name__
         self.tell("decision", name, {"decision": name, "reason": getattr(decision, "reason", "")})
         verdicts = tuple(getattr(decision, "verdicts", ()))
@@ -91,6 +95,11 @@ class Progress:
         self.runs.append(run)
         self.tell("subgoal", run.subgoal, run)
 
+    @property
+    def unasked(self) -> bool:
+        """Whether actions were the method's last word: it was not asked what came of them."""
+        return isinstance(self.last, Act)
+
     def finish(self, ending: Ending) -> Trial:
         """The trial as it stands; told to subscribers as the last event."""
         policy = self.policy
@@ -98,7 +107,7 @@ class Progress:
             scene=self.scene,
             seed=self.seed,
             method=policy.name,
-            model=policy.model_name if isinstance(policy, NamedModel) else "",
+            model=policy.model_name if offers(policy, NamedModel) else "",
             plans=tuple(self.plans),
             gates=tuple(self.gates),
             runs=tuple(self.runs),
@@ -106,9 +115,10 @@ class Progress:
             outcome=ending.outcome or "unscored",
             stage=ending.stage,
             reason=ending.reason,
-            usage_by_role=dict(policy.usage_by_role) if isinstance(policy, Accounting) else {},
-            provenance=tuple(policy.provenance) if isinstance(policy, Sourced) else (),
-            setting=dict(policy.setting) if isinstance(policy, Configured) else {},
+            judged=ending.outcome not in (None, "unscored") or not self.unasked,
+            usage_by_role=dict(policy.usage_by_role) if offers(policy, Accounting) else {},
+            provenance=tuple(policy.provenance) if offers(policy, Sourced) else (),
+            setting=dict(policy.setting) if offers(policy, Configured) else {},
         )
         self.tell("done", trial.outcome, trial)
         return trial

@@ -12,9 +12,10 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any
 
-from wonderful_team.errors import WonderfulTeamError
+from wonderful_team.errors import ActionRefusedError, WonderfulTeamError
 from wonderful_team.images import Ticks, action_arrows, overview, to_png
 from wonderful_team.interfaces import Event
+from wonderful_team.interrupts import held
 from wonderful_team.jsonable import to_jsonable
 from wonderful_team.runtime import entries
 from wonderful_team.runtime.keep_out import outlines
@@ -24,7 +25,7 @@ from wonderful_team.runtime.record_schema import RECORD_SCHEMA_VERSION
 from wonderful_team.runtime.redact import redact, redact_all, secrets_of_environment
 from wonderful_team.runtime.versions import versions
 from wonderful_team.text import counted, picture_names, spoken, visible
-from wonderful_team.types import Instruction, Limits, Observation, Plan, Request, Trial
+from wonderful_team.types import GateCheck, GateReport, Instruction, Limits, Observation, Plan, Request, Trial
 
 _REWRITE_EVERY_S = 0.3
 """Least time between two rewrites of record.json; important events are written at once."""
@@ -96,14 +97,15 @@ class Recorder:
         handle = self._handlers.get(event.kind)
         if handle is None:
             return
-        with self._lock:
+        # An interrupt that came in the middle would leave half an entry.
+        with held(), self._lock:
             handle(event)
             if event.kind in _AT_ONCE or self._elapsed_s() - self._last_write >= _REWRITE_EVERY_S:
                 self._write()
 
     def close(self) -> None:
         """Write what is left. A run that was never finished is marked as interrupted."""
-        with self._lock:
+        with held(), self._lock:
             if self._record["state"] == "running":
                 self._record["state"] = "interrupted"
             self._write()
@@ -239,10 +241,11 @@ class Recorder:
         return {key: len(self._planner[key]) for key in ("observations", "gates", "executions", "subgoals")}
 
     def _on_gate(self, event: Event) -> None:
-        self._planner["gates"].append({"plan": self._plan_number, **entries.gate_entry(event.name, event.content)})
+        report: GateReport = event.content
+        self._planner["gates"].append({"plan": self._plan_number, **entries.gate_entry(event.name, report)})
         self._stamp("gates")
-        checks = counted(len(event.content.checks), "check")
-        self._log("gate", f"{event.name}: " + gate_words(event.content.admitted, checks, event.content.reasons))
+        checks = counted(len(report.checks), "check")
+        self._log("gate", f"{event.name}: " + gate_words(report.admitted, checks, report.reasons))
 
     def _on_subgoal(self, event: Event) -> None:
         entry = entries.subgoal_entry(event.content, self._store)
@@ -282,11 +285,9 @@ class Recorder:
         match event.content:
             case Plan() as plan:
                 self._on_plan(Event("plan", plan.id, plan))
-                self._record["outcome"] = {
-                    "outcome": plan.status,
-                    "stage": getattr(plan, "stage", None),
-                    "reason": plan.message,
-                }
+                # A plan that the gate refuses is refused, however well it was made.
+                made = {"outcome": plan.status, "stage": plan.stage, "reason": plan.message}
+                self._record["outcome"] = self._refusal() or made
             case Trial() as trial:
                 self._record["outcome"] = {
                     "outcome": trial.outcome,
@@ -305,6 +306,14 @@ class Recorder:
                 self._record["outcome"] = {"outcome": event.name, "stage": None, "reason": ""}
         outcome = self._record["outcome"]
         self._log("done", f"{outcome['outcome']} {outcome['reason']}".strip())
+
+    def _refusal(self) -> dict[str, Any] | None:
+        """The outcome of a plan that the gate refused last; None when it admitted it or was not asked."""
+        if not self._planner["gates"] or self._planner["gates"][-1]["admitted"]:
+            return None
+        failed = [check for check in self._planner["gates"][-1]["checks"] if not check["ok"]]
+        reasons = GateReport(tuple(GateCheck(**check) for check in failed)).reasons
+        return {"outcome": "refused", "stage": "gate", "reason": str(ActionRefusedError(reasons))}
 
     @property
     def _plan_number(self) -> int | None:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
 from typing import Any, cast
 
 from wonderful_team.errors import (
@@ -13,16 +14,21 @@ from wonderful_team.errors import (
     WonderfulTeamError,
     WorldUnavailableError,
 )
-from wonderful_team.interfaces import Act, Done, GaveUp, Policy, Privileged, Situation, Subscriber, World
+from wonderful_team.interfaces import Act, Done, GaveUp, Policy, Privileged, Situation, Subscriber, World, offers
 from wonderful_team.runtime.approval import Approval, Approver
 from wonderful_team.runtime.execute import Execution
 from wonderful_team.runtime.freshness import MAX_AGE_S
 from wonderful_team.runtime.loop import Caller
 from wonderful_team.runtime.optional import ChunkPolicy, Horizon
+from wonderful_team.runtime.plan_scene import ReadPlan
 from wonderful_team.runtime.progress import Ending, Progress
 from wonderful_team.runtime.user_code import GuardedScorer, GuardedWorld, decision_of
 from wonderful_team.types import Observation, Plan, Trial
 
+NOBODY_JUDGED = "; nobody judged the result: there is no scorer, and a method judges only where it may replan"
+
+MAX_ADVICE = 10
+"""Most plans of one run that a person may decline with advice for another one."""
 MAX_DECISIONS = 500
 """Most times a chunk policy is asked in a world without a horizon."""
 
@@ -31,7 +37,7 @@ def rollout(
     policy: Policy,
     world: World,
     *,
-    plan: Plan | None = None,
+    plan: Plan | ReadPlan | None = None,
     plan_observation: Observation | None = None,
     replans: int = 0,
     looks: int = 0,
@@ -42,24 +48,30 @@ def rollout(
     scene: str = "",
     configuration: Mapping[str, Any] | None = None,
     max_age_s: float | None = MAX_AGE_S,
+    page: Callable[[], Path | None] | None = None,
+    strict: bool = False,
 ) -> Trial:
     """Run a policy in a world.
 
     Args:
         policy: The method; its `decide` may be plain or async.
         world: Where it acts. A world with a `horizon` is stopped after that many actions.
-        plan: A plan that was read beforehand: exactly its actions run, or the gate refuses.
+        plan: A plan that was read beforehand: exactly its actions run, in its own instruction and scene, or nothing
+            moves and the trial ends. Once they ran, replans go on as asked for.
         plan_observation: The picture that plan was made from; without it the scene must be pixel for pixel the same.
-        replans: How often the policy may answer with new actions after its first ones ran out or were refused.
+        replans: How often the policy may answer with new actions after its first ones ran or were refused.
         looks: How often the policy may run only the first actions of its plan and be asked again with a new picture, which is
             not a replan. 0: every plan runs whole (open loop). A plan that was read beforehand always runs whole.
         scorer: Judges the outcome after the trial, and only then; None leaves it unscored.
         subscribers: Told of every event, in order.
-        approval: Consent to one plan, or a function that is asked for it before motion; given, it is required.
+        approval: Consent to one plan, or a function that is asked for it before motion; given, it is required. A no
+            ends the trial; a no with a reason lets the policy make one new plan, which is asked about again.
         seed: Of the scene; None for a photo or a real robot.
         scene: What the trial is called in the record.
         configuration: What else the record should say.
         max_age_s: Oldest picture that may be acted upon [s]; None for no limit.
+        page: Writes the page that a person reads before she is asked, and returns its path.
+        strict: Refuse a plan that was read beforehand and that Verification did not approve.
 
     Returns:
         The whole trial. The method's errors are failures with their stage; a provider's absence is an error.
@@ -80,12 +92,18 @@ def rollout(
     progress = Progress(policy, scene, seed, tuple(subscribers))
     setup = {"method": policy.name, "seed": seed, "replans": replans, "looks": looks, **(configuration or {})}
     progress.tell("run", scene, {**setup, "task": world.instruction, "limits": world.limits})
-    execution = Execution(world, progress, approval, max_age_s, plan)
+    execution = Execution(world, progress, approval, max_age_s, page, strict)
+    read = ReadPlan(plan, plan_observation) if isinstance(plan, Plan) else plan
     try:
         with Caller() as caller:
-            ending = _attempts(policy, world, caller, execution, progress, plan, plan_observation, replans, looks)
+            try:
+                ending = _attempts(policy, world, caller, execution, progress, read, replans, looks)
+            except BaseException:
+                # First of all, before anything is waited for.
+                _halt(world, progress)
+                raise
     except (KeyboardInterrupt, Exception) as error:  # noqa: BLE001  sorted by fault; what is unknown is raised again
-        return _stop(world, progress, error)
+        return _stop(progress, error)
     return _scored(progress, ending, scorer)
 
 
@@ -95,15 +113,16 @@ def _attempts(
     caller: Caller,
     execution: Execution,
     progress: Progress,
-    plan: Plan | None,
-    plan_observation: Observation | None,
+    read: ReadPlan | None,
     replans: int,
     looks: int,
 ) -> Ending:
     """Ask, gate, execute, until the policy or a bound ends it."""
-    chunks = isinstance(policy, ChunkPolicy) and policy.chunks
-    horizon = world.horizon if isinstance(world, Horizon) else None
-    attempt, refused, first_run = 0, None, 0
+    chunks = offers(policy, ChunkPolicy) and policy.chunks
+    horizon = world.horizon if offers(world, Horizon) else None
+    attempt, first_run, left, advised = 0, 0, replans, 0
+    refused, advice, halted = None, "", None
+    replanning = False
     observation = progress.observe(world, "start")
     for _ in range(MAX_DECISIONS):
         # What ran is told once: since the last question.
@@ -115,29 +134,38 @@ def _attempts(
             world.vocabulary,
             world.limits,
             attempt=attempt,
-            replans_left=replans - attempt,
+            replans_left=left,
             executed=told,
             refused=refused,
-            plan=plan if attempt == 0 else None,
+            plan=read.plan if read is not None else None,
             looks_left=looks,
+            advice=advice,
         )
         progress.asking(situation)
         decision = decision_of(policy, situation, caller)
+        if replanning and left == 0 and isinstance(decision, Act):
+            # It was asked only for its judgement of what ran last.
+            return halted or _ran_out()
         progress.decided(decision)
         if not isinstance(decision, Act):
             return _said(decision, progress)
-        then = plan_observation if plan is not None and attempt == 0 else observation
-        halted = execution.run(decision, then, horizon, expected=plan if attempt == 0 else None)
+        left -= replanning
+        then = observation if read is None else read.observation
+        halted = execution.run(decision, then, horizon, read=read)
         if halted is not None and halted.final:
             return halted
-        refused = execution.refusal
+        read, refused = None, execution.refusal
+        advice = execution.declined.because if execution.declined is not None else ""
         looking = decision.look and looks > 0 and halted is None
-        if looking:
-            looks -= 1
-        elif not chunks or refused is not None:
-            if attempt >= replans:
-                return halted or Ending(None, None, "the plan's actions ran out")
-            attempt += 1
+        if advice:
+            advised += 1
+            if advised > MAX_ADVICE:
+                return Ending("failure", "gate", f"{MAX_ADVICE} plans were declined with advice; nothing moved")
+        looks -= looking
+        replanning = not (looking or advice or (chunks and refused is None))
+        attempt += not (looking or (chunks and refused is None))
+        if replanning and left == 0 and (replans == 0 or refused is not None):
+            return halted or _ran_out()
         observation = progress.observe(world, "look" if looking else f"attempt {attempt}")
     return Ending("failure", "budget", f"the policy was asked {MAX_DECISIONS} times")
 
@@ -153,13 +181,21 @@ def _said(decision: Done | GaveUp | Any, progress: Progress) -> Ending:
     raise ConfigError(f"decide must return Act, Done or GaveUp; it returned {type(decision).__name__}")
 
 
-def _stop(world: World, progress: Progress, error: BaseException) -> Trial:
-    """End a trial that an exception cut short; raises what is neither the method's, the provider's nor the robot's."""
+def _ran_out() -> Ending:
+    return Ending(None, None, "the plan's actions ran out")
+
+
+def _halt(world: World, progress: Progress) -> None:
+    """Stop what moves. That it cannot be stopped is told, and hides nothing of what happened before."""
     try:
         world.stop()
     except WonderfulTeamError as worse:
         progress.tell("warning", "halt", f"{worse}: the robot may still be moving; a person must look")
         progress.traced(worse)
+
+
+def _stop(progress: Progress, error: BaseException) -> Trial:
+    """End a trial that an exception cut short; raises what is neither the method's, the provider's nor the robot's."""
     if isinstance(error, WonderfulTeamError):
         progress.traced(error)
     match error:
@@ -171,7 +207,7 @@ def _stop(world: World, progress: Progress, error: BaseException) -> Trial:
         case WonderfulTeamError() if not isinstance(error, ConfigError):
             return progress.finish(Ending("failure", error.stage or "plan", str(error)))
     interrupted = isinstance(error, KeyboardInterrupt)
-    reason = "interrupted" if interrupted else f"{type(error).__name__}: {error}"
+    reason = str(error) or "interrupted" if interrupted else f"{type(error).__name__}: {error}"
     progress.tell("warning", "interrupted" if interrupted else "crash", reason)
     progress.finish(Ending("error", "interrupted" if interrupted else "crash", reason))
     raise error
@@ -180,7 +216,8 @@ def _stop(world: World, progress: Progress, error: BaseException) -> Trial:
 def _scored(progress: Progress, ending: Ending, scorer: Privileged | None) -> Trial:
     """Let truth decide, now that nothing can learn from it any more."""
     if scorer is None:
-        return progress.finish(Ending(ending.outcome or "unscored", ending.stage, ending.reason))
+        unjudged = NOBODY_JUDGED if ending.outcome is None and progress.unasked else ""
+        return progress.finish(Ending(ending.outcome or "unscored", ending.stage, f"{ending.reason}{unjudged}"))
     try:
         score = GuardedScorer(scorer).score()
     except WonderfulTeamError as error:

@@ -1,8 +1,9 @@
-"""Observations and instructions out of a run folder again: the same pixels, depth and camera as when it was recorded."""
+"""Observations, instructions and plans out of a run folder again: the same pixels, depth and camera as when it was recorded."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -14,8 +15,9 @@ from wonderful_team.geometry import AffineCamera, Camera, PinholeCamera, PlanarC
 from wonderful_team.geometry.arrays import Array
 from wonderful_team.pictures import picture_hash
 from wonderful_team.runtime.picture_store import PictureStore
+from wonderful_team.runtime.plan_file import plan_from_json
 from wonderful_team.runtime.values_file import decode, encode
-from wonderful_team.types import Instruction, Observation, RobotState, Slot, View
+from wonderful_team.types import Instruction, Observation, Plan, RobotState, Slot, View
 
 _CAMERAS = (PinholeCamera, AffineCamera, PlanarCamera)
 
@@ -76,6 +78,20 @@ def stored_instruction(folder: Path, record: Mapping[str, Any]) -> Instruction:
         }
         slots[name] = Slot(name, slot["kind"], views, slot["index"])
     return Instruction(told["text"], slots)
+
+
+def stored_plan(folder: Path, record: Mapping[str, Any], number: int) -> Plan:
+    """One of the record's plans, counted from 0, with the pictures of its instruction where the record keeps them.
+
+    Raises:
+        ConfigError: It is broken, or of a schema version that cannot be read.
+    """
+    plan = plan_from_json(record["planner"]["plans"][number], str(folder), whole=False)
+    try:
+        instruction = stored_instruction(folder, record)
+    except ConfigError:
+        return plan
+    return replace(plan, instruction=instruction) if plan.instruction.text == instruction.text else plan
 
 
 def _view(folder: Path, record: Mapping[str, Any], key: str, facts: Mapping[str, Any], what: str) -> View:

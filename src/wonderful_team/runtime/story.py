@@ -9,9 +9,8 @@ from typing import Any
 from wonderful_team.actions import Vocabulary
 from wonderful_team.errors import ConfigError
 from wonderful_team.interfaces import Situation
-from wonderful_team.runtime.plan_file import plan_from_json
 from wonderful_team.runtime.setup import Setup, same_limits
-from wonderful_team.runtime.stored import stored_instruction, stored_observation
+from wonderful_team.runtime.stored import stored_instruction, stored_observation, stored_plan
 from wonderful_team.types import GateCheck, GateReport, Observation, Plan, StepReport, SubgoalRun
 
 Record = Mapping[str, Any]
@@ -42,6 +41,7 @@ def situations(folder: Path, record: Record, setup: Setup) -> Iterator[Situation
             refused=_refusal(record["planner"]["gates"][before["gates"] : now["gates"]]),
             plan=recorded_plan(folder, record, setup.plan) if number == 0 and setup.plan is not None else None,
             looks_left=asked["looks_left"],
+            advice=asked.get("advice", ""),
         )
         before = now
 
@@ -74,9 +74,9 @@ def recorded_plan(folder: Path, record: Record, plan_id: str) -> Plan:
     Raises:
         ConfigError: The record does not hold it.
     """
-    for kept in record["planner"]["plans"]:
+    for number, kept in enumerate(record["planner"]["plans"]):
         if kept["id"] == plan_id:
-            return plan_from_json(kept, str(folder))
+            return stored_plan(folder, record, number)
     known = ", ".join(str(kept["id"]) for kept in record["planner"]["plans"]) or "none"
     raise ConfigError(f"{folder}: the record does not hold the plan {plan_id}; it holds: {known}")
 
@@ -89,7 +89,7 @@ def _runs(folder: Path, record: Record, before: Mapping[str, int], now: Mapping[
         number = entry["plan"]
         if number is None:
             raise ConfigError(f"{folder}: subgoal {entry['subgoal']} belongs to no plan in the record")
-        plan = plan_from_json(planner["plans"][number], str(folder))
+        plan = stored_plan(folder, record, number)
         first = done.get(number, 0)
         done[number] = last = first + entry["actions"]
         told = [

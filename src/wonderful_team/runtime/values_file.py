@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import io
+import math
 import types
 from collections.abc import Mapping
 from dataclasses import fields, is_dataclass
@@ -72,8 +73,7 @@ def decode(value: Any, hint: Any, where: str = "") -> Any:
         _require(isinstance(value, Mapping), value, place, "an object")
         return {key: decode(item, arguments[1], f"{place}.{key}") for key, item in value.items()}
     if origin is np.ndarray:
-        _require(isinstance(value, list), value, place, "a list of numbers")
-        return np.asarray(value, dtype=np.float64)
+        return _decode_array(value, place)
     if hint is View:
         return _decode_view(value, place)
     if is_dataclass(hint):
@@ -81,9 +81,18 @@ def decode(value: Any, hint: Any, where: str = "") -> Any:
     return _decode_plain(value, hint, place)
 
 
+def _decode_array(value: Any, place: str) -> Any:
+    _require(isinstance(value, list), value, place, "a list of numbers")
+    array = np.asarray(value)
+    _require(array.dtype.kind in "if" or array.size == 0, value, place, "a list of numbers")
+    _require(bool(np.isfinite(array).all()), value, place, "finite numbers")
+    return array.astype(np.float64)
+
+
 def _decode_plain(value: Any, hint: Any, place: str) -> Any:
     if hint is float:
-        _require(isinstance(value, int | float) and not isinstance(value, bool), value, place, "a number")
+        number = isinstance(value, int | float) and not isinstance(value, bool)
+        _require(number and math.isfinite(value), value, place, "a finite number")
         return value  # a whole number stays one, so that hashes over the text stay the same
     if hint is type(None):
         return _require(value is None, value, place, "null")
@@ -137,7 +146,7 @@ def _decode_view(value: Any, place: str) -> View:
         with Image.open(io.BytesIO(base64.b64decode(value["png"]))) as image:
             rgb = np.asarray(image.convert("RGB"), dtype=np.uint8)
         return View(value["id"], value["camera_name"], float(value["time_s"]), rgb)
-    except (KeyError, OSError, TypeError) as error:
+    except (KeyError, OSError, TypeError, Image.DecompressionBombError) as error:
         raise ValueError(f"{place}: picture cannot be read: {error}") from error
 
 

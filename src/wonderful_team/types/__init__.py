@@ -1,6 +1,7 @@
 """The values that flow through the system: frozen, checked once when built, arrays read-only."""
 
 from wonderful_team.types.asked import Answer, Note, Part, Request, Usage, Words
+from wonderful_team.types.content import content_hash
 from wonderful_team.types.happened import GateCheck, GateReport, StepReport, SubgoalRun, Trial, Verdict
 from wonderful_team.types.planned import (
     NO_WORKSPACE,
@@ -54,4 +55,5 @@ __all__ = [
     "Verdict",
     "View",
     "Words",
+    "content_hash",
 ]

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, Literal, TypeAlias
+from typing import Any, ClassVar, Literal, TypeAlias
 
 from wonderful_team.pictures import Picture
 from wonderful_team.types.planned import Provenance
@@ -94,6 +95,23 @@ class Request:
     attempt: int = 0
     feedback: str = ""
     previous: Any = None
+
+    chat: ClassVar[Callable[..., list[dict[str, Any]]] | None] = None
+
+    def messages(self, pictures: Literal["data_url", "png"] = "data_url") -> list[dict[str, Any]]:
+        """The request as chat messages, for a client of a model of one's own.
+
+        A system message, and a user message whose content is a list of parts in the order they are shown:
+        {"type": "text", "text": ...} and {"type": "image_url", "image_url": {"url": "data:image/png;base64,..."}}. The last
+        text asks for one JSON object and holds its schema. After an answer that did not fit, that answer and what is wrong
+        with it follow.
+
+        Args:
+            pictures: data_url, or png: {"type": "image", "media_type": "image/png", "data": the PNG bytes}.
+        """
+        # Drawing lies above these types: the side that sends requests hands it in when it is loaded.
+        assert Request.chat is not None, "requests come from a team or a door, which load the drawing"
+        return Request.chat(self, pictures)
 
     @property
     def contract(self) -> str:

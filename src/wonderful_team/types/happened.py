@@ -91,6 +91,7 @@ class Trial:
         outcome: success | failure | error | unscored.
         stage: Where it failed: plan | grounding | wrong object | gate | execution | budget | … ; None on success.
         seed: Of the scene; None for a photo or a real robot.
+        judged: False when actions ran and neither a scorer nor the method judged what came of them.
     """
 
     scene: str
@@ -107,6 +108,7 @@ class Trial:
     usage_by_role: Mapping[str, Usage] = field(default_factory=dict)
     provenance: tuple[Provenance, ...] = ()
     setting: Mapping[str, Any] = field(default_factory=dict)
+    judged: bool = True
 
     @property
     def usage(self) -> Usage:

@@ -15,6 +15,7 @@ from wonderful_team.actions import Action, Step
 from wonderful_team.geometry import Box
 from wonderful_team.jsonable import to_jsonable
 from wonderful_team.pictures import Point
+from wonderful_team.types.content import content_hash
 from wonderful_team.types.seen import Instruction
 
 Provenance: TypeAlias = Literal["model", "offline", "simulated", "scripted", "cached", "injected", "replayed", "user"]
@@ -145,7 +146,7 @@ class Plan:
     """What the team made: checked, grounded, written as actions.
 
     Attributes:
-        id: Hash of what would run: steps, points and actions.
+        id: SHA-256 over every field: what is read and what would run, but not who answered.
         status: planned | draft | checked | grounded (stopped early on request) | not_found | not_understood |
             needs_clarification | refused | budget | failed.
         verified: Verification approved the plan and the steps.
@@ -179,9 +180,21 @@ class Plan:
 
     @cached_property
     def id(self) -> str:
-        """Hash of everything that decides what runs: 12 hex digits."""
+        """SHA-256 over everything that is read or run, in canonical form: 64 hex digits.
+
+        Who answered (provenance) is left out, so that a plan out of a cache or a replay is the same plan; it stands on the
+        plan's page, and an approval names the page's hash too.
+        """
+        return content_hash(self, without=("provenance",))
+
+    def short_id(self, scene_hash: str | None = None) -> str:
+        """What earlier releases called the plan: 12 hex digits over its steps, points, actions and regions.
+
+        Args:
+            scene_hash: What they called the picture; default as the plan has it.
+        """
         runs = {
-            "scene": self.scene_hash,
+            "scene": self.scene_hash if scene_hash is None else scene_hash,
             "steps": to_jsonable(self.steps),
             "actions": to_jsonable(self.actions),
             "points": {key: to_jsonable(dict(value.points)) for key, value in sorted(self.grounded.items())},

@@ -13,7 +13,7 @@ from wonderful_team.errors import ConfigError
 from wonderful_team.geometry import Camera
 from wonderful_team.geometry.arrays import Array
 from wonderful_team.notebook import card
-from wonderful_team.pictures import checked_depth, checked_rgb, picture_hash
+from wonderful_team.pictures import checked_depth, checked_rgb, picture_hash, pixels_hash
 from wonderful_team.text import counted, picture_names, spoken
 
 SlotKind: TypeAlias = Literal["object", "scene", "frame", "before", "after"]
@@ -81,8 +81,17 @@ class Observation:
 
     @cached_property
     def hash(self) -> str:
-        """Hash over all views, in order."""
+        """SHA-256 over the pixels of all views, in order: 64 hex digits."""
+        return hashlib.sha256("".join(pixels_hash(view.rgb) for view in self.views.values()).encode()).hexdigest()
+
+    @cached_property
+    def short_hash(self) -> str:
+        """What plans of earlier releases call it: 16 hex digits."""
         return hashlib.sha256("".join(view.hash for view in self.views.values()).encode()).hexdigest()[:16]
+
+    def is_called(self, named: str) -> bool:
+        """Whether a plan means this observation by the hash that it names."""
+        return named == self.hash or named == self.short_hash
 
     def _repr_html_(self) -> str:
         """In a notebook: every view, with what is known beside its pixels."""

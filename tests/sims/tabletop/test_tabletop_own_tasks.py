@@ -14,7 +14,7 @@ from wonderful_team.sims.tabletop import Scene, make_world, task, task_names
 OWN_FILE = '''
 from wonderful_team.sims.tabletop import task
 
-@task("mine/cups", instruction="put every {colour} cup into the {box}", horizon=4)
+@task("test/cups_of_a_file", instruction="put every {colour} cup into the {box}", horizon=4)
 def cups(scene, rng):
     """Two cups of one colour go into the box."""
     box = scene.add("container", "wooden")
@@ -37,8 +37,8 @@ def test_a_task_from_a_file_runs_and_can_be_loaded_twice(tmp_path: Path) -> None
     path.write_text(OWN_FILE, encoding="utf-8")
     _load(path)
     _load(path)
-    assert task_names()["mine/cups"] == "Two cups of one colour go into the box."
-    world = make_world("mine/cups", 1)
+    assert task_names()["test/cups_of_a_file"] == "Two cups of one colour go into the box."
+    world = make_world("test/cups_of_a_file", 1)
     assert world.instruction.text.startswith("put every ")
     assert "{colour}" not in world.instruction.text
     assert list(world.instruction.slots) == ["box"]

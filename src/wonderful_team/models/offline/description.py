@@ -26,10 +26,6 @@ NOUNS = ("thing", "object", "block", "container", "fruit", "area", "letter", "to
 """Canonical kinds of head noun. A shape word used as a noun ("the star") gives noun "object" with that shape.
 fruit names ("banana") give noun "fruit" and `name`."""
 
-MATERIALS = ("brick", "tile", "wood", "granite", "plastic", "tiger", "lava", "paisley")
-"""Canonical everyday surfaces that the eyes know by colour and texture together; the grammar maps synonyms (tiles,
-wooden, stone, marble, magma, tiger print, …). A material may come with colours ("red paisley")."""
-
 Relation: TypeAlias = Literal[
     "left_of", "right_of", "above", "below", "near", "far_from", "on", "inside", "between", "same_colour", "same_pattern",
     "same_shape",
@@ -77,7 +73,7 @@ class Description:
         colours: Canonical colours, all of which must show ("red and blue striped" has two).
         dark: True for "dark blue", False for "light blue", None when nothing is said.
         pattern, shape: Canonical, or None.
-        material: One of MATERIALS, or None; judged by its look in place of a pattern.
+        material: An everyday surface such as wood, or None; judged by its look in place of a pattern.
         superlative: Picks one among those that fit the rest ("the largest red one").
         ordinal: "second from the left" is ("leftmost", 2) in `superlative` and `ordinal`; 1 otherwise.
         like: Name of the instruction's picture that shows it, or None.

@@ -2,7 +2,7 @@
 
 from wonderful_team.models.providers.listing import server_models
 from wonderful_team.models.providers.make import make_provider
-from wonderful_team.models.providers.options import ModelOptions, check_prices, model_options
+from wonderful_team.models.providers.options import ModelOptions, PriceChoice, check_prices, model_options
 from wonderful_team.models.providers.provider import Provider
 from wonderful_team.models.providers.settings import Thinking
 from wonderful_team.models.providers.specs import SERVER_KEY, VENDORS, is_provider_spec, parse_spec
@@ -11,6 +11,7 @@ __all__ = [
     "SERVER_KEY",
     "VENDORS",
     "ModelOptions",
+    "PriceChoice",
     "Provider",
     "Thinking",
     "check_prices",

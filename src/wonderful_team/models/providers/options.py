@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import cast, get_args
+from typing import TypeAlias, cast, get_args
 
 from wonderful_team.errors import ConfigError, UnknownNameError
 from wonderful_team.interfaces import Model
@@ -39,9 +39,13 @@ class ModelOptions:
         return self.prices.get(role, self.prices.get(REST))
 
 
+PriceChoice: TypeAlias = str | Sequence[float] | GivenPrice
+"""One price: "IN,OUT", (IN, OUT), or a GivenPrice."""
+
+
 def model_options(
     thinking: str | Mapping[str, str] | None,
-    price: str | GivenPrice | Mapping[str, str | GivenPrice] | None,
+    price: PriceChoice | Mapping[str, PriceChoice] | None,
     local_only: bool,
     roles: Sequence[str],
 ) -> ModelOptions:
@@ -51,6 +55,10 @@ def model_options(
         UnknownNameError: A role that does not exist.
         ConfigError: A level or a price in another form.
     """
+    if not (thinking is None or isinstance(thinking, str | Mapping)):
+        raise ConfigError(
+            f"thinking {thinking!r}: valid are {', '.join(LEVELS)}, or a mapping from role to one of them"
+        )
     levels = {REST: thinking} if isinstance(thinking, str) else dict(thinking or {})
     prices = dict(price) if isinstance(price, Mapping) else {} if price is None else {REST: price}
     for role in (*levels, *prices):
@@ -59,7 +67,7 @@ def model_options(
     for role, level in levels.items():
         if level not in LEVELS:
             raise ConfigError(f"thinking {level!r} for {_who(role)}: valid are {', '.join(LEVELS)}")
-    held = {role: read_price(given) if isinstance(given, str) else given for role, given in prices.items()}
+    held = {role: given if isinstance(given, GivenPrice) else read_price(given) for role, given in prices.items()}
     return ModelOptions(cast(Mapping[str, Thinking], levels), held, local_only)
 
 

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from wonderful_team.errors import ConfigError
+from wonderful_team.text import user_path
 
 PYTHON_VARIABLE = "WONDERFUL_TEAM_VIMABENCH_PYTHON"
 PATH_VARIABLE = "WONDERFUL_TEAM_VIMABENCH_PATH"
@@ -39,14 +40,14 @@ def find_installation() -> Installation:
     """
     python, path = os.environ.get(PYTHON_VARIABLE, "").strip(), os.environ.get(PATH_VARIABLE, "").strip()
     if path:
-        folder = Path(path).expanduser().resolve()
+        folder = user_path(path).resolve()
         if not (folder / "vima_bench").is_dir():
             raise ConfigError(
                 f"{PATH_VARIABLE}={path!r}: valid is a checkout of VIMA-Bench, a folder that holds vima_bench/.\n{STEPS}"
             )
         path = str(folder)
     if python:
-        found = shutil.which(str(Path(python).expanduser()))
+        found = shutil.which(str(user_path(python)))
         if found is None:
             raise ConfigError(f"{PYTHON_VARIABLE}={python!r}: valid is a Python interpreter.\n{STEPS}")
         return Installation(str(Path(found).absolute()), path)

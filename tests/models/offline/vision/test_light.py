@@ -95,6 +95,29 @@ def test_a_grey_sheet_beside_a_thing_is_no_shadow() -> None:
     assert in_plain_light(picture) is picture
 
 
+def test_a_grained_grey_tray_is_no_shadow_of_its_rim() -> None:
+    shaded = table(shadow=0.55)
+    grain = np.random.default_rng(0).integers(0, 2, (320, 640))
+    drawing = Drawing(640, 320, TABLE, noise=1.0)
+    for share in np.linspace(0.02, 1.0, 50):
+        outline = round_shape((330, 160), 70) + np.array(LAMP) * 0.5 * share
+        drawing.add(
+            outline, lambda x, y: (95 + 60 * grain[: x.shape[0], : x.shape[1]])[..., None] * np.ones(3), height_m=0.0
+        )
+    drawing.add(round_shape((330, 160), 70), plain(BLUE), height_m=0.05)
+    grey = drawing.picture(depth=True)
+    assert in_plain_light(shaded) is not shaded
+    assert in_plain_light(grey) is grey
+
+
+def test_what_lies_round_a_table_tells_nothing_of_the_light() -> None:
+    drawing = Drawing(640, 320, (149, 153, 159), noise=1.0)
+    drawing.add(box_shape((320, 160), 480, 180), plain(TABLE))
+    drawing.add(box_shape((320, 160), 60, 60), plain(RED), height_m=0.05)
+    picture = drawing.picture()
+    assert in_plain_light(picture) is picture
+
+
 def test_marks_stay_with_their_own_picture() -> None:
     dim = table(light=WARM)
     marked = replace(dim, marks=(PointMark((10.0, 10.0), "1"),))

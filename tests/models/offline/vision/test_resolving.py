@@ -122,6 +122,18 @@ def test_an_example_of_a_texture_finds_another_shape_with_it() -> None:
     assert [round(match.point[0], -1) for match in found] == [150]
 
 
+def test_a_plain_tray_whose_bottom_lies_in_shade_has_the_colour_of_its_rim() -> None:
+    shade = (int(0.8 * RED[0]), int(0.8 * RED[1]), int(0.8 * RED[2]))
+    table = (
+        Drawing().add(box_shape((150, 150), 120, 120), plain(RED)).add(box_shape((150, 150), 106, 106), plain(shade))
+    )
+    table.add(round_shape((330, 150), 35), plain(RED)).add(round_shape((450, 150), 35), plain(PURPLE))
+    tray = Description("object", "", shape="square")
+    for relation in ("same_colour", "same_pattern"):
+        same = Description("object", "", quantity="all", related=(Related(relation, (tray,)),))
+        assert {round(match.point[0], -1) for match in resolve(see(table.picture()), same, {})} - {150} == {330}
+
+
 def test_a_missing_example_is_named() -> None:
     with pytest.raises(NotSeen, match="no example picture 'gone'"):
         resolve(see(ROW), Description("object", "", like="gone"), {})

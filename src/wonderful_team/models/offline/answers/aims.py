@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from typing import Literal
 
@@ -11,7 +10,9 @@ from wonderful_team.models.offline.answers.eyes import (
     NEARLY_EQUAL,
     Eyes,
     as_pictured,
+    is_shown_alone,
     one_of,
+    seen_as,
     side_words,
     told_apart,
     unique_words,
@@ -313,6 +314,8 @@ def _one(
         result.misses(single, eyes)
     if best is None or best.thing is None:
         return Named(single, None)
+    if is_shown_alone(single) and (seen := seen_as(eyes, best.thing)):
+        return Named(replace(single, text=seen), best.thing.number)
     plain = not (single.superlative or single.like or single.related)
     from_side = single.superlative in ("tallest", "shortest") and best.thing.height_m is None
     rivalled = plain and len(equal) == 1 and len(everything) > 1 and _rivalled(everything)
@@ -396,11 +399,6 @@ def already(eyes: Eyes, thing: Named, to: Named) -> bool:
     if inner is None or outer is None or inner.number == outer.number:
         return False
     return inner.on == outer.number or (outer.area_px > inner.area_px and covers(outer, inner.centre))
-
-
-def same_aims(one: Sequence[Aim], other: Sequence[Aim]) -> bool:
-    """Whether both hold the same aims in the same order."""
-    return len(one) == len(other) and all(a.same(b) for a, b in zip(one, other, strict=True))
 
 
 def _family(how: str) -> str:

@@ -21,7 +21,7 @@ from wonderful_team.contracts import (
 from wonderful_team.contracts.shown import ShownTask
 from wonderful_team.errors import NotUnderstoodError
 from wonderful_team.models.offline.answers.aims import Aim, Aims, derive
-from wonderful_team.models.offline.answers.eyes import Eyes, eyes_of_task, side_words, told_apart
+from wonderful_team.models.offline.answers.eyes import Eyes, eyes_of_task, is_shown_alone, side_words, told_apart
 from wonderful_team.models.offline.answers.instruction import read_task
 from wonderful_team.models.offline.answers.sweeping import place_words
 from wonderful_team.models.offline.answers.sweeps import way_places
@@ -49,6 +49,8 @@ class _Writer:
             words, where, pictures = place_words(description.way)
             return self._known(words, where, [name for name in pictures if name in self.slots], use, "area")
         words = render(replace(description, related=()))
+        if is_shown_alone(description) and "{" not in description.text:
+            words = description.text
         if description.placed is not None:
             words = render(replace(description, like=None))
         where = "; ".join(relation_words(related) for related in description.related)

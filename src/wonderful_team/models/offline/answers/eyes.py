@@ -209,6 +209,9 @@ def target_description(target: Target) -> Description:
     if placed is not None and placed.placed is not None:
         since = target.like[0] if len(target.like) > 1 else None
         return replace(placed, like=target.like[-1] if target.like else placed.like, since=since)
+    if target.like and "{" not in words and not target.where and "texture" not in target.like[0]:
+        # The words say what the thing looks like; the picture decides.
+        return Description(noun="object", text=words, like=target.like[0])
     if target.like:
         description = try_describe(words, target.where) or try_describe(words)
         if description is None:
@@ -284,6 +287,20 @@ def side_words(side: str) -> str:
         row, column = side.split()
         return f"in the {'top' if row == 'topmost' else 'bottom'} {'left' if column == 'leftmost' else 'right'} corner"
     return _PICTURE_SIDES[side]
+
+
+def is_shown_alone(description: Description) -> bool:
+    """Whether nothing but an example picture says which thing is meant."""
+    told = description.superlative or description.related or description.placed or description.excluded
+    return description.like is not None and description.like_only is None and not told
+
+
+def seen_as(eyes: Eyes, thing: Thing) -> str:
+    """Words such as "turquoise letter G" that lead to this thing alone wherever it lies, or "" where none do."""
+    letters = thing.look.letters
+    letter = thing.look.shape == "letter" and max(letters, key=lambda name: letters[name])
+    words = unique_words(eyes, thing, "letter", letter) if letter else unique_words(eyes, thing, "object")
+    return words.text if words.superlative is None and eyes.number(words) == thing.number else ""
 
 
 def told_apart(eyes: Eyes, thing: Thing, noun: str, name: str = "", shape: str | None = None) -> str:

@@ -200,9 +200,10 @@ def _plain_post(tree: Tree[Token]) -> Change:
     def change(description: Description) -> Description:
         if "EXCEPT" in kinds:
             return _except(tree, description)
-        if "SAME" in kinds:
+        if set(kinds) & {"SAME", "ITS", "WHOSE"}:
             aspect = str(value_of(next(token for token in tokens_in(tree) if token.type == "ASPECT")))
-            reference = thing_of(next(trees(tree, "np")))
+            named = [thing_of(np) for np in trees(tree, "np")]
+            reference = named[0] if named else Description(noun="thing", name=PRONOUN, text=PRONOUN)
             return replace(description, related=(*description.related, Related(_SAME[aspect], (reference,))))  # type: ignore[arg-type]
         if "SUPER" in kinds and "TO" in kinds:
             reference = thing_of(next(trees(tree, "np")))

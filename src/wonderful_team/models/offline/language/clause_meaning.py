@@ -149,21 +149,21 @@ def read_tower(parts: Parts, meaning: Meaning) -> None:
     meaning.tower_of_pairs(list(zip(listed[1:], listed[:-1], strict=True)))
 
 
+def read_contain(parts: Parts, meaning: Meaning) -> None:
+    """The words "the bowl must contain the block", "cover the area with the block"."""
+    nps = parts.of("np")
+    if len(nps) < _TWO:
+        raise Unclear("it is not clear what goes where")
+    holder, *things = nps
+    for item in things:
+        for thing in split_colours(item):
+            meaning.put(thing, Destination("in", holder))
+
+
 def read_back(parts: Parts, meaning: Meaning) -> None:
     """Things go back to where they stood."""
     things = _things(parts, meaning)
     meaning.back([thing for thing in things if thing.name != "table"])
-
-
-def read_accordingly(parts: Parts, meaning: Meaning) -> None:
-    """The words "Sort the fruits onto the areas accordingly": each goes to the one that shares its colour, or what is named."""
-    nps = parts.of("np")
-    aspect = next((str(value) for value in parts.of("ASPECT")), "colour")
-    things = _things(parts, meaning)
-    kinds = [item for item in nps if item not in things and item.noun in ("area", "container", "object")]
-    if len(things) != 1 or len(kinds) != 1:
-        raise Unclear("name what is sorted and where to")
-    meaning.match(things[0], kinds[0], aspect)
 
 
 def read_put(parts: Parts, meaning: Meaning) -> None:
@@ -173,7 +173,10 @@ def read_put(parts: Parts, meaning: Meaning) -> None:
     passed_over = parts.kinds & {"origin", "angle", "again", "turn", "ASPECT", "MEASURE", "FACE", "OPPOSITE", "STACK"}
     if passed_over:
         raise Unclear(f"it is not clear what {', '.join(sorted(passed_over)).lower()} is for")
-    kind = "push" if "PUSH" in parts.kinds else "put"
+    goes = bool(parts.kinds & {"PUT", "PUSH", "RETURN"})
+    wants = goes or bool(parts.kinds & {"AUX", "WANT", "GIVE", "SORT", "TAKE", "LEAVE"})
+    again = not wants and bool(meaning.done) and meaning.done[-1].kind == "push"
+    kind = "push" if again or "PUSH" in parts.kinds else "put"
     special = next((reader for word, reader in _SPECIAL.items() if word in parts.kinds), None)
     if special is not None:
         special(parts, meaning, kind)
@@ -181,8 +184,8 @@ def read_put(parts: Parts, meaning: Meaning) -> None:
     things = _things(parts, meaning)
     pairs, source = _placed_pairs(parts)
     sides = parts.of("side")
-    goes = bool(parts.kinds & {"PUT", "PUSH", "RETURN"})
-    wants = goes or bool(parts.kinds & {"AUX", "WANT", "GIVE", "SORT", "TAKE", "LEAVE"})
+    if sides and pairs:
+        raise Unclear("it is not clear what is at that side")
     if "REMOVE" in parts.kinds or (source is not None and not pairs and not sides and wants):
         _away(things, source, meaning, sure="REMOVE" in parts.kinds)
     elif pairs:
@@ -315,6 +318,10 @@ def _without_place(parts: Parts, things: list[Description], meaning: Meaning, go
     """Only names things, or goes on from the clause before."""
     if not things:
         raise Unclear("it names nothing to be moved")
+    if meaning.last_angle is not None and not meaning.done and not goes:
+        for thing in things:
+            meaning.turn(thing, meaning.last_angle)  # "by 30 degrees: the star"
+        return
     if goes and meaning.last_goal is None and len(things) == 1 and things[0].name != PRONOUN:
         meaning.pending_put = things[0]  # "move the block: it belongs in the bowl"
     elif goes and meaning.last_goal is None:

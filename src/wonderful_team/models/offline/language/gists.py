@@ -1,7 +1,6 @@
-"""Simple wishes read by what they hold, whatever the order of their words.
+"""The wish "everything with the texture of {x} goes into it", read by what it holds, whatever the order of its words.
 
-Each gist has its own closed list of kinds of words: a clause with any other word is not read here. What the clause holds
-must settle alone what is meant: one thing and one angle, one thing and one container, one container and what it shares.
+A clause with any word outside a closed list of kinds is not read here.
 """
 
 from __future__ import annotations
@@ -17,18 +16,10 @@ from wonderful_team.models.offline.language.wording import render
 _SAID = frozenset(
     "AUX GIVE WANT OF IT WITH FOR AS AND COMMA SEP ON_TABLE TABLE AROUND THAT THEY TAKE LIKE LOOK FROM THERE".split()
 )
-_TURN = _SAID | frozenset(
-    "ROTATE TURN ANGLE SLOT NOUN BY TO MEASURE SIDE_POST FACE ITS IN ENOUGH ONE SHARE NEAR PUT".split()
-)
-_PUT = (_SAID - {"FROM"}) | frozenset(
-    "PUT PUSH IN INTO TO ON ONTO CONTAIN FILL SLOT NOUN ONE_OF NUMBER ALL EACH SHARE ONE FREE WHERE THEN EVERYTHING RETURN".split()
-)
 _GATHER = _SAID | frozenset(
     "PUT SORT IN INTO TO ON ONTO CONTAIN FILL SLOT NOUN ALL EACH EVERYTHING SHARE SAME MATCH ASPECT SHAPED WHOSE ITS BY WHERE THEN".split()
 )
-_INTO = ("IN", "INTO", "TO", "ON", "ONTO", "CONTAIN", "FILL")
 _SAME = {"texture": "same_pattern", "colour": "same_colour", "shape": "same_shape"}
-_TWO = 2
 
 
 def gist_of_gathering(tokens: Sequence[Token]) -> Command | None:
@@ -85,117 +76,9 @@ def _meant_elsewhere(tokens: Sequence[Token]) -> bool:
     return any(token.kind in ("ON_TABLE", "TABLE") for token in tokens)
 
 
-def gist_of_turning(tokens: Sequence[Token]) -> Command | None:
-    """One pictured thing and one angle: the thing is turned by it; None for others."""
-    kinds = {token.kind for token in tokens}
-    names = {str(token.value) for token in tokens if token.kind == "SLOT"}
-    angles = {float(token.value) for token in tokens if token.kind == "ANGLE"}  # type: ignore[arg-type]
-    ways = {float(token.value) for token in tokens if token.kind == "TURN"}  # type: ignore[arg-type]
-    sides = {str(token.value) for token in tokens if token.kind == "SIDE_POST"}
-    ways |= {-1.0 if side == "leftmost" else 1.0 for side in sides}
-    if (
-        len(names) != 1
-        or len(angles) != 1
-        or len(ways) > 1
-        or not kinds <= _TURN
-        or not sides <= {"leftmost", "rightmost"}
-    ):
-        return None
-    if not kinds & {"ROTATE", "TURN", "FACE", "MEASURE"} or any(map(_plural, tokens)):
-        return None
-    return Command("rotate", _shown(names.pop()), rotate_deg=angles.pop() * (ways.pop() if ways else 1.0))
-
-
-def gist_of_putting(tokens: Sequence[Token]) -> Command | None:
-    """Two pictured things, one of them after a word for going into: the other goes into it; None for others."""
-    kinds = {token.kind for token in tokens}
-    if not kinds <= _PUT or not kinds & {"PUT", "PUSH", "AUX", "GIVE", "WANT", "CONTAIN", "FILL", "SHARE", "LEAVE"}:
-        return None
-    if {str(token.text) for token in tokens if token.kind == "SEP"} - {".", ":", ";", "?", "!"}:
-        return None
-    named = list(dict.fromkeys(str(token.value) for token in tokens if token.kind == "SLOT"))
-    if len(named) != _TWO:
-        return None
-    if "AS" in kinds:
-        # "use {x} as the container"
-        held = {
-            str(tokens[k].value)
-            for k in range(len(tokens) - 1)
-            if tokens[k].kind == "SLOT" and _after(tokens, k) == "AS"
-        }
-        named = [name for name in named if name not in held] + list(held)
-    else:
-        held = set()
-    held |= {
-        str(tokens[k].value)
-        for k in range(1, len(tokens))
-        if tokens[k].kind == "SLOT" and _before(tokens, k) in ("IN", "INTO", "TO", "ON", "ONTO")
-    }
-    holders = {
-        str(tokens[k].value) for k in range(len(tokens)) if tokens[k].kind == "SLOT" and _after(tokens, k) == "receives"
-    } | (
-        {
-            str(tokens[k].value)
-            for k in range(1, len(tokens))
-            if tokens[k].kind == "SLOT" and _before(tokens, k) == "FILL"
-        }
-    )
-    places = held if not holders else holders
-    if len(places) != 1:
-        return None
-    place = next(iter(places))
-    thing = next(name for name in named if name != place)
-    what = _counted(tokens, thing)
-    kind = "push" if "PUSH" in kinds else "put"
-    return Command(kind, what, Destination("in", _shown(place)))  # type: ignore[arg-type]  # fmt: skip
-
-
-def _before(tokens: Sequence[Token], at: int) -> str:
-    """The kind of the word before a picture, nouns that name it passed over."""
-    at -= 1
-    while at > 0 and tokens[at].kind in ("NOUN", "LIKE", "THAT"):
-        at -= 1
-    return tokens[at].kind if at >= 0 else ""
-
-
-def _after(tokens: Sequence[Token], at: int) -> str:
-    """The kind of the word after a picture, helping verbs passed over."""
-    at += 1
-    while at < len(tokens) - 1 and tokens[at].kind == "AUX":
-        at += 1
-    if at < len(tokens) and _receives(tokens[at]):
-        return "receives"
-    return tokens[at].kind if at < len(tokens) else ""
-
-
-def _counted(tokens: Sequence[Token], name: str) -> Description:
-    """How many of what a picture shows."""
-    description = _shown(name)
-    for k, token in enumerate(tokens):
-        if token.kind == "SLOT" and token.value == name:
-            for before in tokens[max(0, k - 4) : k][::-1]:
-                if before.kind in ("ALL", "EACH"):
-                    return _worded(Description("object", "", like=name, quantity="all"))
-                if before.kind in ("NUMBER", "ONE_OF"):
-                    number = int(float(before.value)) if before.kind == "NUMBER" else 1  # type: ignore[arg-type]
-                    return _worded(Description("object", "", like=name, quantity="number", number=number))
-                if before.kind not in ("OF", "NOUN", "THAT", "ONE", "LIKE"):
-                    break
-    return description
-
-
 def _shown(name: str) -> Description:
     return _worded(Description("object", "", like=name))
 
 
 def _worded(description: Description) -> Description:
     return replace(description, text=render(description))
-
-
-def whole_gist(tokens: Sequence[Token]) -> tuple[Command, ...]:
-    """The command of a text that is one simple wish; () for any other."""
-    for reader in (gist_of_turning, gist_of_putting):
-        command = reader(tokens)
-        if command is not None:
-            return (command,)
-    return ()

@@ -1,4 +1,4 @@
-"""The grammar of instructions and noun phrases, over tokens of the vocabulary (lark, Earley)."""
+"""The grammar of noun phrases, over tokens of the vocabulary (lark, Earley)."""
 
 from __future__ import annotations
 
@@ -22,93 +22,6 @@ KINDS = (
 GRAMMAR = rf"""
 %declare {KINDS}
 
-sentence: SHARE? (clause | ellipsis) (join (clause | ellipsis))*
-join: THEN | SEP | AND | COMMA
-?clause: put | contain | rotate | stack | push | sort | swap
-ellipsis: things goal
-
-put: _put_words
-_put_words: WANT? PUT things goal
-    | PUT goal things
-    | goal COMMA? PUT things
-    | (TAKE | PUT) things ON? (AND | COMMA | THEN | SEP)? PUT IT? goal
-    | ON_TABLE things (AND | COMMA | THEN | SEP)? PUT IT goal
-    | (TAKE | PUT) things goal (AND | COMMA | THEN) PUT IT (IN | INTO | ON | THERE)?
-    | (PUT | GIVE | TAKE | SORT | WANT) things THAT? (IT | THEY) AUX* goal
-    | (GIVE | TAKE) things AUX+ goal
-    | TAKE things goal
-    | things AUX+ PUT? goal
-    | (WANT | SHARE) things AUX* PUT? goal
-    | WANT PUT things goal
-    | FOR things COMMA? PUT things goal
-    | WANT things IN? AUX PUT goal
-    | (LEAVE | GIVE) things goal
-
-contain: np AUX* CONTAIN things
-    | FILL np WITH things
-
-rotate: ROTATE things angle
-    | LEAVE things (AND | COMMA | THEN | SEP)? ROTATE IT angle
-    | ROTATE angle things
-    | angle COMMA? ROTATE things
-    | (ROTATE | GIVE | TAKE) things (THAT | AND | COMMA | THEN)? IT? AUX* ROTATE IT? angle
-    | (WANT | SHARE) things AUX* ROTATE angle
-    | WANT angle ROTATE? OF things
-    | things AUX+ ROTATE? angle
-    | GIVE things angle ROTATE?
-    | GIVE things ROTATE (OF | BY) angle
-    | GIVE angle ROTATE? (OF | TO | ON | WITH | FOR) things
-    | GIVE ROTATE (OF | BY) angle (TO | ON | OF | WITH | FOR) things
-    | GIVE ROTATE (OF | TO | ON) things angle
-    | ROTATE OF things angle
-angle: (BY | TO | OF)? ANGLE (TURN | SIDE_POST | IN? TURN)?
-    | TURN (BY | OF | COMMA)? ANGLE
-    | (BY | OF)? TURN ANGLE
-
-stack: STACK things (COMMA? (ON | ONTO | IN | INTO) np)+
-push: PUSH things goal | WANT things AUX* PUSH goal | things AUX+ PUSH goal
-    | PUSH things SIDE | PUSH goal things | goal COMMA? PUSH things | TAKE things (AND | COMMA | THEN)? PUSH IT? goal
-swap: SWAP np (AND | WITH | FOR) np
-sort: MATCH things (WITH | TO | AND) goal
-    | SORT things THAT (EACH (ONE | NOUN)? | ALL | IT | THEY) AUX* PUT? goal
-    | SORT things (BY | ON | IN | INTO | TO) ASPECT
-    | SORT things goal
-    | SORT things (BY | ON) (ITS | SAME)? ASPECT goal
-
-goal: goal_at | goal_where | goal_between | goal_origin | goal_match | goal_side | goal_there
-goal_at: ORIGIN? where np
-goal_between: (IN | INTO | TO)? BETWEEN np (AND np)?
-goal_origin: ORIGIN
-goal_where: (TO | IN | ON)? WHERE np AUX
-goal_side: SIDE_POST ON_TABLE? | (TO | IN | ON)? CORNER ON_TABLE?
-goal_there: THERE | (IN | INTO | ON | ONTO | TO) THAT NOUN
-goal_match: where? matched
-where: IN | INTO | ON | ONTO | TO | LEFT_OF | RIGHT_OF | ABOVE | BELOW | near | TO IN | NEAR TO
-near: NEAR | BY
-
-matched: (THAT | ITS)? (SAME | MATCH | ITS)+ ASPECT* (NOUN | SHAPE | ONE)
-    | (adj | ASPECT)* (NOUN | SHAPE | ONE) match_post ON_TABLE?
-match_post: (THAT | OF | WITH | IN | AUX | SHARE)* ITS? (SAME | MATCH)+ ASPECT (AS back)?
-    | (THAT | OF | WITH | IN | AUX | SHARE | ITS)* ITS SAME? ASPECT
-    | THAT? AUX? MATCH
-    | THAT? MATCH (ITS | SAME)? ASPECT (OF back)?
-    | THAT? MATCH (IT | NOUN) ((IN | BY)? ASPECT)?
-    | THAT? MATCH (IN | BY) ASPECT
-    | WHOSE ASPECT (AUX SAME | MATCH | SHARE SAME | AUX? LIKE) AS? back?
-    | (THAT SHARE | WITH | OF | IN) ASPECT (THAT AUX?)? MATCH back?
-    | (THAT AUX | OF | WITH | IN)? ASPECT LIKE back
-    | WHOSE ASPECT IT SHARE
-    | WITH THAT IT SHARE ITS? SAME? ASPECT
-    | THAT IT (MATCH | SHARE) (IN | BY)? ASPECT
-    | THAT SHARE ITS? ASPECT
-    | IN? THAT (AUX | SHARE) SAME (AS back)?
-back: IT | NOUN | ITS ASPECT | THAT (OF (IT | NOUN))? | NOUN ASPECT | ASPECT OF (IT | NOUN) | SHAPE | ITS | ONE
-
-things: np (joiner np)* had_match?
-joiner: AND | COMMA
-had_match: THAT? (SHARE | WITH) matched
-    | WITH matched
-
 np: THAT? quantity? adj* head plain_post*
     | THAT? quantity? adj* head plain_post* post+
     | PLACE_OF np in_slot?
@@ -127,6 +40,8 @@ plain_post: SIDE_POST | ON_TABLE | CORNER | (IN | ON)? CORNER | FROM SIDE_POST |
     | (WITH | OF | THAT SHARE) SLOT ASPECT
     | IN ASPECT
     | (WITH | OF | IN | THAT SHARE | THAT AUX)+ SAME ASPECT (AS | OF) np
+    | (WITH | OF | IN) (ITS | SAME | ITS SAME) ASPECT
+    | WHOSE ASPECT AUX? LIKE (THAT OF)? np
     | SUPER TO np | THAT AUX SUPER TO np | COMMA? EXCEPT (FOR | IN)? np (spared np)*
     | SHAPED SLOT | SHAPED SHAPE | SHAPED LETTER
 spared: AND | COMMA
@@ -134,10 +49,8 @@ in_slot: (IN | FROM | ON) SLOT
 post: THAT? AUX* PUT? relation np
     | THAT? AUX* BETWEEN np AND np
     | THAT? AUX* BESIDE_IT (OF np)?
-relation: LEFT_OF | RIGHT_OF | ABOVE | BELOW | near | FAR | ON | IN
+relation: LEFT_OF | RIGHT_OF | ABOVE | BELOW | NEAR | BY | FAR | ON | IN
 """
-"""`goal` against `post`: "the block left of the bowl" may end a noun phrase or start a goal; the reader picks the tree
-whose moved thing is simplest (see `reading.py`)."""
 
 
 class _TokenLexer(Lexer):  # type: ignore[misc]
@@ -158,7 +71,7 @@ def _parser() -> Lark:
         parser="earley",
         lexer=_TokenLexer,
         ambiguity="explicit",
-        start=["sentence", "np", "things", "goal", "post"],
+        start=["np", "post"],
         maybe_placeholders=False,
     )
 
@@ -178,7 +91,7 @@ def simplest(tree: Tree[Token]) -> tuple[Tree[Token], float]:
     """The cheapest of all readings: every relation costs one, inside the moved thing a little more."""
     if tree.data == "_ambig":
         return min((simplest(child) for child in tree.children if isinstance(child, Tree)), key=lambda pair: pair[1])
-    cost = {"post": 1.0, "joiner": 0.2, "matched": -0.5, "in_slot": 1.2, "goal_there": -0.8}.get(str(tree.data), 0.0)
+    cost = {"post": 1.0, "in_slot": 1.2}.get(str(tree.data), 0.0)
     if tree.data == "relation" and tree.children and getattr(tree.children[0], "type", "") in ("IN", "ON"):
         cost += 0.6
     if tree.data == "np" and tree.children and getattr(tree.children[0], "type", "") == "THAT":
@@ -188,8 +101,6 @@ def simplest(tree: Tree[Token]) -> tuple[Tree[Token], float]:
         if isinstance(child, Tree):
             best, child_cost = simplest(child)
             cost += child_cost
-            if best.data == "things" and tree.data != "things":
-                cost += 0.5 * sum(1 for _ in best.find_data("post"))
             if (
                 best.data == "plain_post"
                 and len(best.children) == 1

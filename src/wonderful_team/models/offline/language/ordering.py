@@ -25,14 +25,6 @@ _OPENED = (
         r"(?:\b(?:that|which)\s+)?(?:\bwas\s+)?(?:\b(?:previously|formerly|originally|initially)\s+)(?=(?:north|south|east|west|left|right) of )",
         " ",
     ),
-    (r"\b(?:northern|northward) (?:neighbou?r)\b", "object beside_north"),
-    (r"\b(?:southern|southward) (?:neighbou?r)\b", "object beside_south"),
-    (r"\b(?:eastern|right(?: hand)?) (?:neighbou?r)\b", "object beside_east"),
-    (r"\b(?:western|left(?: hand)?) (?:neighbou?r)\b", "object beside_west"),
-    (
-        r"\b(?:its|the) (?:old |former |previous )?neighbou?r (?:to|in|on|at) the (north|south|east|west|left|right)\b",
-        r"the object beside_\1",
-    ),
     (
         r"\bwhat(?:ever)?\s+(?:is(?: shown)?|you (?:can )?see|can be seen|shows)\s+in\s+(?:the (?:picture|image) )?(?=\{)",
         "the object shown in ",

@@ -20,13 +20,13 @@ from wonderful_team.models.offline.language.clause_parts import PLACES, VERBS, U
 from wonderful_team.models.offline.language.commands import Command, Understood
 from wonderful_team.models.offline.language.conditions import open_conditions
 from wonderful_team.models.offline.language.framing import without_frames
-from wonderful_team.models.offline.language.gists import gist_of_gathering, whole_gist
+from wonderful_team.models.offline.language.gists import gist_of_gathering
 from wonderful_team.models.offline.language.grammar import parse
 from wonderful_team.models.offline.language.meaning import Meaning
 from wonderful_team.models.offline.language.ordering import in_order
 from wonderful_team.models.offline.language.plain_speech import put_plainly
 from wonderful_team.models.offline.language.references import with_noun, with_nouns
-from wonderful_team.models.offline.language.slots import BY_PARTS, gist_of_matching, read_clauses
+from wonderful_team.models.offline.language.slots import gist_of_matching, read_clauses
 from wonderful_team.models.offline.language.tokens import Token, refusal, tokenise
 from wonderful_team.models.offline.language.turns_of_phrase import turned
 from wonderful_team.models.offline.language.vocabulary import nearest_words
@@ -123,17 +123,10 @@ def _goes_anywhere(command: Command) -> bool:
 
 
 def _commands(tokens: list[Token], words: str, text: str) -> tuple[Command, ...]:
-    """Commands by the grammar; by parts where it knows no such order of words; by the gist where all says "matching"."""
+    """Commands clause by clause; by the gist where all says "matching"."""
     gathered = gist_of_gathering(tokens)
     if gathered is not None:
         return (gathered,)
-    tree = None if any(token.kind in BY_PARTS for token in tokens) else parse(tokens, "sentence")
-    missed = ""
-    if tree is not None:
-        try:
-            return Meaning().commands(tree)
-        except NotUnderstoodError as error:
-            missed = str(error)
     try:
         every = _joined(
             tokenise(re.sub(r"\b(?:if|when|whenever|wherever|provided)\b", " ", words, flags=re.IGNORECASE))
@@ -147,11 +140,9 @@ def _commands(tokens: list[Token], words: str, text: str) -> tuple[Command, ...]
         commands = read_clauses(tokens, Meaning())
     except (Unclear, NotUnderstoodError) as error:
         matching = gist_of_matching(tokens)
-        commands = whole_gist(tokens) if matching is None else (matching,)
-        if commands:
-            return commands
-        raise NotUnderstoodError(_no_sentence(text, tokens, missed or str(error))) from error
-    commands = commands or whole_gist(tokens)
+        if matching is not None:
+            return (matching,)
+        raise NotUnderstoodError(_no_sentence(text, tokens, str(error))) from error
     if not commands:
         raise NotUnderstoodError(_no_sentence(text, tokens, "nothing in it says what to do"))
     return commands

@@ -1,4 +1,4 @@
-"""Reading a clause by its parts where the grammar knows no such order of words.
+"""Reading a clause by its parts, whatever their order.
 
 A clause is cut into noun phrases, places, angles and verbs; what each part is follows from the words beside it. Every word
 must find its part, and the parts must make a whole: else the clause is refused.
@@ -11,23 +11,21 @@ from dataclasses import replace
 
 from wonderful_team.models.offline.description import Description
 from wonderful_team.models.offline.language.clause_meaning import (
-    read_accordingly,
     read_back,
+    read_contain,
     read_put,
     read_swap,
     read_tower,
     read_turn,
 )
-from wonderful_team.models.offline.language.clause_parts import PLACES, VERBS, Unclear, parts_of
+from wonderful_team.models.offline.language.clause_parts import PLACES, STARTS, VERBS, Unclear, parts_of
 from wonderful_team.models.offline.language.commands import Command, Destination
 from wonderful_team.models.offline.language.gists import gist_of_gathering
-from wonderful_team.models.offline.language.grammar import parse
 from wonderful_team.models.offline.language.meaning import Meaning
 from wonderful_team.models.offline.language.tokens import Token
 from wonderful_team.models.offline.language.wording import render
 
-BY_PARTS = frozenset(("STACK", "FORMER", "LATTER", "AROUND", "RESPECTIVELY"))
-"""Words whose clauses are always read by their parts."""
+_INTO = ("IN", "INTO", "ON", "ONTO", "TO")
 
 
 def clauses(tokens: Sequence[Token]) -> list[tuple[list[Token], bool]]:
@@ -41,11 +39,13 @@ def clauses(tokens: Sequence[Token]) -> list[tuple[list[Token], bool]]:
             token.kind in ("AND", "COMMA")
             and after in VERBS
             and any(t.kind in VERBS or t.kind in ("AUX", "SLOT", "NOUN", "SHAPE", "IT") for t in current)
+            and not (not out and current[0].kind in PLACES and not any(t.kind in VERBS for t in current))
         )
         back = (
             token.kind in ("AND", "COMMA") and _back_follows(tokens, index) and any(t.kind in PLACES for t in current)
         )
-        if token.kind in ("SEP", "THEN") or joins or back:
+        again = token.kind in ("AND", "COMMA") and _goes_on(current, tokens[index + 1 :])
+        if token.kind in ("SEP", "THEN") or joins or back or again:
             if current:
                 out.append((current, then))
                 current, then = [], False
@@ -55,6 +55,16 @@ def clauses(tokens: Sequence[Token]) -> list[tuple[list[Token], bool]]:
     if current:
         out.append((current, then))
     return out
+
+
+def _goes_on(before: Sequence[Token], after: Sequence[Token]) -> bool:
+    """Whether another thing and its place follow: "the banana in the bowl and the apple on the plate"."""
+    end = next((k for k, token in enumerate(after) if token.kind in ("AND", "COMMA", "SEP", "THEN")), len(after))
+    kinds = [token.kind for token in after[:end]]
+    if not kinds or kinds[0] not in STARTS or set(kinds) & {"AUX", "CONTAIN", "THAT", *VERBS}:
+        return False
+    went = any(token.kind in _INTO for token in before) and before[-1].kind not in _INTO
+    return went and not any(token.kind == "STACK" for token in before) and any(kind in PLACES for kind in kinds[1:-1])
 
 
 def _back_follows(tokens: Sequence[Token], at: int) -> bool:
@@ -89,10 +99,6 @@ def _read(clause: Sequence[Token], meaning: Meaning) -> None:
         assert gathered.to is not None  # it goes into something
         meaning.put(gathered.thing, gathered.to)
         return
-    tree = None if any(token.kind in BY_PARTS for token in clause) else parse(list(clause), "sentence")
-    if tree is not None:
-        meaning.commands(tree)
-        return
     parts = parts_of(clause, meaning)
     kinds = parts.kinds
     if "SWAP" in kinds:
@@ -103,12 +109,12 @@ def _read(clause: Sequence[Token], meaning: Meaning) -> None:
         or (kinds & {"ROTATE", "FACE"} and not kinds & {"PUT", "place"})
     ):
         read_turn(parts, meaning)
+    elif kinds & {"CONTAIN", "FILL"}:
+        read_contain(parts, meaning)
     elif "STACK" in kinds:
         read_tower(parts, meaning)
     elif kinds & {"RETURN", "origin"} and "place" not in kinds:
         read_back(parts, meaning)
-    elif "ACCORDING" in kinds:
-        read_accordingly(parts, meaning)
     else:
         read_put(parts, meaning)
 
@@ -124,7 +130,7 @@ def gist_of_matching(tokens: Sequence[Token]) -> Command | None:
                 "RIGHT_OF", "NEAR", "ABOVE", "BELOW", "SLOT", "ORIGIN", "RETURN", "EXCEPT", "REMOVE", "PUSH", "ROTATE", "FAR"}:  # fmt: skip
         return None
     says = kinds & {"MATCH", "SAME", "ACCORDING"} or (kinds & {"ITS", "BY"} and "ASPECT" in kinds)
-    if not says or not kinds & {"PUT", "SORT", "AUX", "GIVE", "TAKE"}:
+    if not says or not kinds & {"PUT", "SORT", "AUX", "GIVE", "TAKE", "MATCH"}:
         return None
     nouns: list[tuple[str, str]] = []
     for token in tokens:
@@ -135,10 +141,12 @@ def gist_of_matching(tokens: Sequence[Token]) -> Command | None:
                 nouns.append(item)
     places = [item for item in nouns if item[0] in ("area", "container")]
     moved = [item for item in nouns if item[0] not in ("area", "container")]
+    if not places and "SORT" in kinds:
+        places = [("area", "")]
     if len(moved) != 1 or len(places) != 1:
         return None
     aspect = next((str(token.value) for token in tokens if token.kind == "ASPECT"), "colour")
-    thing = Description(moved[0][0], "", moved[0][1], quantity="each")
+    thing = Description(moved[0][0], "", moved[0][1], quantity="each" if "EACH" in kinds else "all")
     place = Description(places[0][0], "", places[0][1])
     goal = Destination("matching", replace(place, text=render(place)), aspect=aspect)  # type: ignore[arg-type]
-    return Command("put", replace(thing, text=render(thing)), goal, conditional=True)
+    return Command("put", replace(thing, text=render(thing)), goal, conditional="SORT" in kinds)

@@ -18,7 +18,7 @@ _SHORT = (
 _TURNS = (
     *_SHORT,
     (r"\b(left|right)[ -]hand\b(?= side)", r"\1"),
-    (r"\bover (?=(?:to|on|onto) the (?:left|right|other)\b)", ""),
+    (r"\bover (?=(?:to|on|onto) the (?:left|right|other)\b|and\b)", ""),
     (r"(?:\b(?:on|at|to|towards|in) )(?P<what>(?:the |\{)[^,.;:'\u2019]+?)['\u2019]s (?P<side>left|right)(?: (?:hand )?side)?\b", r"to the \g<side> of \g<what>"),
     (r"\b(?:whichever|whatever) (?P<what>[a-z]+) (?=(?:is|are|has|have)\b)", r"the \g<what> that "),
     (rf"^\s*(?:out of|from|of|among|amongst) (?:all )?(?:of )?(?P<what>(?:the |these |those )?[a-z ]+?)\s*,\s*(?P<rest>.*?)\bthe (?:one (?:that is )?)?{_WHICH}(?: ones?)?\b", r"\g<rest>the \g<which> of the \g<what>"),
@@ -31,6 +31,7 @@ _TURNS = (
     (rf"\b(?:after|once|when|as soon as) (?!(?:there|it|they|you|such|an?|one|this|that)\b)(?P<a>[^,;.]+?) (?:is|are|lies|sits|was|(?:has|have) (?:been|landed))(?: put| placed| set| moved)? (?P<w>{_PLACE}) (?P<b>[^,;.]+?)\s*,", r"put \g<a> \g<w> \g<b>, then "),
     (r",?\s*\bbefore (?:it )?(?:going|returning|being (?:put|brought|taken)|(?:goes|is (?:put|brought|taken))) (?=back|to (?:its|the) (?:own|original|old))", ", then goes "),
     (r"\b(?P<go>(?:go|belong)(?:es|s)?|should|must|need|are) both\b|\bboth (?=(?:go|belong|should|must|need|are|have)\b)", r"\g<go> "),
+    (r"\buse (?P<a>(?:the )?\{[^{}]+\}) as (?:the|a) (?:container|place|target)\b", r"take \g<a>"),
     (r"\buse (?:the|your|its) (?:gripper|arm|hand|tool|suction cup|robot) to\b", " "),
     (r"\bit would be (?:great|good|nice|lovely|helpful) if (?P<what>[^,.;]+?) (?:was|were|is|could be)\b", r"\g<what> should be"),
     (r"\b(?:i|we) (?:would )?(?:like|want|love) to have\b", "i want"),

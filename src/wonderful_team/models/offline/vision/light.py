@@ -40,11 +40,17 @@ _DARK = (0.9, 1.2)
 _DARKEST, _LIGHTEST = 0.2, 0.93
 """Share of the light that may be left in a shadow."""
 
+_BRIGHTER, _LARGE = 1.15, 0.06
+"""Tables are the palest of large things: none as much brighter takes up such a share of the picture."""
+
 _SAME_HUE = 0.05
 """Difference of the channels' ratios to the table up to which a pixel is table in less light."""
 
 _AGREES = 0.5
 """Intersection over union of shadows seen and shadows that heights and one lamp predict, from which there are shadows."""
+
+_EVEN = 0.02
+"""Median deviation of the light that is left in shadows; what varies more is a surface of its own."""
 
 _CACHE_SIZE = 64
 _cache: OrderedDict[tuple[str, str], Array | None] = OrderedDict()
@@ -87,12 +93,15 @@ def _relit(picture: Picture) -> Array | None:
         return None
     lab = to_lab(rgb.astype(np.uint8))
     table = find_table(lab, valid, depth)
-    bare = valid & ~table.stands_out
+    # What is brighter than the camera can tell has lost its colour.
+    bare = valid & ~table.stands_out & (rgb < 255).all(axis=-1)
     if table.raised is not None:
         bare &= ~table.raised
     if bare.mean() < 0.1 or (table.spread >= NO_TABLE).any():
         return None
     colour = np.median(rgb[bare], axis=0)
+    if ((rgb > _BRIGHTER * colour).all(axis=-1) & valid).mean() > _LARGE:
+        return None  # what was taken for the table is something darker round it
     gain = _gain(colour, np.percentile(rgb[valid], 99, axis=0))
     shadows = None if table.height_m is None else _find_shadows(rgb, _colour_of(table), table, valid)
     if shadows is None and np.abs(np.log(gain)).max() < 0.005:
@@ -174,7 +183,10 @@ def _find_shadows(rgb: Array, table_rgb: Array, table: Table, valid: Array) -> _
     if shared < _AGREES:
         return None
     seen = dark & _shaded(height, _along(*best), top)
-    return _Shadows(_along(best[0], best[1] / rgb.shape[1]), float(np.median(less[seen])))
+    left = float(np.median(less[seen]))
+    if np.median(np.abs(less[seen] - left)) > _EVEN:
+        return None  # a grey thing's texture, not one shade of the table
+    return _Shadows(_along(best[0], best[1] / rgb.shape[1]), left)
 
 
 def _along(way_deg: float, length: float) -> tuple[float, float]:

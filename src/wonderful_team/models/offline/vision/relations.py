@@ -11,7 +11,7 @@ import numpy as np
 from wonderful_team.geometry.arrays import Array
 from wonderful_team.models.offline.vision.examples import alike_colour, alike_pattern
 from wonderful_team.models.offline.vision.outlines import filled, largest_contour, same_form, study_outline
-from wonderful_team.models.offline.vision.things import Match, Scene, Thing, covers
+from wonderful_team.models.offline.vision.things import Look, Match, Scene, Thing, covers
 from wonderful_team.pictures import Point
 
 DIRECTIONS = {"left_of": (-1.0, 0.0), "right_of": (1.0, 0.0), "above": (0.0, -1.0), "below": (0.0, 1.0)}
@@ -37,10 +37,10 @@ def relation_score(relation: str, thing: Thing, others: Sequence[Thing], scene: 
         case "between":
             return _between(thing, others[0], others[1])
         case "same_colour":
-            return alike_colour(thing.look, other.look)
+            return _alike_colour(thing.look, other.look)
         case "same_pattern":
             # A texture is a surface as a whole: its colours and how they are spread.
-            return alike_colour(thing.look, other.look) * (0.4 + 0.6 * alike_pattern(thing.look, other.look))
+            return _alike_colour(thing.look, other.look) * (0.4 + 0.6 * alike_pattern(thing.look, other.look))
         case "same_shape":
             one, two = _body(thing), _body(other)
             alike = same_form(study_outline(one), study_outline(two))
@@ -50,6 +50,15 @@ def relation_score(relation: str, thing: Thing, others: Sequence[Thing], scene: 
             raise ValueError(f"unknown relation {relation!r}")
 
 
+def _alike_colour(one: Look, other: Look) -> float:
+    """Likeness of two surfaces' colours, 0 to 1; the bottom of a plain tray lies in the shade of its rim."""
+    alike, labs = alike_colour(one, other), [np.array(look.colours[0].lab) for look in (one, other)]
+    shade = float(np.linalg.norm(labs[0]) / max(np.linalg.norm(labs[1]), 1.0))
+    if len(one.colours) > 1 or len(other.colours) > 1 or not 1 / _RIM_SHADE < shade < _RIM_SHADE:
+        return alike
+    return max(alike, float(np.clip(1 - np.linalg.norm(labs[0] - shade * labs[1]) / _OTHER_COLOUR, 0, 1)))
+
+
 def _body(thing: Thing) -> Array:
     """The filled mask of a thing without thin parts that stick out, such as a handle, padded."""
     size = max(3, int(0.55 * thing.radius_px / thing.zoom) | 1)
@@ -57,6 +66,12 @@ def _body(thing: Thing) -> Array:
     opened = cv2.morphologyEx(whole, cv2.MORPH_OPEN, cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (size, size)))
     return np.asarray(opened > 0 if opened.any() else whole > 0)
 
+
+_RIM_SHADE = 1.25
+"""Ratio of light up to which two plain surfaces may be one colour."""
+
+_OTHER_COLOUR = 15.0
+"""CIELAB distance, shade apart, from which plain surfaces are of other colours."""
 
 _EVENED_SIDE = 64
 """Side of the square that a body is stretched to [px]."""

@@ -1,0 +1,83 @@
+"""The question on the terminal: what it shows, and what counts as yes."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import wonderful_team as wt
+from wonderful_team.cli import asking
+from wonderful_team.runtime import Approval, Declined, Proposal
+from wonderful_team.types import GateReport
+
+EVIL = "T1\x1b[2K\x1b[1A harmless"
+
+
+@pytest.fixture
+def proposal(tmp_path: Path) -> Proposal:
+    step = wt.PickPlaceStep(EVIL, pick=EVIL, place=wt.At("the safe place"))
+    action = wt.PlannedAction(step, wt.PickPlace(np.array([0.5, 0.2, 0.034]), np.array([0.4, -0.2, 0.0]), 1.5708))
+    page = tmp_path / "page.html"
+    page.write_text("the plan", encoding="utf-8")
+    return Proposal(None, (action,), GateReport(()), "a" * 64, page)
+
+
+def answer(monkeypatch: pytest.MonkeyPatch, *lines: str | BaseException) -> None:
+    left = list(lines)
+
+    def read() -> str:
+        line = left.pop(0) if left else EOFError()
+        if isinstance(line, BaseException):
+            raise line
+        return line
+
+    monkeypatch.setattr("builtins.input", read)
+
+
+def test_it_shows_numbers_and_the_page_and_no_word_of_a_model(
+    proposal: Proposal, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    answer(monkeypatch, "y")
+    asking.ask(proposal)
+    told = capsys.readouterr().err
+    for shown in ("pick_place", "0.5", "0.2", "0.034", "-0.2", "1.571 rad", "page.html", proposal.id[:12]):
+        assert shown in told
+    assert "harmless" not in told
+    assert "safe place" not in told
+    assert "\x1b" not in told
+
+
+@pytest.mark.parametrize("said", ["y", "Y", " yes ", "YES"])
+def test_yes(said: str, proposal: Proposal, monkeypatch: pytest.MonkeyPatch) -> None:
+    answer(monkeypatch, said)
+    given = asking.ask(proposal)
+    assert isinstance(given, Approval)
+    assert (given.plan_id, given.picture, len(given.page)) == (proposal.id, "a" * 64, 64)
+    assert given.by
+
+
+@pytest.mark.parametrize(
+    ("lines", "because"),
+    [
+        (["n"], ""),
+        (["No."], ""),
+        ([""], ""),
+        (["n, because it is hot"], "it is hot"),
+        (["no, because it is hot"], "it is hot"),
+        (["NO because it is hot"], "it is hot"),
+        (["no: take the other one"], "take the other one"),
+        ([EOFError()], ""),
+        ([OSError(5, "Input/output error")], ""),
+        ([RuntimeError("input(): lost sys.stdin")], ""),
+        (["perhaps", "now", "yes please", "y"], ""),
+    ],
+)
+def test_anything_else_is_a_no(
+    lines: list[str | BaseException], because: str, proposal: Proposal, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    answer(monkeypatch, *lines)
+    given = asking.ask(proposal)
+    assert isinstance(given, Declined)
+    assert given.because == because

@@ -24,7 +24,7 @@ from wonderful_team.observe import Seen, seen
 from wonderful_team.planning import Team as Planner
 from wonderful_team.planning import Until
 from wonderful_team.runs import find_run, new_run_folder
-from wonderful_team.runtime import Approval, Approver, ReadPlan, check_gate, read_run_plan
+from wonderful_team.runtime import Approval, Approver, check_gate, read_run_plan
 from wonderful_team.runtime import rollout as roll_out
 from wonderful_team.runtime.loop import Caller
 from wonderful_team.runtime.page import write_page
@@ -32,7 +32,7 @@ from wonderful_team.runtime.recorder import Recorder
 from wonderful_team.runtime.setup import setup_entry
 from wonderful_team.runtime.stored_run import StoredRun, load_stored_run
 from wonderful_team.runtime.user_code import GuardedWorld, close_world
-from wonderful_team.types import NO_WORKSPACE, GateReport, Instruction, KeepOut, Limits, Plan, Target, Usage
+from wonderful_team.types import NO_WORKSPACE, GateReport, Instruction, KeepOut, Limits, Plan, ReadPlan, Target, Usage
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
-from wonderful_team import types
 from wonderful_team.errors import ConfigError, reading
 from wonderful_team.photos import PathLike, corners_camera, load_camera, load_depth, load_view
 from wonderful_team.types import Limits, View
+from wonderful_team.types import Observation as BaseObservation
 
 if TYPE_CHECKING:
     from PIL.Image import Image
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, eq=False)
-class Observation(types.Observation):
+class Observation(BaseObservation):
     """All views at one instant; the first is the one that targets are grounded in.
 
     Attributes:
@@ -80,11 +80,11 @@ class Observation(types.Observation):
         return cls({names[0]: main, **others}, None, limits, photo=True)
 
 
-Seen: TypeAlias = "types.Observation | View | PathLike | Sequence[PathLike] | Array | Image"
+Seen: TypeAlias = "BaseObservation | View | PathLike | Sequence[PathLike] | Array | Image"
 """What can be planned for: an observation, a view, picture files, or pixels."""
 
 
-def seen(what: Any) -> types.Observation:
+def seen(what: Any) -> BaseObservation:
     """An observation of whatever shows a scene.
 
     Args:
@@ -93,7 +93,7 @@ def seen(what: Any) -> types.Observation:
     Raises:
         ConfigError: Anything else, or pictures that cannot be used.
     """
-    if isinstance(what, types.Observation):
+    if isinstance(what, BaseObservation):
         return what
     if isinstance(what, View):
         return Observation({what.camera_name: what})

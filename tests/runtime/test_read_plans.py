@@ -13,9 +13,9 @@ from runtime_fakes import COLOURS, Listener, MovesPolicy, SquaresTruth, SquaresW
 from wonderful_team.errors import ConfigError
 from wonderful_team.geometry import AffineCamera
 from wonderful_team.interfaces import Event
-from wonderful_team.runtime import ReadPlan, read_run_plan, rollout
+from wonderful_team.runtime import read_run_plan, rollout
 from wonderful_team.runtime.recorder import Recorder
-from wonderful_team.types import Instruction, Observation, Slot
+from wonderful_team.types import Instruction, Observation, ReadPlan, Slot
 
 RED, BLUE = (60.0, 60.0), (160.0, 90.0)
 UP, MIDDLE = (200.0, 30.0), (120.0, 60.0)

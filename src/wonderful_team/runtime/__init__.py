@@ -4,7 +4,7 @@ from wonderful_team.runtime.approval import Approval, Approver, Declined, Propos
 from wonderful_team.runtime.gate import check_gate
 from wonderful_team.runtime.page import write_page
 from wonderful_team.runtime.plan_file import plan_from_json, plan_to_json, read_plan, write_plan
-from wonderful_team.runtime.plan_scene import ReadPlan, read_plan_scene, read_run_plan
+from wonderful_team.runtime.plan_scene import read_plan_scene, read_run_plan
 from wonderful_team.runtime.recorder import Recorder
 from wonderful_team.runtime.rollout import rollout
 
@@ -13,7 +13,6 @@ __all__ = [
     "Approver",
     "Declined",
     "Proposal",
-    "ReadPlan",
     "Recorder",
     "actions_id",
     "check_gate",

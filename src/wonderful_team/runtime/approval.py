@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import hashlib
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TypeAlias
 
-from wonderful_team.types import GateCheck, GateReport, Plan, PlannedAction, content_hash
+from wonderful_team.types import GateCheck, GateReport, Plan, PlannedAction, content_hash, file_hash
 
 APPROVAL_S = 600.0
 """How long a consent holds [s]: as long as the picture that was looked at may be acted upon."""
@@ -88,11 +87,6 @@ def actions_id(actions: Sequence[PlannedAction]) -> str:
 def approved_id(plan: Plan | None, actions: Sequence[PlannedAction]) -> str:
     """The id that an approval must name."""
     return plan.id if plan is not None else actions_id(actions)
-
-
-def file_hash(path: Path | None) -> str:
-    """SHA-256 of a file; "" when there is none."""
-    return hashlib.sha256(path.read_bytes()).hexdigest() if path is not None and path.is_file() else ""
 
 
 def approval_checks(

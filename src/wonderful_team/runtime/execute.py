@@ -9,15 +9,24 @@ from pathlib import Path
 from wonderful_team.errors import ConfigError
 from wonderful_team.geometry import Box
 from wonderful_team.interfaces import Act, World
-from wonderful_team.runtime.approval import Approval, Approver, Declined, Proposal, file_hash
+from wonderful_team.runtime.approval import Approval, Approver, Declined, Proposal
 from wonderful_team.runtime.course import Stage, stages_of
 from wonderful_team.runtime.freshness import freshness_checks, touched, watched
 from wonderful_team.runtime.gate import check_gate
-from wonderful_team.runtime.plan_scene import ReadPlan, read_plan_checks
 from wonderful_team.runtime.progress import Ending, Progress
+from wonderful_team.runtime.read_plan_checks import read_plan_checks
 from wonderful_team.runtime.seen_checks import still_free_checks
 from wonderful_team.text import counted
-from wonderful_team.types import GateReport, Observation, Plan, PlannedAction, StepReport, SubgoalRun
+from wonderful_team.types import (
+    GateReport,
+    Observation,
+    Plan,
+    PlannedAction,
+    ReadPlan,
+    StepReport,
+    SubgoalRun,
+    file_hash,
+)
 
 
 class Execution:

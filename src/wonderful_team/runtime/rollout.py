@@ -20,10 +20,9 @@ from wonderful_team.runtime.execute import Execution
 from wonderful_team.runtime.freshness import MAX_AGE_S
 from wonderful_team.runtime.loop import Caller
 from wonderful_team.runtime.optional import ChunkPolicy, Horizon
-from wonderful_team.runtime.plan_scene import ReadPlan
 from wonderful_team.runtime.progress import Ending, Progress
 from wonderful_team.runtime.user_code import GuardedScorer, GuardedWorld, decision_of
-from wonderful_team.types import Observation, Plan, Trial
+from wonderful_team.types import Observation, Plan, ReadPlan, Trial
 
 NOBODY_JUDGED = "; nobody judged the result: there is no scorer, and a method judges only where it may replan"
 

@@ -1,7 +1,7 @@
 """The values that flow through the system: frozen, checked once when built, arrays read-only."""
 
 from wonderful_team.types.asked import Answer, Note, Part, Request, Usage, Words
-from wonderful_team.types.content import content_hash
+from wonderful_team.types.content import content_hash, file_hash
 from wonderful_team.types.happened import GateCheck, GateReport, StepReport, SubgoalRun, Trial, Verdict
 from wonderful_team.types.planned import (
     NO_WORKSPACE,
@@ -18,6 +18,7 @@ from wonderful_team.types.planned import (
     Subgoal,
     Target,
 )
+from wonderful_team.types.read import ReadPlan
 from wonderful_team.types.seen import Instruction, Observation, RobotState, Slot, SlotKind, View
 from wonderful_team.types.true import TrueSight, TrueThing
 
@@ -40,6 +41,7 @@ __all__ = [
     "PlannedAction",
     "PointRole",
     "Provenance",
+    "ReadPlan",
     "Request",
     "RobotState",
     "Slot",
@@ -56,4 +58,5 @@ __all__ = [
     "View",
     "Words",
     "content_hash",
+    "file_hash",
 ]

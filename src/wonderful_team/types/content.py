@@ -6,6 +6,7 @@ import hashlib
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import fields, is_dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -32,6 +33,11 @@ def content_hash(value: Any, without: Sequence[str] = ()) -> str:
     """
     text = json.dumps(_canonical(value, frozenset(without)), sort_keys=True, separators=(",", ":"))
     return hashlib.sha256(text.encode()).hexdigest()
+
+
+def file_hash(path: Path | None) -> str:
+    """SHA-256 of a file; "" when there is none."""
+    return hashlib.sha256(path.read_bytes()).hexdigest() if path is not None and path.is_file() else ""
 
 
 def _canonical(value: Any, without: frozenset[str]) -> Any:

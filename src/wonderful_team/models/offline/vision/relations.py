@@ -53,7 +53,7 @@ def relation_score(relation: str, thing: Thing, others: Sequence[Thing], scene: 
 def _alike_colour(one: Look, other: Look) -> float:
     """Likeness of two surfaces' colours, 0 to 1; the bottom of a plain tray lies in the shade of its rim."""
     alike, labs = alike_colour(one, other), [np.array(look.colours[0].lab) for look in (one, other)]
-    shade = float(np.linalg.norm(labs[0]) / max(np.linalg.norm(labs[1]), 1.0))
+    shade = float(np.linalg.norm(labs[0])) / max(float(np.linalg.norm(labs[1])), 1.0)
     if len(one.colours) > 1 or len(other.colours) > 1 or not 1 / _RIM_SHADE < shade < _RIM_SHADE:
         return alike
     return max(alike, float(np.clip(1 - np.linalg.norm(labs[0] - shade * labs[1]) / _OTHER_COLOUR, 0, 1)))

@@ -8,29 +8,22 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[1] / "src" / "wonderful_team"
-BASE = {
-    "errors",
-    "text",
-    "notebook",
-    "types",
-    "pictures",
-    "actions",
-    "interfaces",
-    "interrupts",
-    "jsonable",
-    "geometry",
-}
+BASE = {"_version", "actions", "errors", "geometry", "interfaces", "jsonable", "pictures", "text", "types"}
 TOP = {
     "__init__",
     "__main__",
     "api",
+    "checks",
     "cli",
     "finding",
+    "interrupts",
     "loading",
     "made",
     "methods",
+    "notebook",
     "observe",
     "own_world",
+    "photo_runs",
     "photos",
     "probing",
     "registry",
@@ -40,8 +33,6 @@ TOP = {
     "simulated_models",
     "studies",
     "trial_runs",
-    "photo_runs",
-    "checks",
 }
 ARROWS: dict[str, set[str]] = {
     **dict.fromkeys(BASE, BASE),
@@ -49,16 +40,20 @@ ARROWS: dict[str, set[str]] = {
     "images": BASE,
     "sandbox": BASE,
     "motion": BASE,
+    "sims": BASE | {"robots"},
+    "robots": BASE,
     "detectors": BASE | {"images"},
-    "models": BASE | {"contracts", "images", "detectors"},
     "agents": BASE | {"contracts", "images"},
+    "models": BASE | {"contracts", "images", "detectors"},
+    "offline": BASE | {"contracts", "images"},
+    "simulated": BASE | {"contracts", "images", "models"},
     "planning": BASE | {"contracts", "images", "models", "agents", "motion", "sandbox", "detectors"},
     "baselines": BASE | {"contracts", "images", "models", "agents", "motion", "sandbox", "detectors"},
     "lab": BASE | {"contracts", "images", "agents", "models"},
+    "record": BASE | {"images"},
+    "pages": BASE | {"images", "record"},
     "runtime": BASE | {"images"},
-    "robots": BASE,
-    "sims": BASE | {"robots"},
-    "evals": BASE | {"images", "runtime"},
+    "evals": BASE | {"images", "runtime", "record"},
 }
 OUTSIDE_OF_BASE = {"numpy"}
 """Third-party packages that base may import."""

@@ -8,7 +8,7 @@ from __future__ import annotations
 import importlib
 from typing import TYPE_CHECKING, Any
 
-__version__ = "0.1.0"
+from wonderful_team._version import __version__
 
 if TYPE_CHECKING:
     from wonderful_team.actions import ARM, PICK_PLACE, At, Beside, PickPlace, PickPlaceStep, Vocabulary

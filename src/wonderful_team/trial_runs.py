@@ -315,7 +315,7 @@ def fingerprint(spec: TrialSpec) -> dict[str, str]:
 
 @lru_cache
 def _versions() -> dict[str, str]:
-    from wonderful_team import __version__
+    from wonderful_team._version import __version__
 
     found = {name: str(value) for name, value in versions().items() if value is not None}
     return {"wonderful-team": __version__, **{k: v for k, v in found.items() if "commit" in k}}

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from wonderful_team import __version__
+from wonderful_team._version import __version__
 from wonderful_team.cli.output import Document, say, wants_json
 from wonderful_team.interrupts import Interrupted, ends_on_signal, leave
 

@@ -14,7 +14,7 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 
-from wonderful_team import __version__
+from wonderful_team._version import __version__
 from wonderful_team.errors import ConfigError
 from wonderful_team.images import Ticks
 from wonderful_team.images.drawn import drawn_hash

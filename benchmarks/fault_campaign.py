@@ -25,14 +25,14 @@ from tests.servers.faults import ANSWER, LINE, SERVER, Fault
 from tests.servers.heard import Heard, Reply
 from tests.servers.server import Rules, WireServer
 from tests.servers.wiring import WIRES
-from wonderful_team.actions import PICK_PLACE
 from wonderful_team.cli.wording import EXIT_OF_STATUS
+from wonderful_team.core.actions import PICK_PLACE
+from wonderful_team.core.protocols import Event
+from wonderful_team.core.values import NO_WORKSPACE, Instruction, Observation, Plan
 from wonderful_team.errors import WonderfulTeamError
-from wonderful_team.interfaces import Event
 from wonderful_team.models.agreeable import agreeable_model, agreeable_script
 from wonderful_team.planning import Team, TeamConfig
 from wonderful_team.planning.config import Way
-from wonderful_team.types import NO_WORKSPACE, Instruction, Observation, Plan
 
 SECRET = "wt-campaign-secret-3f9a"
 STALLS = ("hang", "drip")

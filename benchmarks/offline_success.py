@@ -69,10 +69,10 @@ class Result:
 def run(job: Job) -> Result:
     """Run one trial in this process."""
     # Imported here: a worker of a spawned pool pays for it once, the parent never.
+    from wonderful_team.core.values import Instruction
     from wonderful_team.models.offline import OfflineModel
     from wonderful_team.planning import Team, TeamConfig
     from wonderful_team.runtime import rollout
-    from wonderful_team.types import Instruction
 
     world = world_of(job)
     if job.instruction is not None:

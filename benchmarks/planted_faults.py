@@ -24,12 +24,13 @@ from typing import Any
 import numpy as np
 
 from benchmarks.offline_success import VIMA
-from wonderful_team.actions import PICK_PLACE
 from wonderful_team.contracts import DraftPlan, JudgeBox, PlanDraft, PlanReview, Question, ReviewPlan, SceneReading
 from wonderful_team.contracts.plans import SubgoalDraft, TargetDraft
+from wonderful_team.core.actions import PICK_PLACE
+from wonderful_team.core.geometry import Box
+from wonderful_team.core.values import Target
 from wonderful_team.errors import WonderfulTeamError
 from wonderful_team.evals import Confusion, Rate
-from wonderful_team.geometry import Box
 from wonderful_team.models.door import Door
 from wonderful_team.models.offline import OfflineModel
 from wonderful_team.models.wrappers import Injecting, Injection
@@ -38,7 +39,6 @@ from wonderful_team.planning.boxes import Job
 from wonderful_team.planning.desk import Desk
 from wonderful_team.planning.scene import SceneShown
 from wonderful_team.sims.tabletop import TabletopWorld, make_world
-from wonderful_team.types import Target
 
 TASKS = (*VIMA, "fruit_placement/both", "fruit_placement/misplaced")
 

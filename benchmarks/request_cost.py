@@ -25,13 +25,13 @@ from tests.servers.server import Rules, WireServer
 from tests.servers.wiring import WIRES
 from wonderful_team.agents import build_request
 from wonderful_team.contracts import GiveBox, JudgeBox, Question, ReadScene
-from wonderful_team.geometry import Box
+from wonderful_team.core.geometry import Box
+from wonderful_team.core.pictures import Axes, BoxMark, PointMark
+from wonderful_team.core.values import Request, View
 from wonderful_team.images import crop, draw, whole
 from wonderful_team.models.agreeable import agreeable_script
 from wonderful_team.models.wire import compose, ticks_of
 from wonderful_team.models.wire.png import fast_png
-from wonderful_team.pictures import Axes, BoxMark, PointMark
-from wonderful_team.types import Request, View
 
 PLAN = ("G1: put T1 into T2",)
 

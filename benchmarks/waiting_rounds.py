@@ -17,12 +17,12 @@ from typing import Any
 import numpy as np
 
 from benchmarks.virtual_time import run_virtual
-from wonderful_team.actions import PICK_PLACE
+from wonderful_team.core.actions import PICK_PLACE
+from wonderful_team.core.protocols import Event
+from wonderful_team.core.values import Instruction, Observation, Plan, Request, View, Words
 from wonderful_team.images import draw, to_png
-from wonderful_team.interfaces import Event
 from wonderful_team.models.agreeable import agreeable_model
 from wonderful_team.planning import Team, TeamConfig
-from wonderful_team.types import Instruction, Observation, Plan, Request, View, Words
 
 
 @dataclass

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 import wonderful_team as wt
+from wonderful_team.core.protocols import Event
 from wonderful_team.errors import ConfigError, UnknownNameError
-from wonderful_team.interfaces import Event
 from wonderful_team.runs import all_runs, find_run
 
 WANTED = "put the red square to the left of the blue square"

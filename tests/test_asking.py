@@ -9,8 +9,8 @@ import pytest
 
 import wonderful_team as wt
 from wonderful_team.cli import asking
+from wonderful_team.core.values import GateReport
 from wonderful_team.runtime import Approval, Declined, Proposal
-from wonderful_team.types import GateReport
 
 EVIL = "T1\x1b[2K\x1b[1A harmless"
 

@@ -122,7 +122,7 @@ def test_photos_plans_and_trials_show_themselves_in_a_notebook(out: Path) -> Non
 def test_a_notebook_shows_the_pixels_and_escapes_every_word() -> None:
     from io import BytesIO
 
-    from wonderful_team.notebook import card, png_bytes
+    from wonderful_team.core.notebook import card, png_bytes
 
     rgb = np.random.default_rng(0).integers(0, 255, (37, 53, 3), dtype=np.uint8)
     assert np.array_equal(np.asarray(Image.open(BytesIO(png_bytes(rgb)))), rgb)

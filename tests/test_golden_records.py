@@ -9,10 +9,10 @@ import pytest
 
 from tests.desk import read_record
 from wonderful_team.cli.app import run
+from wonderful_team.core.text import picture_names, spoken
 from wonderful_team.replays import replay
 from wonderful_team.runtime import read_plan
 from wonderful_team.runtime.page import write_page
-from wonderful_team.text import picture_names, spoken
 
 GOLDEN = Path(__file__).parent / "golden" / "records"
 

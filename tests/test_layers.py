@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[1] / "src" / "wonderful_team"
-BASE = {"_version", "actions", "errors", "geometry", "interfaces", "jsonable", "pictures", "text", "types"}
+BASE = {"_version", "core", "errors"}
 TOP = {
     "__init__",
     "__main__",
@@ -20,7 +20,6 @@ TOP = {
     "loading",
     "made",
     "methods",
-    "notebook",
     "observe",
     "own_world",
     "photo_runs",

@@ -15,7 +15,7 @@ from types import SimpleNamespace
 
 from wonderful_team.cli.live_line import CLEAR, LiveLine
 from wonderful_team.cli.progress import Progress
-from wonderful_team.interfaces import Event
+from wonderful_team.core.protocols import Event
 
 SLOW = """
 import time

@@ -14,10 +14,9 @@ from PIL import Image
 
 import wonderful_team as wt
 from wonderful_team.cli.app import run
+from wonderful_team.core.protocols import Filmed, Privileged, SceneTruth, offers, privileged
 from wonderful_team.errors import ConfigError, UnknownNameError
-from wonderful_team.interfaces import Filmed, Privileged, SceneTruth, offers
 from wonderful_team.models.offline import OfflineModel
-from wonderful_team.registry import privileged
 from wonderful_team.runtime.optional import Accounting, ChunkPolicy, Configured, Horizon, NamedModel, Sourced
 from wonderful_team.simulated_models import scene_truth
 

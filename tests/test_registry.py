@@ -8,8 +8,8 @@ import pytest
 
 import wonderful_team as wt
 from wonderful_team import registry
+from wonderful_team.core.protocols import Privileged, offers, privileged
 from wonderful_team.errors import ConfigError, UnknownNameError
-from wonderful_team.interfaces import Privileged, offers
 from wonderful_team.planning import SETTINGS
 
 
@@ -104,10 +104,10 @@ def test_an_object_that_is_no_world_says_what_it_lacks() -> None:
 
 def test_the_truth_is_handed_out_for_the_worlds_own_instruction_only() -> None:
     world = wt.make_world("tabletop/rotate", seed=1)
-    assert offers(registry.privileged(world), Privileged)
+    assert offers(privileged(world), Privileged)
     world.close()
     other = wt.make_world("tabletop/rotate", seed=1, instruction="put the largest thing on the left")
-    assert registry.privileged(other) is None
+    assert privileged(other) is None
     assert other.instruction.slots == {}
     other.close()
 
@@ -126,8 +126,8 @@ def test_a_world_without_an_instruction_asks_for_one() -> None:
 
 
 def test_keep_out_regions_are_added_to_a_worlds_own_limits_and_keep_its_scorer():
-    from wonderful_team.geometry import Box
-    from wonderful_team.types import KeepOut
+    from wonderful_team.core.geometry import Box
+    from wonderful_team.core.values import KeepOut
 
     region = KeepOut("fixture", Box(0.3, -0.2, 0.4, 0.1), "m")
     world = registry.make_world("tabletop/rotate", seed=3, keep_out=[region])

@@ -6,11 +6,11 @@ import json
 
 import pytest
 
+from wonderful_team.core.values import Instruction
 from wonderful_team.models.offline import OfflineModel
 from wonderful_team.planning import Team, TeamConfig
 from wonderful_team.runtime import Recorder, rollout
 from wonderful_team.sims.tabletop import make_world
-from wonderful_team.types import Instruction
 
 
 def run(task, seed, folder=None, *, scored=True, way="lean", instruction=None, **options):

@@ -6,7 +6,7 @@ import json
 import sys
 import unicodedata
 
-from wonderful_team.text import counted, picture_names, spoken, visible, visible_json
+from wonderful_team.core.text import counted, picture_names, spoken, visible, visible_json
 
 SEEN_ANYWAY = set(map(chr, (*range(0x600, 0x606), 0x6DD, 0x890, 0x891, 0x8E2, 0x110BD, 0x110CD)))
 """Format characters that are drawn: signs of numbers and verses in Arabic and Kaithi."""

@@ -11,22 +11,11 @@ from typing import TYPE_CHECKING, Any
 from wonderful_team._version import __version__
 
 if TYPE_CHECKING:
-    from wonderful_team.actions import ARM, PICK_PLACE, At, Beside, PickPlace, PickPlaceStep, Vocabulary
     from wonderful_team.api import Team, load_run, make_world, rollout, task
-    from wonderful_team.errors import WonderfulTeamError
-    from wonderful_team.geometry import AffineCamera, Box, PinholeCamera, PlanarCamera, Pose
-    from wonderful_team.interfaces import Act, Done, GaveUp, Model, Policy, Score, Situation, World
-    from wonderful_team.made import FoundTarget, MadePlan, RecordedTrial
-    from wonderful_team.methods import Method
-    from wonderful_team.observe import Observation
-    from wonderful_team.photos import instruction_with_pictures
-    from wonderful_team.probing import probe_model
-    from wonderful_team.registry import make_model
-    from wonderful_team.runtime import Approval
-    from wonderful_team.runtime.stored_run import StoredRun
-    from wonderful_team.sims.tabletop import Scene
-    from wonderful_team.studies import Study
-    from wonderful_team.types import (
+    from wonderful_team.core.actions import ARM, PICK_PLACE, At, Beside, PickPlace, PickPlaceStep, Vocabulary
+    from wonderful_team.core.geometry import AffineCamera, Box, PinholeCamera, PlanarCamera, Pose
+    from wonderful_team.core.protocols import Act, Done, GaveUp, Model, Policy, Score, Situation, World
+    from wonderful_team.core.values import (
         Answer,
         Instruction,
         KeepOut,
@@ -38,49 +27,60 @@ if TYPE_CHECKING:
         Trial,
         View,
     )
+    from wonderful_team.errors import WonderfulTeamError
+    from wonderful_team.made import FoundTarget, MadePlan, RecordedTrial
+    from wonderful_team.methods import Method
+    from wonderful_team.observe import Observation
+    from wonderful_team.photos import instruction_with_pictures
+    from wonderful_team.probing import probe_model
+    from wonderful_team.registry import make_model
+    from wonderful_team.runtime import Approval
+    from wonderful_team.runtime.stored_run import StoredRun
+    from wonderful_team.sims.tabletop import Scene
+    from wonderful_team.studies import Study
 
 _HOMES: dict[str, str] = {
-    "ARM": "actions",
-    "Act": "interfaces",
-    "AffineCamera": "geometry",
-    "Answer": "types",
+    "ARM": "core.actions",
+    "Act": "core.protocols",
+    "AffineCamera": "core.geometry",
+    "Answer": "core.values",
     "Approval": "runtime",
-    "At": "actions",
-    "Beside": "actions",
-    "Box": "geometry",
-    "Done": "interfaces",
+    "At": "core.actions",
+    "Beside": "core.actions",
+    "Box": "core.geometry",
+    "Done": "core.protocols",
     "FoundTarget": "made",
-    "GaveUp": "interfaces",
-    "Instruction": "types",
-    "KeepOut": "types",
-    "Limits": "types",
+    "GaveUp": "core.protocols",
+    "Instruction": "core.values",
+    "KeepOut": "core.values",
+    "Limits": "core.values",
     "MadePlan": "made",
     "Method": "methods",
-    "Model": "interfaces",
+    "Model": "core.protocols",
     "Observation": "observe",
-    "PICK_PLACE": "actions",
-    "PickPlace": "actions",
-    "PickPlaceStep": "actions",
-    "PinholeCamera": "geometry",
-    "Plan": "types",
-    "PlanarCamera": "geometry",
-    "PlannedAction": "types",
-    "Policy": "interfaces",
-    "Pose": "geometry",
+    "PICK_PLACE": "core.actions",
+    "PickPlace": "core.actions",
+    "PickPlaceStep": "core.actions",
+    "PinholeCamera": "core.geometry",
+    "Plan": "core.values",
+    "PlanarCamera": "core.geometry",
+    "PlannedAction": "core.values",
+    "Policy": "core.protocols",
+    "Pose": "core.geometry",
     "RecordedTrial": "made",
-    "Request": "types",
+    "Request": "core.values",
     "Scene": "sims.tabletop",
-    "Score": "interfaces",
-    "Situation": "interfaces",
-    "StepReport": "types",
+    "Score": "core.protocols",
+    "Situation": "core.protocols",
+    "StepReport": "core.values",
     "StoredRun": "runtime.stored_run",
     "Study": "studies",
     "Team": "api",
-    "Trial": "types",
-    "View": "types",
-    "Vocabulary": "actions",
+    "Trial": "core.values",
+    "View": "core.values",
+    "Vocabulary": "core.actions",
     "WonderfulTeamError": "errors",
-    "World": "interfaces",
+    "World": "core.protocols",
     "instruction_with_pictures": "photos",
     "make_model": "registry",
     "probe_model": "probing",

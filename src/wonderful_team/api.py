@@ -11,12 +11,24 @@ from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any
 
-from wonderful_team import registry, types
-from wonderful_team.actions import PICK_PLACE, VOCABULARIES, Vocabulary
+from wonderful_team import registry
+from wonderful_team.core import values
+from wonderful_team.core.actions import PICK_PLACE, VOCABULARIES, Vocabulary
+from wonderful_team.core.geometry import PlanarCamera
+from wonderful_team.core.protocols import Decision, Event, Policy, Privileged, Situation, Subscriber, World, privileged
+from wonderful_team.core.values import (
+    NO_WORKSPACE,
+    GateReport,
+    Instruction,
+    KeepOut,
+    Limits,
+    Plan,
+    ReadPlan,
+    Target,
+    Usage,
+)
 from wonderful_team.errors import ConfigError, UnknownNameError, WonderfulTeamError
 from wonderful_team.finding import find
-from wonderful_team.geometry import PlanarCamera
-from wonderful_team.interfaces import Decision, Event, Policy, Privileged, Situation, Subscriber, World
 from wonderful_team.interrupts import ends_on_signal, held
 from wonderful_team.made import MadePlan, RecordedTrial
 from wonderful_team.methods import Method
@@ -32,7 +44,6 @@ from wonderful_team.runtime.recorder import Recorder
 from wonderful_team.runtime.setup import setup_entry
 from wonderful_team.runtime.stored_run import StoredRun, load_stored_run
 from wonderful_team.runtime.user_code import GuardedWorld, close_world
-from wonderful_team.types import NO_WORKSPACE, GateReport, Instruction, KeepOut, Limits, Plan, ReadPlan, Target, Usage
 
 
 @dataclass(frozen=True, eq=False)
@@ -137,7 +148,7 @@ class Team(Method):
 
     def _recorded(
         self,
-        observation: types.Observation,
+        observation: values.Observation,
         instruction: Instruction,
         vocabulary: Vocabulary,
         limits: Limits,
@@ -255,7 +266,7 @@ def rollout(
     named = method if isinstance(method, Method) else None
     # Read as the rollout reads it: what a user's world raises or holds is named as the world's.
     guarded = GuardedWorld(world)
-    scorer: Privileged | None = registry.privileged(world) if scored else None
+    scorer: Privileged | None = privileged(world) if scored else None
     setup = setup_entry(
         "run",
         guarded.vocabulary,
@@ -342,7 +353,7 @@ def vocabulary_named(vocabulary: str | Vocabulary) -> Vocabulary:
     return VOCABULARIES[vocabulary]
 
 
-def plan_gate(plan: Plan, observation: types.Observation, vocabulary: Vocabulary, limits: Limits) -> GateReport | None:
+def plan_gate(plan: Plan, observation: values.Observation, vocabulary: Vocabulary, limits: Limits) -> GateReport | None:
     """What the gate says of a plan that is not run now; None without actions."""
     if plan.status != "planned" or not plan.actions:
         return None
@@ -359,7 +370,7 @@ def plan_gate(plan: Plan, observation: types.Observation, vocabulary: Vocabulary
     )
 
 
-def _cautions(told: Sequence[str], observation: types.Observation, limits: Limits) -> Iterator[tuple[str, str]]:
+def _cautions(told: Sequence[str], observation: values.Observation, limits: Limits) -> Iterator[tuple[str, str]]:
     """What the user is warned of before a plan is made, by name."""
     yield from (("setup", text) for text in told)
     if limits is NO_WORKSPACE and observation.main.camera is not None:
@@ -368,7 +379,7 @@ def _cautions(told: Sequence[str], observation: types.Observation, limits: Limit
         yield "heights", "no depth is given: every height is taken to be the table's (--depth FILE)"
 
 
-def _calibrated(observation: types.Observation) -> bool:
+def _calibrated(observation: values.Observation) -> bool:
     """Whether the main view's camera could turn depth into metres."""
     return observation.main.camera is not None and not isinstance(observation.main.camera, PlanarCamera)
 

@@ -8,15 +8,16 @@ from pathlib import Path
 from typing import Any
 
 from wonderful_team import registry
+from wonderful_team.core.intervals import Rate
+from wonderful_team.core.protocols import privileged
+from wonderful_team.core.text import counted
 from wonderful_team.errors import ConfigError
 from wonderful_team.evals.checking import SEEDS, Findings, check_controls, check_looks, contact_sheet
 from wonderful_team.evals.controls import CONTROLS, NO_MODEL
-from wonderful_team.evals.statistics import Rate
 from wonderful_team.evals.trials import Condition, RunSettings, TrialResult, TrialSpec
 from wonderful_team.evals.workers import run_safely
 from wonderful_team.loading import load_from_file
 from wonderful_team.methods import Method
-from wonderful_team.text import counted
 from wonderful_team.trial_runs import run_trial
 
 TRIED_IN = "tabletop/rotate"
@@ -63,7 +64,7 @@ def _check_world(name: str, sheet: Path, seeds: Sequence[int], findings: Finding
     findings.notes.append(f"contact sheet: {sheet}")
     world = registry.make_world(name, seeds[0])
     try:
-        scored = registry.privileged(world) is not None
+        scored = privileged(world) is not None
     finally:
         world.close()
     if not scored:

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from wonderful_team.actions import PICK_PLACE
+from wonderful_team.core.actions import PICK_PLACE
+from wonderful_team.core.values import NO_WORKSPACE, GroundedTarget, Instruction, Observation, Plan, Target
 from wonderful_team.errors import BudgetReached, ModelOutputError, NotUnderstoodError, WonderfulTeamError
 from wonderful_team.models.door import Door
 from wonderful_team.planning import TeamConfig, grounding
 from wonderful_team.planning.desk import Desk, settle
 from wonderful_team.planning.scene import SceneShown
-from wonderful_team.types import NO_WORKSPACE, GroundedTarget, Instruction, Observation, Plan, Target
 
 STATUS: dict[type[WonderfulTeamError], str] = {NotUnderstoodError: "not_understood", BudgetReached: "budget"}
 

@@ -11,8 +11,8 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
+from wonderful_team.core.text import user_path
 from wonderful_team.errors import ConfigError, UnknownNameError, WonderfulTeamError, code_of
-from wonderful_team.text import user_path
 
 
 def is_file_name(name: str) -> bool:

@@ -7,12 +7,12 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from wonderful_team.core.jsonable import to_jsonable
+from wonderful_team.core.notebook import card
+from wonderful_team.core.text import counted, picture_names, spoken
+from wonderful_team.core.values import GateReport, Observation, Plan, PlannedAction, Subgoal, Target, Trial, Usage
 from wonderful_team.errors import ActionRefusedError
-from wonderful_team.jsonable import to_jsonable
-from wonderful_team.notebook import card
 from wonderful_team.runtime.approval import APPROVAL_S, Approval, Proposal
-from wonderful_team.text import counted, picture_names, spoken
-from wonderful_team.types import GateReport, Observation, Plan, PlannedAction, Subgoal, Target, Trial, Usage
 
 PAGE_NAME = "page.html"
 

@@ -8,9 +8,10 @@ from pathlib import Path
 from typing import Any, Self
 
 from wonderful_team import registry
+from wonderful_team.core.caps import Caps
+from wonderful_team.core.protocols import Model, Policy, Subscriber, World
 from wonderful_team.errors import ConfigError
-from wonderful_team.interfaces import Model, Policy, Subscriber, World
-from wonderful_team.models.budget import Budget, Caps
+from wonderful_team.models.budget import Budget
 from wonderful_team.models.cache import CacheMode, cached_models
 from wonderful_team.models.cache_key import model_identity
 from wonderful_team.models.door import Door

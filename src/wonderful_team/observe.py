@@ -9,15 +9,15 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
+from wonderful_team.core.values import Limits, View
+from wonderful_team.core.values import Observation as BaseObservation
 from wonderful_team.errors import ConfigError, reading
 from wonderful_team.photos import PathLike, corners_camera, load_camera, load_depth, load_view
-from wonderful_team.types import Limits, View
-from wonderful_team.types import Observation as BaseObservation
 
 if TYPE_CHECKING:
     from PIL.Image import Image
 
-    from wonderful_team.geometry.arrays import Array
+    from wonderful_team.core.geometry.arrays import Array
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,10 +6,10 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any, cast
 
-from wonderful_team.actions import Action, Vocabulary
-from wonderful_team.geometry.arrays import Array
-from wonderful_team.interfaces import Filmed, offers
-from wonderful_team.types import Instruction, KeepOut, Limits, Observation, StepReport
+from wonderful_team.core.actions import Action, Vocabulary
+from wonderful_team.core.geometry.arrays import Array
+from wonderful_team.core.protocols import Filmed, offers
+from wonderful_team.core.values import Instruction, KeepOut, Limits, Observation, StepReport
 
 
 @dataclass(frozen=True, eq=False)

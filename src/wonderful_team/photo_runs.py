@@ -7,11 +7,12 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Any
 
+from wonderful_team.core.geometry import Box
+from wonderful_team.core.values import GroundedTarget, Instruction, Target, Usage
 from wonderful_team.errors import BudgetReached, ConfigError, ModelUnavailableError, WonderfulTeamError
 from wonderful_team.evals.photos import Located, PhotoScene, read_photos, score_photo
 from wonderful_team.evals.trials import RunSettings, TrialResult, TrialSpec
 from wonderful_team.finding import find
-from wonderful_team.geometry import Box
 from wonderful_team.methods import Method, team_config
 from wonderful_team.models.door import Door
 from wonderful_team.observe import Observation
@@ -19,7 +20,6 @@ from wonderful_team.planning import TeamConfig
 from wonderful_team.role_models import choice_of
 from wonderful_team.runtime.loop import Caller
 from wonderful_team.trial_runs import Counting, fingerprint, prepared
-from wonderful_team.types import GroundedTarget, Instruction, Target, Usage
 
 
 def run_photo(spec: TrialSpec, settings: RunSettings) -> TrialResult:

@@ -6,8 +6,9 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Literal, TypeAlias
 
+from wonderful_team.core.geometry import Box, Camera
+from wonderful_team.core.values import Instruction, KeepOut, Slot, SlotKind, View
 from wonderful_team.errors import ConfigError
-from wonderful_team.geometry import Box, Camera
 from wonderful_team.images.calibration import (
     CAMERA_FILE_FORM,
     Calibration,
@@ -16,7 +17,6 @@ from wonderful_team.images.calibration import (
     load_camera,
     load_depth,
 )
-from wonderful_team.types import Instruction, KeepOut, Slot, SlotKind, View
 
 __all__ = [
     "CAMERA_FILE_FORM",

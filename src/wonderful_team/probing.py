@@ -5,17 +5,17 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from wonderful_team import registry
+from wonderful_team.core.caps import Caps
+from wonderful_team.core.protocols import Model, privileged
+from wonderful_team.core.values import Usage
 from wonderful_team.errors import ConfigError
-from wonderful_team.interfaces import Model
 from wonderful_team.lab.measure import LabScene, LabTarget
 from wonderful_team.lab.probe import Options, Probed, Subject, Tell, probe
 from wonderful_team.lab.server_facts import context_length
 from wonderful_team.loading import check_names_no_code, is_file_name
-from wonderful_team.models.budget import Caps
 from wonderful_team.models.families import guess_family
 from wonderful_team.models.profiles import Profile, check_name, load_profile, profile_names
 from wonderful_team.runtime.loop import Caller
-from wonderful_team.types import Usage
 
 if TYPE_CHECKING:
     from wonderful_team.models.providers import Provider
@@ -138,12 +138,12 @@ def rendered_scenes(count: int, seed: int) -> tuple[LabScene, ...]:
 
 
 def _rendered(task: str, seed: int) -> LabScene:
-    from wonderful_team.geometry import Box
+    from wonderful_team.core.geometry import Box
 
     world = registry.make_world(task, seed=seed)
     try:
         view = world.observe().main
-        truth = registry.privileged(world)
+        truth = privileged(world)
         if truth is None:
             raise ConfigError(f"{task}: this world keeps no truth to measure against")
         things, masks = truth.truth()["things"], world.privileged.masks()  # type: ignore[attr-defined]

@@ -11,6 +11,8 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal, cast
 
+from wonderful_team.core.protocols import Model, Policy, World, offers
+from wonderful_team.core.values import Instruction, KeepOut
 from wonderful_team.errors import (
     ConfigError,
     MethodCodeError,
@@ -19,11 +21,9 @@ from wonderful_team.errors import (
     WorldUnavailableError,
     code_of,
 )
-from wonderful_team.interfaces import Model, Policy, Privileged, World, offers
 from wonderful_team.loading import check_names_no_code, is_file_name, load_from_file, make_from_file
 from wonderful_team.own_world import OwnWorld
 from wonderful_team.simulated_models import SIMULATED, simulated_model
-from wonderful_team.types import Instruction, KeepOut
 
 if TYPE_CHECKING:
     from wonderful_team.models.door import Door
@@ -295,12 +295,6 @@ def scene_name(name: str, seed: int) -> str:
     return f"{name}#{seed}"
 
 
-def privileged(world: World) -> Privileged | None:
-    """The truth behind a simulator, for its scorer; None for real robots, own worlds without one, and changed instructions."""
-    truth = getattr(world, "privileged", None)
-    return truth if offers(truth, Privileged) else None
-
-
 def _take_none(name: str, arguments: Mapping[str, Any]) -> None:
     if arguments:
         raise ConfigError(
@@ -392,7 +386,6 @@ __all__ = [
     "make_world",
     "model_label",
     "own_tiers",
-    "privileged",
     "scene_name",
     "task_made_of",
     "task_names",

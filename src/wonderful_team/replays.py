@@ -14,11 +14,12 @@ from pathlib import Path
 from typing import Any
 
 from wonderful_team import registry
-from wonderful_team.actions import Vocabulary
 from wonderful_team.agents import Prompts
 from wonderful_team.api import Team, rollout
+from wonderful_team.core.actions import Vocabulary
+from wonderful_team.core.protocols import Event, Model, Subscriber
+from wonderful_team.core.values import Observation, Plan
 from wonderful_team.errors import ConfigError, WonderfulTeamError, reading
-from wonderful_team.interfaces import Event, Model, Subscriber
 from wonderful_team.loading import check_names_no_code
 from wonderful_team.made import MadePlan, RecordedTrial
 from wonderful_team.models.replay import Branching, ReplayModel
@@ -28,7 +29,6 @@ from wonderful_team.runtime.record_schema import read_record
 from wonderful_team.runtime.setup import Setup, read_setup, same_limits
 from wonderful_team.runtime.stored import stored_instruction, stored_observation
 from wonderful_team.runtime.story import recorded_plan, situations
-from wonderful_team.types import Observation, Plan
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,8 +7,8 @@ import re
 from datetime import datetime
 from pathlib import Path
 
+from wonderful_team.core.text import user_path
 from wonderful_team.errors import ConfigError, UnknownNameError
-from wonderful_team.text import user_path
 
 OUT_VARIABLE = "WONDERFUL_TEAM_RUNS"
 LATEST = "latest"

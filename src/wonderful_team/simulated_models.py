@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from wonderful_team.core.protocols import Model, SceneTruth, World, offers
 from wonderful_team.errors import ConfigError
-from wonderful_team.interfaces import Model, SceneTruth, World, offers
 
 SIMULATED = "simulated:"
 
@@ -31,7 +31,8 @@ def scene_truth(world: World, model: str) -> SceneTruth:
     Raises:
         ConfigError: The world has none, or its instruction was replaced: its truth knows what is right for its own only.
     """
-    from wonderful_team.registry import WORLDS, privileged
+    from wonderful_team.core.protocols import privileged
+    from wonderful_team.registry import WORLDS
 
     truth = privileged(world)
     if offers(truth, SceneTruth):

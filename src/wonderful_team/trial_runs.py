@@ -21,21 +21,21 @@ from typing import Any
 import numpy as np
 
 from wonderful_team import registry
-from wonderful_team.actions import Action
 from wonderful_team.api import rollout
+from wonderful_team.core.actions import Action
+from wonderful_team.core.jsonable import to_jsonable
+from wonderful_team.core.protocols import Event, Model, Policy, World, privileged
+from wonderful_team.core.text import user_path
+from wonderful_team.core.values import Instruction, Observation, Request, StepReport, Trial, Usage, View
 from wonderful_team.errors import ConfigError
 from wonderful_team.evals.controls import CONTROLS, make_control
 from wonderful_team.evals.trials import Condition, Limiter, RunSettings, TrialResult, TrialSpec
-from wonderful_team.interfaces import Event, Model, Policy, World
-from wonderful_team.jsonable import to_jsonable
 from wonderful_team.loading import check_names_no_code, is_file_name
 from wonderful_team.methods import Method, role_names
 from wonderful_team.models.providers import model_options
 from wonderful_team.role_models import REST, choice_of
 from wonderful_team.runtime import rollout as roll_out
 from wonderful_team.runtime.versions import versions
-from wonderful_team.text import user_path
-from wonderful_team.types import Instruction, Observation, Request, StepReport, Trial, Usage, View
 
 SUCCESS_EVERY = 10
 """With pages of failures, successes of these seeds (1000, 1010, ...) keep theirs too: a reader wants to see both."""
@@ -177,7 +177,7 @@ def make_scene(spec: TrialSpec) -> World:
 
 
 def _run(spec: TrialSpec, settings: RunSettings, world: World, count: Counting) -> tuple[Trial, str]:
-    truth = registry.privileged(world)
+    truth = privileged(world)
     condition = spec.condition
     if condition.method in CONTROLS:
         control = make_control(condition.method, spec.seed, truth)

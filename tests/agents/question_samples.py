@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from wonderful_team.actions import Beside, MoveStep, OriginOf, PickPlaceStep
 from wonderful_team.contracts import (
     EDGES,
     ChooseMark,
@@ -32,9 +31,10 @@ from wonderful_team.contracts import (
     WriteFunction,
     WriteSteps,
 )
-from wonderful_team.geometry import Box, Frame
-from wonderful_team.pictures import Axes, BoxMark, Candidates, Mark, PathMark, Picture, PointMark
-from wonderful_team.types import Doubt, Subgoal, Target, Verdict
+from wonderful_team.core.actions import Beside, MoveStep, OriginOf, PickPlaceStep
+from wonderful_team.core.geometry import Box, Frame
+from wonderful_team.core.pictures import Axes, BoxMark, Candidates, Mark, PathMark, Picture, PointMark
+from wonderful_team.core.values import Doubt, Subgoal, Target, Verdict
 
 KINDS = ("pick_place", "push", "move", "open", "close", "rotate_gripper", "follow", "home", "navigate")
 

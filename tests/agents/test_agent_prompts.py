@@ -9,8 +9,8 @@ import pytest
 from tests.agents.question_samples import SAMPLES
 from wonderful_team.agents import ROLES, Prompts, build_request
 from wonderful_team.contracts import QUESTIONS
+from wonderful_team.core.values import Words
 from wonderful_team.errors import ConfigError
-from wonderful_team.types import Words
 
 
 def test_every_role_and_ask_has_a_file_and_every_contract_an_asker() -> None:

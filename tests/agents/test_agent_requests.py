@@ -12,10 +12,10 @@ import pytest
 from tests.agents.question_samples import AREA, SAMPLES, TASK, picture
 from wonderful_team.agents import ROLES, build_request
 from wonderful_team.contracts import QUESTIONS, Question, ShownTask, Strip
+from wonderful_team.core.geometry import Box
+from wonderful_team.core.pictures import Picture
+from wonderful_team.core.values import Doubt, Note, Request, Words
 from wonderful_team.errors import ConfigError
-from wonderful_team.geometry import Box
-from wonderful_team.pictures import Picture
-from wonderful_team.types import Doubt, Note, Request, Words
 
 EVERY = pytest.mark.parametrize("question", SAMPLES, ids=lambda question: question.contract)
 

@@ -17,9 +17,9 @@ import pytest
 from tests.evals import runners
 from tests.evals.runners import toy_plan
 from tests.interrupting import listen
+from wonderful_team.core.filesystem import network_file_system
 from wonderful_team.errors import ConfigError
 from wonderful_team.evals.claims import Owner, Surroundings
-from wonderful_team.evals.places import network_file_system
 from wonderful_team.evals.spending import CapReached, Likely, Spending, WaitForCost, allow
 from wonderful_team.evals.store import Store
 from wonderful_team.evals.study import run_study

@@ -9,6 +9,7 @@ import cv2
 import numpy as np
 import pytest
 
+from wonderful_team.core.geometry import AffineCamera, Box, PinholeCamera, Pose
 from wonderful_team.errors import ConfigError, UnknownNameError
 from wonderful_team.evals.estimate import estimate
 from wonderful_team.evals.perturb import moved, read_tiers
@@ -16,7 +17,6 @@ from wonderful_team.evals.photos import Located, overlap, read_photos, score_pho
 from wonderful_team.evals.plan import StudyPlan, read_shard
 from wonderful_team.evals.suites import VIMA_TASKS, all_suites, default_seeds, read_seeds, resolve
 from wonderful_team.evals.trials import Condition, Row, SpendingCaps, TrialResult, TrialSpec
-from wonderful_team.geometry import AffineCamera, Box, PinholeCamera, Pose
 from wonderful_team.role_models import choice_of, read_choices, text_of
 
 KNOWN = [

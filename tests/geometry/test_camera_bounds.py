@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from wonderful_team.core.geometry import Box, PinholeCamera, PlanarCamera, Pose
+from wonderful_team.core.values import KeepOut
 from wonderful_team.errors import ConfigError
-from wonderful_team.geometry import Box, PinholeCamera, PlanarCamera, Pose
 from wonderful_team.runtime.keep_out import region_m
-from wonderful_team.types import KeepOut
 
 K = np.array([[500.0, 0, 320], [0, 500, 240], [0, 0, 1]])
 # A table that narrows towards the back: its horizon lies at about y = -80 px, or at 60 px for the lower picture.

@@ -5,8 +5,8 @@ from __future__ import annotations
 import cv2
 import numpy as np
 
-from wonderful_team.geometry.arrays import Array
-from wonderful_team.types import View
+from wonderful_team.core.geometry.arrays import Array
+from wonderful_team.core.values import View
 
 
 def table(width: int = 640, height: int = 480, *, shift: tuple[float, float] = (0.0, 0.0), seed: int = 0) -> Array:

@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 
 from tests.images.scenes import view
-from wonderful_team.geometry import Box, Frame
-from wonderful_team.geometry.arrays import Array
+from wonderful_team.core.geometry import Box, Frame
+from wonderful_team.core.geometry.arrays import Array
+from wonderful_team.core.pictures import Axes, Picture
 from wonderful_team.images import Ticks, crop, draw, whole
-from wonderful_team.pictures import Axes, Picture
 
 Reader = Callable[[Array], list[tuple[str, float, float]]]
 BAND_PX = 64  # the numbers lie this close to the edge

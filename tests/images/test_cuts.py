@@ -8,10 +8,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tests.images.scenes import view
-from wonderful_team.geometry import Box, Frame
+from wonderful_team.core.geometry import Box, Frame
+from wonderful_team.core.pictures import BoxMark, LineMark, Picture
+from wonderful_team.core.values import View
 from wonderful_team.images import beside_points, crop, crop_pair, edge_strips, inside_points, picture_of, whole
-from wonderful_team.pictures import BoxMark, LineMark, Picture
-from wonderful_team.types import View
 
 SIZES = st.tuples(st.integers(20, 260), st.integers(20, 260))
 

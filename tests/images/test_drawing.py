@@ -10,16 +10,16 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tests.images.scenes import view
-from wonderful_team.geometry import Box, Frame
-from wonderful_team.geometry.arrays import Array
+from wonderful_team.core.geometry import Box, Frame
+from wonderful_team.core.geometry.arrays import Array
+from wonderful_team.core.pictures import Axes, BoxMark, Candidates, LineMark, Mark, PathMark, Picture, Point, PointMark
+from wonderful_team.core.values import GroundedTarget, KeepOut, Limits, Target, View
 from wonderful_team.images import Ticks, crop, draw, inside_points, overview, whole
 from wonderful_team.images.axes import SPANS, axis_step, axis_ticks, round_step
 from wonderful_team.images.canvas import INK, Canvas, Rectangle
 from wonderful_team.images.draw import candidate_radius
 from wonderful_team.images.lettering import plain
 from wonderful_team.images.placing import PointLabel, label_box, label_points
-from wonderful_team.pictures import Axes, BoxMark, Candidates, LineMark, Mark, PathMark, Picture, Point, PointMark
-from wonderful_team.types import GroundedTarget, KeepOut, Limits, Target, View
 
 MARKS: dict[str, Mark] = {
     "axes": Axes(),

@@ -7,10 +7,10 @@ import weakref
 
 import numpy as np
 
-from wonderful_team.geometry import Frame
+from wonderful_team.core.geometry import Frame
+from wonderful_team.core.pictures import Axes, Picture, picture_hash
 from wonderful_team.images import Ticks, draw
 from wonderful_team.images.drawn import drawn, drawn_hash
-from wonderful_team.pictures import Axes, Picture, picture_hash
 
 
 def _picture(*marks):

@@ -15,8 +15,10 @@ import numpy as np
 import pytest
 
 from tests.images.scenes import view
-from wonderful_team.geometry import Box
-from wonderful_team.geometry.arrays import Array
+from wonderful_team.core.geometry import Box
+from wonderful_team.core.geometry.arrays import Array
+from wonderful_team.core.pictures import Axes, BoxMark, Candidates, PathMark, PointMark
+from wonderful_team.core.values import GroundedTarget, KeepOut, Target
 from wonderful_team.images import (
     Ticks,
     beside_points,
@@ -30,8 +32,6 @@ from wonderful_team.images import (
     to_png,
     whole,
 )
-from wonderful_team.pictures import Axes, BoxMark, Candidates, PathMark, PointMark
-from wonderful_team.types import GroundedTarget, KeepOut, Target
 
 GOLDEN = Path(__file__).parents[1] / "golden"
 BLOCK, BOWL = Box(122, 226, 198, 302), Box(378, 131, 518, 271)

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from tests.images.scenes import table
-from wonderful_team.geometry import Box
-from wonderful_team.geometry.arrays import Array
+from wonderful_team.core.geometry import Box
+from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.images import CHANGED, region_change
 
 # Size, the block's box, and one centimetre in pixels when the view is one metre wide.

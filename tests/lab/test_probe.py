@@ -12,12 +12,12 @@ from tests.lab.probing_helpers import LOCAL, bench_of, closing, probed, subject_
 from tests.servers.odd import OddEyes
 from tests.servers.server import WireServer
 from tests.servers.speech import SPEECHES, Speech, longest_side, qwen25_resize
+from wonderful_team.core.caps import Caps
 from wonderful_team.errors import BudgetReached, ModelUnavailableError
 from wonderful_team.lab.asking import Bench, look
 from wonderful_team.lab.limits import picture_limit, schema_kept, thinking_kind
 from wonderful_team.lab.marks import marked_scene
 from wonderful_team.lab.probe import Options, Subject, probe
-from wonderful_team.models.budget import Caps
 from wonderful_team.models.offline import OfflineModel
 from wonderful_team.models.profiles import Profile
 

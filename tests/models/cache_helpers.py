@@ -10,13 +10,13 @@ from typing import Any
 import numpy as np
 
 from wonderful_team.contracts import ReviewPath
-from wonderful_team.geometry import Frame
+from wonderful_team.core.geometry import Frame
+from wonderful_team.core.pictures import Axes, Mark, Picture
+from wonderful_team.core.values import Answer, Request, Subgoal, Usage, Words
 from wonderful_team.images import Ticks
 from wonderful_team.models.cache import Cached
 from wonderful_team.models.cache_store import CacheStore
 from wonderful_team.models.door import Door
-from wonderful_team.pictures import Axes, Mark, Picture
-from wonderful_team.types import Answer, Request, Subgoal, Usage, Words
 
 GOOD = {"reasoning": "it is free", "accepted": True, "problem": ""}
 CONTRADICTION = {"reasoning": "", "accepted": True, "problem": "it is wrong"}

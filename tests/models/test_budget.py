@@ -10,10 +10,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tests.models.wire.scenes import answer_px, picture, reading
+from wonderful_team.core.caps import Caps, Estimate
+from wonderful_team.core.values import Answer, Request, Usage
 from wonderful_team.errors import BudgetReached, ModelServerError
-from wonderful_team.models.budget import Budget, Caps, Estimate, current_ticket
+from wonderful_team.models.budget import Budget, current_ticket
 from wonderful_team.models.door import Door
-from wonderful_team.types import Answer, Request, Usage
 
 VIEW = picture((64, 48))
 REQUEST = reading(VIEW)

@@ -14,16 +14,17 @@ import pytest
 
 from tests.models.cache_helpers import CONTRADICTION, GOOD, Paid, ask, fill, fill_for_ever, hold, picture, request
 from wonderful_team.contracts import ReviewSteps
+from wonderful_team.core.caps import Caps, Estimate
+from wonderful_team.core.geometry import Box
+from wonderful_team.core.pictures import BoxMark
 from wonderful_team.errors import BudgetReached, CacheMissError, ConfigError, ModelOutputError, ModelUnavailableError
-from wonderful_team.geometry import Box
 from wonderful_team.images import Ticks
-from wonderful_team.models.budget import Budget, Caps, Estimate
+from wonderful_team.models.budget import Budget
 from wonderful_team.models.cache import Cached, cached_models
 from wonderful_team.models.cache_key import model_identity, request_key
 from wonderful_team.models.cache_store import CacheStore, Stored, default_cache_file, network_file_system
 from wonderful_team.models.door import Door
 from wonderful_team.models.offline import OfflineModel
-from wonderful_team.pictures import BoxMark
 
 
 @pytest.fixture

@@ -9,13 +9,14 @@ import time
 import pytest
 
 from wonderful_team.contracts import ReviewPath
+from wonderful_team.core.caps import Caps
+from wonderful_team.core.geometry import Frame
+from wonderful_team.core.pictures import Picture
+from wonderful_team.core.values import Answer, Request, Subgoal, Usage, Words
 from wonderful_team.errors import ConfigError, ModelOutputError
-from wonderful_team.geometry import Frame
-from wonderful_team.models.budget import Budget, Caps
+from wonderful_team.models.budget import Budget
 from wonderful_team.models.door import Door
 from wonderful_team.models.scripted import ScriptedModel
-from wonderful_team.pictures import Picture
-from wonderful_team.types import Answer, Request, Subgoal, Usage, Words
 
 GOOD = {"reasoning": "", "accepted": True, "problem": ""}
 CONTRADICTION = {"reasoning": "", "accepted": True, "problem": "it is wrong"}

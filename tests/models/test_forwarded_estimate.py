@@ -8,8 +8,9 @@ from typing import Any
 import pytest
 
 from tests.models.providers.test_sending import REQUEST
+from wonderful_team.core.caps import Caps, Estimate
 from wonderful_team.errors import BudgetReached
-from wonderful_team.models.budget import Budget, Caps, Estimate
+from wonderful_team.models.budget import Budget
 from wonderful_team.models.door import Door
 
 

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import pytest
 
+from wonderful_team.core.caps import Caps
+from wonderful_team.core.values import Usage
 from wonderful_team.errors import ConfigError
-from wonderful_team.models.budget import Caps
 from wonderful_team.models.prices import GivenPrice, TablePrice, Unpriced, read_price
 from wonderful_team.models.providers import check_prices, make_provider
-from wonderful_team.types import Usage
 
 USAGE = Usage(1, tokens_in=1_000_000, tokens_cached=400_000, tokens_thinking=50_000, tokens_out=50_000)
 

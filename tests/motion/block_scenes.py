@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from wonderful_team.geometry import AffineCamera, Box, Camera, PinholeCamera, PlanarCamera, Pose
-from wonderful_team.types import GroundedTarget, Limits, Target, View
+from wonderful_team.core.geometry import AffineCamera, Box, Camera, PinholeCamera, PlanarCamera, Pose
+from wonderful_team.core.values import GroundedTarget, Limits, Target, View
 
 LIMITS = Limits((0.25, -0.5, 0.0), (0.75, 0.5, 0.3), clearance_m=0.2)
 SIZE = (256, 128)

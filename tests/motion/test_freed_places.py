@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 
 from tests.motion.block_scenes import LIMITS, Block, affine_top, area, found, looking_down, scene
-from wonderful_team.actions import At, OriginOf, PickPlace, PickPlaceStep
+from wonderful_team.core.actions import At, OriginOf, PickPlace, PickPlaceStep
 from wonderful_team.motion import ground_actions
 
 CAMERAS = {"affine": affine_top(), "pinhole": looking_down()}

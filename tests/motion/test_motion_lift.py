@@ -10,9 +10,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tests.motion.block_scenes import SIZE, Block, affine_top, cameras, planar, scene
-from wonderful_team.geometry import Box
+from wonderful_team.core.geometry import Box
+from wonderful_team.core.values import View
 from wonderful_team.motion.lift import Lift
-from wonderful_team.types import View
 
 CAMERAS = cameras()
 BLOCK = Block(0.4, -0.1, 0.5, 0.1, 0.06)

@@ -11,10 +11,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tests.motion.block_scenes import LIMITS, Block, affine_top, area, cameras, found, planar, scene
-from wonderful_team.actions import At, Beside, OriginOf, PickPlace, PickPlaceStep, Place
+from wonderful_team.core.actions import At, Beside, OriginOf, PickPlace, PickPlaceStep, Place
+from wonderful_team.core.values import GroundedTarget, PlannedAction, Target
 from wonderful_team.errors import PlanError
 from wonderful_team.motion import ground_actions
-from wonderful_team.types import GroundedTarget, PlannedAction, Target
 
 CAMERAS = cameras()
 RED = Block(0.38, -0.2, 0.44, -0.1, 0.05)

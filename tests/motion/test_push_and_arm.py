@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tests.motion.block_scenes import LIMITS, Block, affine_top, area, found, scene
-from wonderful_team.actions import (
+from wonderful_team.core.actions import (
     At,
     Beside,
     CloseStep,
@@ -32,9 +32,9 @@ from wonderful_team.actions import (
     Step,
     Trajectory,
 )
+from wonderful_team.core.values import NO_WORKSPACE, GroundedTarget, Limits, PlannedAction
 from wonderful_team.errors import PlanError
 from wonderful_team.motion import ground_actions
-from wonderful_team.types import NO_WORKSPACE, GroundedTarget, Limits, PlannedAction
 
 CAMERA = affine_top()
 RED = Block(0.46, -0.1, 0.52, 0.0, 0.06)

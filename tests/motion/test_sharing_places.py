@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from tests.motion.block_scenes import LIMITS, Block, cameras, found, scene
-from wonderful_team.actions import At, OriginOf, PickPlace, PickPlaceStep, Place
+from wonderful_team.core.actions import At, OriginOf, PickPlace, PickPlaceStep, Place
+from wonderful_team.core.values import GroundedTarget
 from wonderful_team.motion import ground_actions
-from wonderful_team.types import GroundedTarget
 
 CAMERAS = cameras()
 RED = Block(0.38, -0.30, 0.43, -0.25, 0.05)

@@ -6,13 +6,13 @@ import asyncio
 from typing import Any
 
 from benchmarks.waiting_rounds import photo
-from wonderful_team.actions import PICK_PLACE, Vocabulary
-from wonderful_team.interfaces import Event
+from wonderful_team.core.actions import PICK_PLACE, Vocabulary
+from wonderful_team.core.caps import Caps
+from wonderful_team.core.protocols import Event
+from wonderful_team.core.values import Instruction, Plan, Request
 from wonderful_team.models.agreeable import agreeable_script
-from wonderful_team.models.budget import Caps
 from wonderful_team.models.scripted import ScriptedModel
 from wonderful_team.planning import Team, TeamConfig
-from wonderful_team.types import Instruction, Plan, Request
 
 
 class Tape:

@@ -9,13 +9,13 @@ import pytest
 
 from benchmarks.waiting_rounds import photo
 from tests.planning.helpers import Tape, asked, doubt, plan_with, scripted
-from wonderful_team.actions import ARM, PICK_PLACE
+from wonderful_team.core.actions import ARM, PICK_PLACE
+from wonderful_team.core.caps import Caps
+from wonderful_team.core.values import Instruction, Usage, Words
 from wonderful_team.errors import ConfigError, ModelUnavailableError
 from wonderful_team.models.agreeable import agreeable_script
-from wonderful_team.models.budget import Caps
 from wonderful_team.models.scripted import ScriptedModel
 from wonderful_team.planning import Team, TeamConfig
-from wonderful_team.types import Instruction, Usage, Words
 
 
 @pytest.mark.parametrize("calls", [1, 2, 3, 4, 6, 9, 14])
@@ -29,7 +29,7 @@ def test_a_cap_on_calls_is_never_passed_and_keeps_the_best_so_far(calls):
 
 
 def test_a_cap_on_money_stops_before_the_call_that_could_pass_it():
-    from wonderful_team.types import Answer
+    from wonderful_team.core.values import Answer
 
     class Paid:
         name = "paid"

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from wonderful_team.actions import At, PickPlaceStep, PushStep
-from wonderful_team.interfaces import Act
+from wonderful_team.core.actions import At, PickPlaceStep, PushStep
+from wonderful_team.core.protocols import Act
+from wonderful_team.core.values import Instruction, Plan, Subgoal
 from wonderful_team.models.offline import OfflineModel
 from wonderful_team.planning import Team
 from wonderful_team.planning.looking import first_part, is_uncertain, looking_lines
 from wonderful_team.runtime import rollout
 from wonderful_team.sims.tabletop import make_world
-from wonderful_team.types import Instruction, Plan, Subgoal
 
 PUSHES = (PushStep("G1", At("T1"), At("T2")), PushStep("G1", At("T1"), At("T3")))
 PLAN = Plan(Instruction("sweep"), "planned", (Subgoal("G1", "push the block into the frame"),), steps=PUSHES)

@@ -10,10 +10,9 @@ from typing import Any
 import numpy as np
 from shapely import Polygon, affinity, box
 
-from wonderful_team.actions import PICK_PLACE, At, OriginOf, PickPlace, PickPlaceStep, Push, PushStep
-from wonderful_team.geometry import AffineCamera, Box
-from wonderful_team.runtime import check_gate
-from wonderful_team.types import (
+from wonderful_team.core.actions import PICK_PLACE, At, OriginOf, PickPlace, PickPlaceStep, Push, PushStep
+from wonderful_team.core.geometry import AffineCamera, Box
+from wonderful_team.core.values import (
     GateReport,
     GroundedTarget,
     Instruction,
@@ -27,6 +26,7 @@ from wonderful_team.types import (
     Target,
     View,
 )
+from wonderful_team.runtime import check_gate
 
 PX_PER_M = 256.0
 SIZE_PX = (256, 128)

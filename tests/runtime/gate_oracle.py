@@ -14,10 +14,8 @@ import numpy as np
 from gate_cases import CAMERA, CLEARANCE_M, HIGH, LOW, SIZE_PX, Block, Case, corners_of
 from shapely import LineString, MultiPoint, Point, Polygon, affinity, box
 
-from wonderful_team.actions import At, PickPlace, PickPlaceStep, Push, PushStep
-from wonderful_team.types import (
-    PlannedAction,
-)
+from wonderful_team.core.actions import At, PickPlace, PickPlaceStep, Push, PushStep
+from wonderful_team.core.values import PlannedAction
 
 TOOL_M = 0.01
 OVERLAP_M = 0.012

@@ -9,11 +9,10 @@ from dataclasses import dataclass, replace
 from runtime_fakes import HALF_PX, SquaresWorld, make_plan
 
 from wonderful_team.contracts import BoxVerdict, DraftPlan, JudgeBox, LocatePoints, PlanDraft, ReadScene, ShownTask
-from wonderful_team.geometry import Box
-from wonderful_team.images import crop, whole
-from wonderful_team.interfaces import Act, Decision, Done, Event, Situation, Subscriber
-from wonderful_team.pictures import Axes, BoxMark, Candidates
-from wonderful_team.types import (
+from wonderful_team.core.geometry import Box
+from wonderful_team.core.pictures import Axes, BoxMark, Candidates
+from wonderful_team.core.protocols import Act, Decision, Done, Event, Situation, Subscriber
+from wonderful_team.core.values import (
     Answer,
     Doubt,
     Instruction,
@@ -28,6 +27,7 @@ from wonderful_team.types import (
     View,
     Words,
 )
+from wonderful_team.images import crop, whole
 
 
 def world_with_pictures(

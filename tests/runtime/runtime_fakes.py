@@ -6,10 +6,10 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from wonderful_team.actions import PICK_PLACE, At, PickPlace, PickPlaceStep, Vocabulary
-from wonderful_team.geometry import AffineCamera, Box
-from wonderful_team.interfaces import Act, Done, Score, Situation
-from wonderful_team.types import (
+from wonderful_team.core.actions import PICK_PLACE, At, PickPlace, PickPlaceStep, Vocabulary
+from wonderful_team.core.geometry import AffineCamera, Box
+from wonderful_team.core.protocols import Act, Done, Score, Situation
+from wonderful_team.core.values import (
     GroundedTarget,
     GroundingEvent,
     Instruction,

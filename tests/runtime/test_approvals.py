@@ -7,10 +7,10 @@ from dataclasses import replace
 import pytest
 from runtime_fakes import MovesPolicy, SquaresTruth, SquaresWorld, make_plan
 
+from wonderful_team.core.values import ReadPlan
 from wonderful_team.errors import ConfigError
 from wonderful_team.runtime import Proposal, rollout
 from wonderful_team.runtime.rollout import MAX_ADVICE
-from wonderful_team.types import ReadPlan
 
 RED, BLUE = (60.0, 60.0), (160.0, 90.0)
 UP, MIDDLE = (200.0, 30.0), (120.0, 60.0)

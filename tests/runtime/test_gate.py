@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from runtime_fakes import SquaresWorld, camera, make_plan, planned, to_m
 
-from wonderful_team.actions import (
+from wonderful_team.core.actions import (
     ARM,
     PICK_PLACE,
     At,
@@ -21,9 +21,18 @@ from wonderful_team.actions import (
     Trajectory,
     Vocabulary,
 )
-from wonderful_team.geometry import Box, Pose
+from wonderful_team.core.geometry import Box, Pose
+from wonderful_team.core.values import (
+    GateReport,
+    KeepOut,
+    Limits,
+    NumberSource,
+    Observation,
+    PlannedAction,
+    RobotState,
+    View,
+)
 from wonderful_team.runtime import Approval, Proposal, actions_id, check_gate
-from wonderful_team.types import GateReport, KeepOut, Limits, NumberSource, Observation, PlannedAction, RobotState, View
 
 LIMITS = Limits((0.25, -0.5, 0.0), (0.75, 0.5, 0.3))
 MOVE = ((60.0, 60.0), (200.0, 30.0))

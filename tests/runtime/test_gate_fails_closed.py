@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from runtime_fakes import HALF_PX, SquaresWorld, camera, make_plan, planned, to_m
 
-from wonderful_team.actions import (
+from wonderful_team.core.actions import (
     ARM,
     At,
     CloseStep,
@@ -29,9 +29,8 @@ from wonderful_team.actions import (
     RotateGripperStep,
     Vocabulary,
 )
-from wonderful_team.geometry import Box, PlanarCamera, Pose
-from wonderful_team.runtime import check_gate
-from wonderful_team.types import (
+from wonderful_team.core.geometry import Box, PlanarCamera, Pose
+from wonderful_team.core.values import (
     GateReport,
     KeepOut,
     Limits,
@@ -41,6 +40,7 @@ from wonderful_team.types import (
     RobotState,
     View,
 )
+from wonderful_team.runtime import check_gate
 
 LIMITS = Limits((0.25, -0.5, 0.0), (0.75, 0.5, 0.3))
 WORDS = Vocabulary(("pick_place", "push", "end_effector_delta", *ARM.kinds))

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from tests.motion.block_scenes import LIMITS, Block, affine_top, area, found, looking_down, scene
-from wonderful_team.actions import (
+from wonderful_team.core.actions import (
     PICK_PLACE,
     At,
     Beside,
@@ -21,11 +21,9 @@ from wonderful_team.actions import (
     Step,
     Vocabulary,
 )
-from wonderful_team.geometry import Camera
-from wonderful_team.interfaces import Act, Done, Situation
-from wonderful_team.motion import ground_actions
-from wonderful_team.runtime import check_gate, rollout
-from wonderful_team.types import (
+from wonderful_team.core.geometry import Camera
+from wonderful_team.core.protocols import Act, Done, Situation
+from wonderful_team.core.values import (
     GateReport,
     GroundedTarget,
     Instruction,
@@ -35,6 +33,8 @@ from wonderful_team.types import (
     StepReport,
     View,
 )
+from wonderful_team.motion import ground_actions
+from wonderful_team.runtime import check_gate, rollout
 
 RED = Block(0.40, -0.30, 0.46, -0.24)
 BLUE = Block(0.50, 0.10, 0.56, 0.16)

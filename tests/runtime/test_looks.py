@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 import pytest
 from runtime_fakes import Listener, SquaresTruth, SquaresWorld, make_plan
 
+from wonderful_team.core.protocols import Act, Done, Situation
 from wonderful_team.errors import ConfigError
-from wonderful_team.interfaces import Act, Done, Situation
 from wonderful_team.runtime import Approval, rollout
 
 RED, BLUE = (60.0, 60.0), (160.0, 90.0)

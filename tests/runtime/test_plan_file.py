@@ -10,11 +10,11 @@ import pytest
 from runtime_fake_run import world_with_pictures
 from runtime_fakes import make_plan
 
-from wonderful_team.actions import Beside, FollowStep, MoveStep, MoveTo, OriginOf, PushStep, Trajectory
+from wonderful_team.core.actions import Beside, FollowStep, MoveStep, MoveTo, OriginOf, PushStep, Trajectory
+from wonderful_team.core.geometry import Box, Pose
+from wonderful_team.core.values import Doubt, KeepOut, PlannedAction
 from wonderful_team.errors import ConfigError
-from wonderful_team.geometry import Box, Pose
 from wonderful_team.runtime import plan_from_json, plan_to_json, read_plan, write_plan
-from wonderful_team.types import Doubt, KeepOut, PlannedAction
 
 
 def rich_plan():

@@ -8,6 +8,8 @@ from dataclasses import replace
 import pytest
 from runtime_fakes import Listener, MovesPolicy, SquaresTruth, SquaresWorld, make_plan
 
+from wonderful_team.core.protocols import Act, GaveUp, Score
+from wonderful_team.core.values import GateReport, Usage
 from wonderful_team.errors import (
     BudgetReached,
     ConfigError,
@@ -16,9 +18,7 @@ from wonderful_team.errors import (
     RobotFaultError,
     SafetyStopError,
 )
-from wonderful_team.interfaces import Act, GaveUp, Score
 from wonderful_team.runtime import Proposal, rollout
-from wonderful_team.types import GateReport, Usage
 
 RED, BLUE = (60.0, 60.0), (160.0, 90.0)
 UP, MIDDLE = (200.0, 30.0), (120.0, 60.0)

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from wonderful_team.geometry import Box
+from wonderful_team.core.geometry import Box
 from wonderful_team.sandbox import SandboxError, SandboxUnavailableError, run_path, worker
 from wonderful_team.sandbox.returned import MAX_ERROR_CHARACTERS, parsed
 

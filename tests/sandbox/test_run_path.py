@@ -9,8 +9,8 @@ import time
 
 import pytest
 
+from wonderful_team.core.geometry import Box
 from wonderful_team.errors import PlanError, WonderfulTeamError
-from wonderful_team.geometry import Box
 from wonderful_team.sandbox import SandboxError, run_path
 
 BOXES = {"T1": Box(10, 20, 30, 60), "T2": Box(50, 20, 60, 30)}

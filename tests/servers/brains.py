@@ -18,8 +18,8 @@ import numpy as np
 
 from tests.servers.heard import Heard, Reply
 from tests.servers.speech import Seat, Speech, say
+from wonderful_team.core.values import Answer, Request, Words
 from wonderful_team.models.door import as_answer, settle_answer
-from wonderful_team.types import Answer, Request, Words
 
 Brain: TypeAlias = Callable[[Heard], "Reply | str"]
 SAME_SHARE = 0.5

@@ -9,7 +9,7 @@ from wonderful_team.agents.common import ANSWER, DATA, EXAMPLES, PICTURES, syste
 from wonderful_team.agents.rendering import example_parts, picture_parts, target_words, words
 from wonderful_team.agents.role import Ask, role
 from wonderful_team.contracts import JudgeBox, JudgeRevision
-from wonderful_team.types import Part
+from wonderful_team.core.values import Part
 
 SYSTEM = system_words(
     """

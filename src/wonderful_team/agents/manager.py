@@ -21,7 +21,7 @@ from wonderful_team.agents.rendering import (
 from wonderful_team.agents.role import Ask, role
 from wonderful_team.agents.strips import strip_parts
 from wonderful_team.contracts import ChooseMark, ChoosePoint, GiveBox, LocatePoints, Presence, ReadScene
-from wonderful_team.types import Part, Target
+from wonderful_team.core.values import Part, Target
 
 SYSTEM = system_words(
     """

@@ -9,7 +9,7 @@ from wonderful_team.agents.common import ANSWER, DATA, INSTRUCTION, system_words
 from wonderful_team.agents.rendering import fenced, listed, words
 from wonderful_team.agents.role import Ask, role
 from wonderful_team.contracts import Remember
-from wonderful_team.types import Part
+from wonderful_team.core.values import Part
 
 SYSTEM = system_words(
     """

@@ -10,7 +10,7 @@ from wonderful_team.agents.rendering import amounts_in, example_parts, listed, p
 from wonderful_team.agents.role import Ask, role
 from wonderful_team.agents.strips import strip_parts
 from wonderful_team.contracts import MoveBox
-from wonderful_team.types import Part
+from wonderful_team.core.values import Part
 
 SYSTEM = system_words(
     """

@@ -9,7 +9,7 @@ from wonderful_team.agents.common import ANSWER, DATA, INSTRUCTION, PICTURES, sy
 from wonderful_team.agents.rendering import listed, subgoal_parts, target_parts, task_parts, view_parts, words
 from wonderful_team.agents.role import Ask, role
 from wonderful_team.contracts import JudgeOutcome, Replan
-from wonderful_team.types import Part, Verdict
+from wonderful_team.core.values import Part, Verdict
 
 SYSTEM = system_words(
     """

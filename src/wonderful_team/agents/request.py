@@ -6,8 +6,8 @@ from wonderful_team.agents.prompts import ROLES, Prompts
 from wonderful_team.agents.rendering import note_parts
 from wonderful_team.agents.role import Role
 from wonderful_team.contracts import Question
+from wonderful_team.core.values import Note, Part, Request, Words
 from wonderful_team.errors import ConfigError, UnknownNameError
-from wonderful_team.types import Note, Part, Request, Words
 
 
 def build_request(

@@ -12,7 +12,7 @@ from types import MappingProxyType
 from typing import Any
 
 from wonderful_team.contracts import Question
-from wonderful_team.types import Part
+from wonderful_team.core.values import Part
 
 
 @dataclass(frozen=True, eq=False)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from wonderful_team.actions import (
+from wonderful_team.core.actions import (
     At,
     Beside,
     CloseStep,

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from wonderful_team.agents.rendering import picture_parts, words
 from wonderful_team.contracts import EDGES, Strip
-from wonderful_team.types import Part
+from wonderful_team.core.values import Part
 
 
 def strip_parts(strips: Sequence[Strip]) -> list[Part]:

@@ -28,7 +28,7 @@ from wonderful_team.contracts import (
     WriteFunction,
     WriteSteps,
 )
-from wonderful_team.types import Doubt, Part
+from wonderful_team.core.values import Doubt, Part
 
 SYSTEM = system_words(
     """

@@ -18,7 +18,7 @@ from wonderful_team.agents.rendering import (
 from wonderful_team.agents.role import Ask, role
 from wonderful_team.agents.step_words import step_words
 from wonderful_team.contracts import ReviewPlan, ReviewSteps
-from wonderful_team.types import Part
+from wonderful_team.core.values import Part
 
 SYSTEM = system_words(
     """

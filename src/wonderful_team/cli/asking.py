@@ -11,8 +11,8 @@ import click
 from wonderful_team.cli.output import say
 from wonderful_team.cli.report import shown_path
 from wonderful_team.cli.wording import numbers_line
+from wonderful_team.core.text import counted
 from wonderful_team.runtime import Approval, Approver, Declined, Proposal
-from wonderful_team.text import counted
 
 TRIES = 3
 """How often an answer that is neither yes nor no is asked for again."""

@@ -9,7 +9,7 @@ import click
 
 from wonderful_team.cli.options import PATH
 from wonderful_team.cli.output import finish
-from wonderful_team.text import counted
+from wonderful_team.core.text import counted
 
 if TYPE_CHECKING:
     from wonderful_team.models.cache_store import CacheSize

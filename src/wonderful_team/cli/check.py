@@ -8,7 +8,7 @@ import click
 
 from wonderful_team.cli.options import PATH
 from wonderful_team.cli.output import finish
-from wonderful_team.text import counted
+from wonderful_team.core.text import counted
 
 
 @click.command(

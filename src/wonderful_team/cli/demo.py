@@ -14,9 +14,9 @@ from wonderful_team.cli.wording import action_line, said_of, trial_exit_code, tr
 
 if TYPE_CHECKING:
     from wonderful_team.contracts import BoxAnswer, PlanDraft
+    from wonderful_team.core.values import Request
     from wonderful_team.made import RecordedTrial
     from wonderful_team.models.wrappers import Injection
-    from wonderful_team.types import Request
 
 WORLD = "tabletop/everyday/tidy_up"
 SEED = 3

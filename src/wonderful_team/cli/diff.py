@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from wonderful_team.cli.wording import action_line
-from wonderful_team.types import GroundedTarget, Plan
+from wonderful_team.core.values import GroundedTarget, Plan
 
 LABEL_WIDTH = 14
 COLUMN_WIDTH = 46

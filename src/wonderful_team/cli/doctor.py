@@ -113,9 +113,9 @@ def _rendering() -> Finding:
 def _drawing() -> Finding:
     import numpy as np
 
+    from wonderful_team.core.pictures import Axes
+    from wonderful_team.core.values import View
     from wonderful_team.images import draw, whole
-    from wonderful_team.pictures import Axes
-    from wonderful_team.types import View
 
     picture = whole(View("v", "v", 0.0, np.full((128, 256, 3), 128, np.uint8)), "test", marks=(Axes(),))
     started = time.monotonic()
@@ -127,7 +127,7 @@ def _drawing() -> Finding:
 
 
 def _sandbox() -> Finding:
-    from wonderful_team.geometry import Box
+    from wonderful_team.core.geometry import Box
     from wonderful_team.sandbox import SandboxError, run_path
 
     boxes = {"T1": Box(10, 10, 20, 20)}

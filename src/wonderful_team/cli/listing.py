@@ -9,8 +9,8 @@ import click
 
 from wonderful_team.cli.options import PATH
 from wonderful_team.cli.output import finish
+from wonderful_team.core.text import counted, visible
 from wonderful_team.errors import ConfigError
-from wonderful_team.text import counted, visible
 
 KINDS = ("models", "worlds", "tasks", "suites", "methods", "prompts", "words", "runs")
 

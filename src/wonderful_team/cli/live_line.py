@@ -11,8 +11,8 @@ from typing import TextIO
 
 import click
 
-from wonderful_team.interfaces import Event
-from wonderful_team.text import visible
+from wonderful_team.core.protocols import Event
+from wonderful_team.core.text import visible
 
 FRAMES = "⠋⠙⠹⠸⠼⠴⠦⠧⠇⠏"
 EVERY_S = 0.12

@@ -10,7 +10,7 @@ from typing import Any
 
 import click
 
-from wonderful_team.text import visible, visible_json
+from wonderful_team.core.text import visible, visible_json
 
 SCHEMA_VERSION = 1
 COLOURS: dict[str, dict[str, Any]] = {

@@ -12,9 +12,9 @@ import click
 
 from wonderful_team.cli.live_line import LiveLine, moves
 from wonderful_team.cli.output import say
-from wonderful_team.interfaces import Event
-from wonderful_team.text import counted, picture_names, spoken, visible
-from wonderful_team.types import Instruction, Usage
+from wonderful_team.core.protocols import Event
+from wonderful_team.core.text import counted, picture_names, spoken, visible
+from wonderful_team.core.values import Instruction, Usage
 
 NAME_WIDTH = 12
 

@@ -14,7 +14,7 @@ from wonderful_team.cli.options import Common
 from wonderful_team.cli.output import finish
 from wonderful_team.cli.progress import Progress
 from wonderful_team.cli.wording import plan_exit_code, plan_lines, trial_exit_code, trial_lines
-from wonderful_team.jsonable import to_jsonable
+from wonderful_team.core.jsonable import to_jsonable
 from wonderful_team.made import MadePlan, RecordedTrial, cost_json
 
 

@@ -7,8 +7,8 @@ from pathlib import Path
 import click
 
 from wonderful_team.cli.options import PATH, Common, common
+from wonderful_team.core.text import counted
 from wonderful_team.runs import find_run
-from wonderful_team.text import counted
 
 LOOKS = 16
 """More pushes than any sweep of the suite may take."""
@@ -71,8 +71,8 @@ def command(
     from wonderful_team.cli.progress import Progress
     from wonderful_team.cli.report import report_trial
     from wonderful_team.cli.video import FRAME_S, Film, check_video_name
+    from wonderful_team.core.protocols import Filmed, offers
     from wonderful_team.errors import reading
-    from wonderful_team.interfaces import Filmed, offers
     from wonderful_team.methods import Method
     from wonderful_team.photos import read_keep_out
     from wonderful_team.registry import scene_name, team_way

@@ -13,8 +13,8 @@ import click
 from wonderful_team.cli.options import PATH, read_models
 from wonderful_team.cli.output import finish
 from wonderful_team.cli.report import shown_path
+from wonderful_team.core.text import counted, picture_names, spoken, visible
 from wonderful_team.errors import UnknownNameError, reading
-from wonderful_team.text import counted, picture_names, spoken, visible
 
 
 @click.command(

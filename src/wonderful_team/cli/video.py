@@ -8,10 +8,10 @@ from pathlib import Path
 import numpy as np
 from PIL import Image
 
+from wonderful_team.core.geometry.arrays import Array
+from wonderful_team.core.protocols import Event
+from wonderful_team.core.values import Observation
 from wonderful_team.errors import ConfigError
-from wonderful_team.geometry.arrays import Array
-from wonderful_team.interfaces import Event
-from wonderful_team.types import Observation
 
 FORMATS = {".webp": "WEBP", ".gif": "GIF", ".png": "PNG"}
 OBSERVED_MS, LAST_MS = 900, 2000

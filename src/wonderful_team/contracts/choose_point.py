@@ -9,8 +9,8 @@ from pydantic import Field
 
 from wonderful_team.contracts.choose_mark import candidates_of
 from wonderful_team.contracts.shown import AnswerModel, Question, Reasoning, ShownSlot
-from wonderful_team.pictures import Candidates, Picture
-from wonderful_team.types import PointRole, Target
+from wonderful_team.core.pictures import Candidates, Picture
+from wonderful_team.core.values import PointRole, Target
 
 
 class PointChoice(AnswerModel):

@@ -9,7 +9,7 @@ from pydantic import Field
 
 from wonderful_team.contracts.plans import TargetDraft, check_targets
 from wonderful_team.contracts.shown import AnswerModel, Question, Reasoning, ShownTask, known
-from wonderful_team.types import Subgoal
+from wonderful_team.core.values import Subgoal
 
 
 class SubgoalTargets(AnswerModel):

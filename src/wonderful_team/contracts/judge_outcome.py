@@ -8,8 +8,8 @@ from typing import Any, Literal
 from pydantic import Field
 
 from wonderful_team.contracts.shown import AnswerModel, Question, Reasoning, ShownTask
-from wonderful_team.pictures import Picture
-from wonderful_team.types import Subgoal, Target, Verdict
+from wonderful_team.core.pictures import Picture
+from wonderful_team.core.values import Subgoal, Target, Verdict
 
 
 class VerdictDraft(AnswerModel):

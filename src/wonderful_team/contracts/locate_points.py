@@ -8,8 +8,8 @@ from typing import Any, Literal
 from pydantic import Field
 
 from wonderful_team.contracts.shown import AnswerModel, PointPx, Question, Reasoning, ShownSlot, settle_point
-from wonderful_team.pictures import Picture
-from wonderful_team.types import Target
+from wonderful_team.core.pictures import Picture
+from wonderful_team.core.values import Target
 
 
 class Points(AnswerModel):

@@ -9,9 +9,9 @@ from pydantic import Field, FiniteFloat
 
 from wonderful_team.contracts.presence import Strip
 from wonderful_team.contracts.shown import AnswerModel, Edge, Question, Reasoning, ShownSlot
-from wonderful_team.geometry import Box
-from wonderful_team.pictures import BoxMark, Picture
-from wonderful_team.types import Target
+from wonderful_team.core.geometry import Box
+from wonderful_team.core.pictures import BoxMark, Picture
+from wonderful_team.core.values import Target
 
 
 class BoxMove(AnswerModel):

@@ -8,7 +8,7 @@ from typing import Literal
 from pydantic import Field
 
 from wonderful_team.contracts.shown import AnswerModel, Reasoning, known, unique
-from wonderful_team.types import PointRole, Subgoal, Target
+from wonderful_team.core.values import PointRole, Subgoal, Target
 
 
 class TargetDraft(AnswerModel):

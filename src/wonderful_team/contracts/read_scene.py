@@ -19,8 +19,8 @@ from wonderful_team.contracts.shown import (
     settle_point,
     unique,
 )
-from wonderful_team.pictures import Picture
-from wonderful_team.types import PointRole, Target
+from wonderful_team.core.pictures import Picture
+from wonderful_team.core.values import PointRole, Target
 
 
 class RolePoint(AnswerModel):

@@ -8,7 +8,7 @@ from typing import Any, Literal
 from pydantic import Field
 
 from wonderful_team.contracts.shown import AnswerModel, Question, Reasoning, ShownTask
-from wonderful_team.types import Subgoal, Verdict
+from wonderful_team.core.values import Subgoal, Verdict
 
 
 class Advice(AnswerModel):

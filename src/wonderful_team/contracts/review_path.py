@@ -8,8 +8,8 @@ from typing import Any
 from pydantic import Field
 
 from wonderful_team.contracts.shown import AnswerModel, Question, Reasoning
-from wonderful_team.pictures import Picture
-from wonderful_team.types import Subgoal
+from wonderful_team.core.pictures import Picture
+from wonderful_team.core.values import Subgoal
 
 
 class PathReview(AnswerModel):

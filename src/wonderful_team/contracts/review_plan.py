@@ -8,7 +8,7 @@ from typing import Any, Literal
 from pydantic import Field
 
 from wonderful_team.contracts.shown import AnswerModel, Question, Reasoning, ShownTask, known
-from wonderful_team.types import Subgoal, Target
+from wonderful_team.core.values import Subgoal, Target
 
 
 class DoubtDraft(AnswerModel):

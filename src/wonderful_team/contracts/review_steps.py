@@ -5,11 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from wonderful_team.actions import Step
 from wonderful_team.contracts.review_plan import PlanReview, check_review
 from wonderful_team.contracts.shown import AnswerModel, Question, ShownTask
-from wonderful_team.pictures import Picture
-from wonderful_team.types import Subgoal, Target
+from wonderful_team.core.actions import Step
+from wonderful_team.core.pictures import Picture
+from wonderful_team.core.values import Subgoal, Target
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,7 +9,7 @@ from pydantic import Field
 
 from wonderful_team.contracts.plans import PlanDraft, check_plan
 from wonderful_team.contracts.shown import AnswerModel, Question, Reasoning, ShownTask
-from wonderful_team.types import Doubt, Subgoal, Target
+from wonderful_team.core.values import Doubt, Subgoal, Target
 
 
 class PlanRevision(AnswerModel):

@@ -11,9 +11,9 @@ from typing import Any, ClassVar, Literal, TypeAlias
 
 from pydantic import BaseModel, ConfigDict, Field, FiniteFloat
 
-from wonderful_team.geometry import Box
-from wonderful_team.pictures import Picture, Point
-from wonderful_team.types import SlotKind
+from wonderful_team.core.geometry import Box
+from wonderful_team.core.pictures import Picture, Point
+from wonderful_team.core.values import SlotKind
 
 OVERSHOOT = 0.02
 """How far past a picture's side a coordinate may lie and still be clamped (share of that side)."""

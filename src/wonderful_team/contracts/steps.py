@@ -8,9 +8,9 @@ from typing import Annotated, Any, Literal, TypeAlias, Union
 
 from pydantic import Field, create_model
 
-from wonderful_team import actions
-from wonderful_team.actions import Beside, OriginOf, Place, Side, Step
 from wonderful_team.contracts.shown import AnswerModel, Reasoning, known
+from wonderful_team.core import actions
+from wonderful_team.core.actions import Beside, OriginOf, Place, Side, Step
 
 
 class PlaceDraft(AnswerModel):

@@ -8,9 +8,9 @@ from dataclasses import dataclass, field
 from pydantic import Field
 
 from wonderful_team.contracts.shown import AnswerModel, Question, Reasoning
-from wonderful_team.geometry import Box
-from wonderful_team.pictures import Picture
-from wonderful_team.types import Subgoal
+from wonderful_team.core.geometry import Box
+from wonderful_team.core.pictures import Picture
+from wonderful_team.core.values import Subgoal
 
 MAX_POINTS = 20
 """Most points a helper function may return (DESIGN, bounds)."""

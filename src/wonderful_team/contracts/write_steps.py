@@ -7,7 +7,7 @@ from typing import Any
 
 from wonderful_team.contracts.shown import AnswerModel, Question, ShownTask
 from wonderful_team.contracts.steps import check_steps, step_list_type
-from wonderful_team.types import Subgoal, Target
+from wonderful_team.core.values import Subgoal, Target
 
 
 @dataclass(frozen=True, eq=False)

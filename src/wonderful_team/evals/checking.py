@@ -9,15 +9,15 @@ from pathlib import Path
 import cv2
 import numpy as np
 
+from wonderful_team.core.geometry.arrays import Array
+from wonderful_team.core.intervals import Rate
+from wonderful_team.core.protocols import World
+from wonderful_team.core.text import counted
+from wonderful_team.core.values import View
 from wonderful_team.errors import WonderfulTeamError
 from wonderful_team.evals.controls import CONTROLS, control_faults
-from wonderful_team.evals.statistics import Rate
 from wonderful_team.evals.trials import TrialResult
-from wonderful_team.geometry.arrays import Array
 from wonderful_team.images import to_png
-from wonderful_team.interfaces import World
-from wonderful_team.text import counted
-from wonderful_team.types import View
 
 SEEDS = 20
 TILE_PX = 320

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from wonderful_team.actions import (
+from wonderful_team.core.actions import (
     Action,
     At,
     Beside,
@@ -21,12 +21,12 @@ from wonderful_team.actions import (
     RotateGripperStep,
     Step,
 )
+from wonderful_team.core.protocols import Act, Decision, Done, Policy, Privileged, Situation
+from wonderful_team.core.values import Limits, PlannedAction
 from wonderful_team.errors import ConfigError
 from wonderful_team.evals.names import CONTROLS, NO_MODEL, NO_OP, ORACLE, RANDOM
-from wonderful_team.interfaces import Act, Decision, Done, Policy, Privileged, Situation
 from wonderful_team.runtime.keep_out import table_height_m
 from wonderful_team.runtime.relief import Relief
-from wonderful_team.types import Limits, PlannedAction
 
 
 class OracleControl:

@@ -6,11 +6,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from wonderful_team.core.text import counted
 from wonderful_team.evals.names import CONTROLS
 from wonderful_team.evals.pairing import visible_gap
 from wonderful_team.evals.plan import StudyPlan
 from wonderful_team.evals.trials import Condition, Row, TrialResult
-from wonderful_team.text import counted
 
 DISCORDANT = 0.3
 """Share of pairs in which just one method succeeds that the reckoning of visible gaps assumes."""

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TypeAlias
 
-from wonderful_team.evals.statistics import Z_95, Rate, wilson_interval
+from wonderful_team.core.intervals import Z_95, Rate, wilson_interval
 from wonderful_team.evals.trials import Condition, Row
 
 Scene: TypeAlias = tuple[str, int, int]

@@ -8,7 +8,7 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
-from wonderful_team.evals.statistics import wilson_interval
+from wonderful_team.core.intervals import wilson_interval
 from wonderful_team.evals.suites import FRUIT_FOLDER
 from wonderful_team.evals.trials import Condition
 

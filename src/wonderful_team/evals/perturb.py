@@ -12,13 +12,13 @@ from dataclasses import replace
 import cv2
 import numpy as np
 
-from wonderful_team.actions import Action
+from wonderful_team.core.actions import Action
+from wonderful_team.core.geometry import AffineCamera, PinholeCamera, PlanarCamera
+from wonderful_team.core.geometry.arrays import Array
+from wonderful_team.core.geometry.cameras import Camera
+from wonderful_team.core.protocols import World
+from wonderful_team.core.values import Instruction, Observation, StepReport, View
 from wonderful_team.errors import ConfigError
-from wonderful_team.geometry import AffineCamera, PinholeCamera, PlanarCamera
-from wonderful_team.geometry.arrays import Array
-from wonderful_team.geometry.cameras import Camera
-from wonderful_team.interfaces import World
-from wonderful_team.types import Instruction, Observation, StepReport, View
 
 IN_PICTURE = ("lighting", "camera", "texture")
 """Kinds that work on the pictures of any world; `clutter` needs a world that can put things on its table."""

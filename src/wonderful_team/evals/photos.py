@@ -13,10 +13,10 @@ from pathlib import Path
 
 from pydantic import BaseModel, Field, ValidationError
 
+from wonderful_team.core.geometry import Box
+from wonderful_team.core.pictures import Point
 from wonderful_team.errors import ConfigError, reading
 from wonderful_team.evals.trials import TrialResult
-from wonderful_team.geometry import Box
-from wonderful_team.pictures import Point
 
 ENOUGH_OVERLAP = 0.5
 """Intersection over union from which a box counts as found (the usual COCO threshold AP50)."""

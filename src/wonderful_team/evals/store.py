@@ -16,10 +16,10 @@ from typing import Any
 
 from pydantic import TypeAdapter
 
+from wonderful_team.core.filesystem import network_file_system
 from wonderful_team.errors import ConfigError, reading
 from wonderful_team.evals.claims import LEASE_S, Owner, Surroundings
 from wonderful_team.evals.names import NO_MODEL
-from wonderful_team.evals.places import network_file_system
 from wonderful_team.evals.schema import JSON, RESULT, SCHEMA_VERSION, SPEC, check_values, make_tables
 from wonderful_team.evals.spending import UNITS, Allowance, Costs, Likely, Spending, WaitForCost, allow
 from wonderful_team.evals.trials import CONDITION, Condition, Row, SpendingCaps, TrialResult, TrialSpec

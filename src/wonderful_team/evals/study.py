@@ -16,6 +16,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
+from wonderful_team.core.text import counted
 from wonderful_team.errors import ConfigError
 from wonderful_team.evals.limits import ProcessLimiter
 from wonderful_team.evals.plan import StudyPlan
@@ -23,7 +24,6 @@ from wonderful_team.evals.spending import CapReached, Spending
 from wonderful_team.evals.store import Store
 from wonderful_team.evals.trials import RunSettings, SpendingCaps, TrialRunner
 from wonderful_team.evals.workers import POLL_S, Work, work_until_done, worker_main
-from wonderful_team.text import counted
 
 STARTS_THAT_FAIL = 3
 _THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")

@@ -7,12 +7,12 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
+from wonderful_team.core.intervals import Rate
+from wonderful_team.core.text import counted
 from wonderful_team.evals.controls import CONTROLS, ORACLE, control_faults
 from wonderful_team.evals.pairing import Pair, pair
 from wonderful_team.evals.plan import OFFLINE
-from wonderful_team.evals.statistics import Rate
 from wonderful_team.evals.trials import DEVELOPMENT_BELOW, Condition, Row, TrialResult
-from wonderful_team.text import counted
 
 SENTENCES = 3
 TOO_MANY_ERRORS = 0.02

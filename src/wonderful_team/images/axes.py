@@ -6,9 +6,9 @@ import math
 from dataclasses import dataclass
 from enum import Enum
 
-from wonderful_team.geometry import Frame
+from wonderful_team.core.geometry import Frame
+from wonderful_team.core.pictures import Axes, Point
 from wonderful_team.images.canvas import WHITE, Canvas
-from wonderful_team.pictures import Axes, Point
 
 
 class Ticks(Enum):

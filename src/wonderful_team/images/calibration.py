@@ -13,11 +13,11 @@ import numpy as np
 from PIL import Image, UnidentifiedImageError
 from pydantic import BaseModel, ConfigDict, ValidationError, model_validator
 
+from wonderful_team.core.geometry import AffineCamera, Camera, PinholeCamera, PlanarCamera, Pose
+from wonderful_team.core.geometry.arrays import Array
+from wonderful_team.core.values import NO_WORKSPACE, Limits
 from wonderful_team.errors import BadPictureError, ConfigError
-from wonderful_team.geometry import AffineCamera, Camera, PinholeCamera, PlanarCamera, Pose
-from wonderful_team.geometry.arrays import Array
 from wonderful_team.images.load import GREY_16, bad_file, check_size, checked_file, size_rule
-from wonderful_team.types import NO_WORKSPACE, Limits
 
 NEAREST_DEPTH_M, FARTHEST_DEPTH_M = 0.02, 50.0
 """Depth whose middle value lies outside is in a wrong unit and refused; single values outside count as unknown."""

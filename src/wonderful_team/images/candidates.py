@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from wonderful_team.geometry import Box
-from wonderful_team.pictures import Point
+from wonderful_team.core.geometry import Box
+from wonderful_team.core.pictures import Point
 
 
 def inside_points(box: Box, columns: int, rows: int) -> tuple[Point, ...]:

@@ -15,9 +15,9 @@ from typing import TypeAlias
 import cv2
 import numpy as np
 
-from wonderful_team.geometry.arrays import Array
+from wonderful_team.core.geometry.arrays import Array
+from wonderful_team.core.pictures import Point
 from wonderful_team.images.lettering import text_mask
-from wonderful_team.pictures import Point
 
 Colour: TypeAlias = tuple[int, int, int]
 Rectangle: TypeAlias = tuple[float, float, float, float]

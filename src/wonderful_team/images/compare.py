@@ -5,9 +5,9 @@ from __future__ import annotations
 import cv2
 import numpy as np
 
-from wonderful_team.geometry import Box
-from wonderful_team.geometry.arrays import Array
-from wonderful_team.pictures import checked_rgb
+from wonderful_team.core.geometry import Box
+from wonderful_team.core.geometry.arrays import Array
+from wonderful_team.core.pictures import checked_rgb
 
 CHANGED = 0.25
 """From this value on something has moved; noise, JPEG and a slow drift of the light stay well below."""

@@ -12,10 +12,10 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import Literal, TypeAlias
 
-from wonderful_team.geometry import Box, Frame
+from wonderful_team.core.geometry import Box, Frame
+from wonderful_team.core.pictures import BoxMark, LineMark, Mark, Picture
+from wonderful_team.core.values import View
 from wonderful_team.images.resample import picture_of, whole_pixels
-from wonderful_team.pictures import BoxMark, LineMark, Mark, Picture
-from wonderful_team.types import View
 
 Edge: TypeAlias = Literal["left", "top", "right", "bottom"]
 StripSide: TypeAlias = Literal["inside", "outside"]

@@ -4,7 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from wonderful_team.geometry.arrays import Array
+from wonderful_team.core.geometry.arrays import Array
+from wonderful_team.core.pictures import (
+    Axes,
+    BoxMark,
+    BoxStyle,
+    Candidates,
+    LineMark,
+    PathMark,
+    Picture,
+    Point,
+    PointMark,
+)
 from wonderful_team.images.axes import Ticks, draw_axes
 from wonderful_team.images.canvas import (
     BLUE,
@@ -20,17 +31,6 @@ from wonderful_team.images.canvas import (
 )
 from wonderful_team.images.lettering import plain
 from wonderful_team.images.placing import PointLabel, label_box, label_points, paint_plates
-from wonderful_team.pictures import (
-    Axes,
-    BoxMark,
-    BoxStyle,
-    Candidates,
-    LineMark,
-    PathMark,
-    Picture,
-    Point,
-    PointMark,
-)
 
 BOX_COLOURS: dict[BoxStyle, Colour] = {
     "target": ORANGE,

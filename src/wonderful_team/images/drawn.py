@@ -5,10 +5,10 @@ from __future__ import annotations
 import threading
 from weakref import WeakKeyDictionary
 
-from wonderful_team.geometry.arrays import Array
+from wonderful_team.core.geometry.arrays import Array
+from wonderful_team.core.pictures import Picture, picture_hash
 from wonderful_team.images.axes import Ticks
 from wonderful_team.images.draw import draw
-from wonderful_team.pictures import Picture, picture_hash
 
 _lock = threading.Lock()
 _drawn: WeakKeyDictionary[Picture, dict[Ticks, Array]] = WeakKeyDictionary()

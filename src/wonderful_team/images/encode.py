@@ -5,8 +5,8 @@ from __future__ import annotations
 import cv2
 import numpy as np
 
-from wonderful_team.geometry.arrays import Array
-from wonderful_team.pictures import checked_rgb
+from wonderful_team.core.geometry.arrays import Array
+from wonderful_team.core.pictures import checked_rgb
 
 
 def to_png(rgb: Array, *, compression: int = 3) -> bytes:

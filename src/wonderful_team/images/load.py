@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 from PIL import Image, ImageOps, UnidentifiedImageError
 
+from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.errors import BadPictureError
-from wonderful_team.geometry.arrays import Array
 
 MIN_PICTURE_SIDE_PX = 16
 """Smaller pictures hold nothing that could be found."""

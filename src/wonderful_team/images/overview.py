@@ -8,8 +8,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from wonderful_team.geometry import Box, Camera
-from wonderful_team.geometry.arrays import Array
+from wonderful_team.core.geometry import Box, Camera
+from wonderful_team.core.geometry.arrays import Array
+from wonderful_team.core.pictures import BoxStyle, Picture, Point
+from wonderful_team.core.text import spoken
+from wonderful_team.core.values import GroundedTarget, KeepOut, Limits, PlannedAction, View
 from wonderful_team.images.canvas import (
     BLUE,
     GREEN,
@@ -27,9 +30,6 @@ from wonderful_team.images.cut import whole
 from wonderful_team.images.draw import candidate_radius, draw_box, point_reach
 from wonderful_team.images.lettering import plain
 from wonderful_team.images.placing import PointLabel, label_box, label_points, paint_plates
-from wonderful_team.pictures import BoxStyle, Picture, Point
-from wonderful_team.text import spoken
-from wonderful_team.types import GroundedTarget, KeepOut, Limits, PlannedAction, View
 
 TARGET_COLOURS: tuple[Colour, ...] = (ORANGE, SKY, YELLOW, PURPLE, GREEN, VERMILLION)
 """Taken in turn by the targets of a plan."""

@@ -6,9 +6,9 @@ import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
-from wonderful_team.geometry import Box
+from wonderful_team.core.geometry import Box
+from wonderful_team.core.pictures import Point
 from wonderful_team.images.canvas import INK, WHITE, Canvas, Colour, Rectangle
-from wonderful_team.pictures import Point
 
 # Where a plate may stand from its point, in order of preference: above first, as numbers are read.
 _DIRECTIONS = ((0, -1), (1, 0), (-1, 0), (0, 1), (1, -1), (-1, -1), (1, 1), (-1, 1))

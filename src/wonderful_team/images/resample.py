@@ -5,10 +5,10 @@ from __future__ import annotations
 import cv2
 import numpy as np
 
-from wonderful_team.geometry import Box, Frame
-from wonderful_team.geometry.arrays import Array
-from wonderful_team.pictures import Picture
-from wonderful_team.types import View
+from wonderful_team.core.geometry import Box, Frame
+from wonderful_team.core.geometry.arrays import Array
+from wonderful_team.core.pictures import Picture
+from wonderful_team.core.values import View
 
 _PAD_LIGHT, _PAD_DARK = 150, 118  # the two greys of the padding's stripes
 _PAD_PERIOD_PX = 16  # width of a light and a dark stripe together

@@ -5,8 +5,8 @@ Agents write them in pixels; a provider whose model counts otherwise writes the 
 
 from __future__ import annotations
 
+from wonderful_team.core.pictures import Axes
 from wonderful_team.images.axes import Ticks
-from wonderful_team.pictures import Axes
 
 _UNIT_WORDS = {
     Ticks.PIXELS: "pixels",

@@ -11,18 +11,19 @@ import numpy as np
 from wonderful_team.agents import build_request
 from wonderful_team.contracts import AnswerModel, Question, ReadScene, SceneReading
 from wonderful_team.contracts.shown import known, unique
+from wonderful_team.core.caps import Estimate
+from wonderful_team.core.geometry import Box
+from wonderful_team.core.geometry.arrays import Array
+from wonderful_team.core.pictures import Axes, Picture
+from wonderful_team.core.protocols import Model
+from wonderful_team.core.values import Answer, Part, Request, Words
 from wonderful_team.errors import ModelOutputError
-from wonderful_team.geometry import Box
-from wonderful_team.geometry.arrays import Array
-from wonderful_team.interfaces import Model
 from wonderful_team.lab.fit import Sighting
 from wonderful_team.lab.marks import MarkedScene
-from wonderful_team.models.budget import Budget, Estimate
+from wonderful_team.models.budget import Budget
 from wonderful_team.models.conventions import PIXELS, Convention
 from wonderful_team.models.door import Door
 from wonderful_team.models.profiles import Profile
-from wonderful_team.pictures import Axes, Picture
-from wonderful_team.types import Answer, Part, Request, Words
 
 Thinking = str | None
 

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from wonderful_team.geometry.arrays import Array
+from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.lab.regress import Line, clamp_bounds, robust_line
 from wonderful_team.lab.resizes import candidate_resizes
 from wonderful_team.models.conventions import SPANS, Convention, Order, Resize, Shape, Size, Unit

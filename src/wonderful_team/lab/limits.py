@@ -10,13 +10,13 @@ import numpy as np
 
 from wonderful_team.agents import build_request
 from wonderful_team.contracts import ReadScene
+from wonderful_team.core.protocols import Model
+from wonderful_team.core.values import Answer, Request, Words
 from wonderful_team.errors import BudgetReached, RequestRejectedError, WonderfulTeamError
-from wonderful_team.interfaces import Model
 from wonderful_team.lab.asking import Bench, Loose, look
 from wonderful_team.lab.fit import WILD
 from wonderful_team.lab.marks import marked_scene
 from wonderful_team.models.profiles import Profile, Schemas, Thinking
-from wonderful_team.types import Answer, Request, Words
 
 SMALL = (448, 336)
 """Size of the pictures of these trials: they cost little."""

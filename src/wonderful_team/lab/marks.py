@@ -11,10 +11,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from wonderful_team.geometry import Box, Frame
-from wonderful_team.geometry.arrays import Array
-from wonderful_team.pictures import Picture, Point
-from wonderful_team.types import Target
+from wonderful_team.core.geometry import Box, Frame
+from wonderful_team.core.geometry.arrays import Array
+from wonderful_team.core.pictures import Picture, Point
+from wonderful_team.core.values import Target
 
 COLOURS: dict[str, tuple[int, int, int]] = {
     "red": (214, 24, 24),

@@ -11,10 +11,12 @@ import numpy as np
 
 from wonderful_team.agents import build_request
 from wonderful_team.contracts import BoxVerdict, JudgeBox, ReadScene, SceneReading
+from wonderful_team.core.geometry import Box
+from wonderful_team.core.pictures import Axes, BoxMark, Point
+from wonderful_team.core.protocols import Model
+from wonderful_team.core.values import Target, View
 from wonderful_team.errors import BudgetReached, ConfigError, ModelOutputError, ModelUnavailableError
-from wonderful_team.geometry import Box
 from wonderful_team.images import crop, whole
-from wonderful_team.interfaces import Model
 from wonderful_team.lab.asking import Bench
 from wonderful_team.lab.fit import WILD
 from wonderful_team.lab.marks import marked_scene
@@ -31,8 +33,6 @@ from wonderful_team.models.error_profile import (
     Pointing,
     SceneKind,
 )
-from wonderful_team.pictures import Axes, BoxMark, Point
-from wonderful_team.types import Target, View
 
 SIZES = ((640, 480), (960, 540), (512, 683), (800, 600))
 ABSENT = 2

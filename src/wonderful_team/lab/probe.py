@@ -9,16 +9,17 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from wonderful_team.core.caps import Caps
+from wonderful_team.core.values import Usage
 from wonderful_team.errors import BudgetReached, WonderfulTeamError
 from wonderful_team.lab.asking import Bench, MakeModel, Seen, convention_of, look
 from wonderful_team.lab.fit import WILD, Fit, fit_convention
 from wonderful_team.lab.limits import picture_limit, schema_kept, thinking_kind
 from wonderful_team.lab.marks import MarkedScene, marked_scene
 from wonderful_team.lab.measure import LabScene, measure_errors
-from wonderful_team.models.budget import Budget, Caps
+from wonderful_team.models.budget import Budget
 from wonderful_team.models.conventions import CONVENTIONS, PIXELS, Convention, Resize, Size
 from wonderful_team.models.profiles import FitFigures, Profile, clamp_words, convention_words
-from wonderful_team.types import Usage
 
 FIT_SIZES: tuple[Size, ...] = ((601, 461), (1563, 879), (1247, 1563))
 """Small and 4:3, wide, tall and large. The sides are far from multiples of 28 and 32, so that such a resize shows."""

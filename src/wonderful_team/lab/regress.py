@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from wonderful_team.geometry.arrays import Array
+from wonderful_team.core.geometry.arrays import Array
 
 _NEAR = 40.0
 """Residuals up to here (per mille of the diagonal) may take part in a fit."""

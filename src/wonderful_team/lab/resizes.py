@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from wonderful_team.geometry.arrays import Array
+from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.lab.regress import repeated_median_slope
 from wonderful_team.models.conventions import CONVENTIONS, Resize, Size
 

@@ -9,8 +9,8 @@ from collections.abc import Callable
 from typing import Any
 
 from wonderful_team import contracts as c
+from wonderful_team.core.values import Request
 from wonderful_team.models.scripted import ScriptedModel
-from wonderful_team.types import Request
 
 _TARGETS = [
     {"id": "T1", "kind": "object", "words": "the first thing", "part": None, "where": "", "like": [], "use": ["pick"]},

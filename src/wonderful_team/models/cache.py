@@ -18,14 +18,14 @@ from weakref import WeakKeyDictionary
 
 from pydantic import BaseModel
 
+from wonderful_team.core.caps import Estimate
+from wonderful_team.core.jsonable import to_jsonable
+from wonderful_team.core.protocols import Model
+from wonderful_team.core.values import Answer, Provenance, Request, Usage
 from wonderful_team.errors import CacheMissError, ConfigError, WonderfulTeamError
-from wonderful_team.interfaces import Model
-from wonderful_team.jsonable import to_jsonable
-from wonderful_team.models.budget import Estimate
 from wonderful_team.models.cache_key import request_key
 from wonderful_team.models.cache_store import CacheStore, Stored
 from wonderful_team.models.door import as_answer, call_model, settle_answer
-from wonderful_team.types import Answer, Provenance, Request, Usage
 
 CacheMode: TypeAlias = Literal["on", "off", "only"]
 CACHE_MODES: tuple[CacheMode, ...] = get_args(CacheMode)

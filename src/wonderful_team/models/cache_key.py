@@ -15,13 +15,13 @@ from weakref import WeakKeyDictionary
 import numpy as np
 
 from wonderful_team._version import __version__
+from wonderful_team.core.jsonable import to_jsonable
+from wonderful_team.core.pictures import Picture, picture_hash
+from wonderful_team.core.protocols import Model
+from wonderful_team.core.values import Part, Request
 from wonderful_team.errors import ConfigError
 from wonderful_team.images import Ticks
 from wonderful_team.images.drawn import drawn_hash
-from wonderful_team.interfaces import Model
-from wonderful_team.jsonable import to_jsonable
-from wonderful_team.pictures import Picture, picture_hash
-from wonderful_team.types import Part, Request
 
 KEY_VERSION = 1
 """Raise it when the same request must no longer find answers kept by an older release."""

@@ -18,8 +18,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from wonderful_team.core.text import user_path
 from wonderful_team.errors import ConfigError
-from wonderful_team.text import user_path
 
 APPLICATION_ID = 0x57544331
 """Marks the file as ours in SQLite's header: "WTC1"."""

@@ -16,7 +16,7 @@ from typing import Literal, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike
 
-from wonderful_team.geometry.arrays import Array, as_points
+from wonderful_team.core.geometry.arrays import Array, as_points
 
 Order: TypeAlias = Literal["xy", "yx"]
 Unit: TypeAlias = Literal["pixels", "thousandths", "percent", "unit"]

@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Protocol
 
+from wonderful_team.core.values import Usage
 from wonderful_team.errors import ConfigError
-from wonderful_team.types import Usage
 
 
 class Prices(Protocol):

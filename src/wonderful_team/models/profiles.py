@@ -16,10 +16,10 @@ from typing import Any, Literal, TypeAlias
 
 from pydantic import TypeAdapter, ValidationError
 
+from wonderful_team.core.text import user_path
 from wonderful_team.errors import ConfigError, UnknownNameError, reading
 from wonderful_team.models.conventions import PIXELS, Convention, Resize, Shape
 from wonderful_team.models.error_profile import ErrorProfile
-from wonderful_team.text import user_path
 
 SCHEMA_VERSION = 1
 CONFIG_VARIABLE = "WONDERFUL_TEAM_CONFIG"

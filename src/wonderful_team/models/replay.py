@@ -9,6 +9,11 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from wonderful_team import errors
+from wonderful_team.core.caps import Estimate
+from wonderful_team.core.jsonable import to_jsonable
+from wonderful_team.core.pictures import Picture
+from wonderful_team.core.protocols import Model
+from wonderful_team.core.values import Answer, Part, Request, Usage
 from wonderful_team.errors import (
     BudgetReached,
     ModelOutputError,
@@ -17,12 +22,7 @@ from wonderful_team.errors import (
     WonderfulTeamError,
     reading,
 )
-from wonderful_team.interfaces import Model
-from wonderful_team.jsonable import to_jsonable
-from wonderful_team.models.budget import Estimate
 from wonderful_team.models.door import as_answer, call_model
-from wonderful_team.pictures import Picture
-from wonderful_team.types import Answer, Part, Request, Usage
 
 STAGES = ("plan", "ground", "act", "replan")
 """Stages of an attempt that a run can branch at; `replan` comes after the first execution."""

@@ -12,10 +12,10 @@ from typing import Any
 
 import numpy as np
 
-from wonderful_team.geometry.arrays import Array
-from wonderful_team.interfaces import Model
-from wonderful_team.pictures import Picture
-from wonderful_team.types import Request
+from wonderful_team.core.geometry.arrays import Array
+from wonderful_team.core.pictures import Picture
+from wonderful_team.core.protocols import Model
+from wonderful_team.core.values import Request
 
 SHIFT_SHARE = 0.05
 """How far a picture is shifted, as a share of its width."""

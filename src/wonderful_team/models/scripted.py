@@ -7,8 +7,8 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
+from wonderful_team.core.values import Answer, Request, Usage
 from wonderful_team.errors import UnsupportedQuestion
-from wonderful_team.types import Answer, Request, Usage
 
 
 class ScriptedModel:

@@ -10,9 +10,9 @@ from typing import Any
 
 from wonderful_team.contracts import BoxPx, PointPx, SceneReading
 from wonderful_team.contracts.give_box import BoxAnswer
-from wonderful_team.interfaces import Model
+from wonderful_team.core.protocols import Model
+from wonderful_team.core.values import Answer, Request
 from wonderful_team.models.door import as_answer, settle_answer
-from wonderful_team.types import Answer, Request
 
 
 @dataclass

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from wonderful_team.actions import (
+from wonderful_team.core.actions import (
     At,
     CloseStep,
     FollowStep,
@@ -22,7 +22,8 @@ from wonderful_team.actions import (
     RotateGripperStep,
     Trajectory,
 )
-from wonderful_team.geometry import Pose
+from wonderful_team.core.geometry import Pose
+from wonderful_team.core.values import PlannedAction
 from wonderful_team.motion.heights import above_z_m, clear_z_m, grasp_z_m
 from wonderful_team.motion.lift import Spot
 from wonderful_team.motion.pick_place import put_spot
@@ -30,7 +31,6 @@ from wonderful_team.motion.places import TO_GRASP, Places
 from wonderful_team.motion.progress import Held, Moved, Progress
 from wonderful_team.motion.sources import source
 from wonderful_team.motion.turns import yaw_of
-from wonderful_team.types import PlannedAction
 
 
 def ground_move(step: MoveStep, places: Places, progress: Progress) -> tuple[PlannedAction, Progress]:

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 
-from wonderful_team.actions import Side
-from wonderful_team.geometry import Box
-from wonderful_team.pictures import Point
+from wonderful_team.core.actions import Side
+from wonderful_team.core.geometry import Box
+from wonderful_team.core.pictures import Point
 
 GAP_SHARE = 0.15
 """Free space left between two things put side by side (share of the standing one's smaller side)."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
-from wonderful_team.actions import (
+from wonderful_team.core.actions import (
     CloseStep,
     FollowStep,
     HomeStep,
@@ -17,6 +17,8 @@ from wonderful_team.actions import (
     RotateGripperStep,
     Step,
 )
+from wonderful_team.core.pictures import Point
+from wonderful_team.core.values import GroundedTarget, Limits, PlannedAction, View
 from wonderful_team.motion import arm
 from wonderful_team.motion.lift import Lift
 from wonderful_team.motion.pick_place import ground_pick_place
@@ -24,8 +26,6 @@ from wonderful_team.motion.places import Places
 from wonderful_team.motion.progress import Progress
 from wonderful_team.motion.push import ground_push
 from wonderful_team.motion.sharing import shared_places
-from wonderful_team.pictures import Point
-from wonderful_team.types import GroundedTarget, Limits, PlannedAction, View
 
 
 def ground_actions(

@@ -7,11 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from wonderful_team.geometry import Box, PlanarCamera
-from wonderful_team.geometry.arrays import Array
-from wonderful_team.geometry.cameras import Camera
-from wonderful_team.pictures import Point
-from wonderful_team.types import View
+from wonderful_team.core.geometry import Box, PlanarCamera
+from wonderful_team.core.geometry.arrays import Array
+from wonderful_team.core.geometry.cameras import Camera
+from wonderful_team.core.pictures import Point
+from wonderful_team.core.values import View
 
 TABLE_Z_M = 0.0
 """Height of the table in the base frame [m]."""

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from wonderful_team.actions import PickPlace, PickPlaceStep
-from wonderful_team.geometry.arrays import Array
+from wonderful_team.core.actions import PickPlace, PickPlaceStep
+from wonderful_team.core.geometry.arrays import Array
+from wonderful_team.core.values import PlannedAction
 from wonderful_team.motion.lift import Spot
 from wonderful_team.motion.places import TO_PICK, Places
 from wonderful_team.motion.progress import Moved, Progress
 from wonderful_team.motion.sources import source
 from wonderful_team.motion.turns import turned_m, turned_px, yaw_of
-from wonderful_team.types import PlannedAction
 
 
 def ground_pick_place(step: PickPlaceStep, places: Places, progress: Progress) -> tuple[PlannedAction, Progress]:

@@ -8,15 +8,15 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from wonderful_team.actions import At, Beside, OriginOf, Place
+from wonderful_team.core.actions import At, Beside, OriginOf, Place
+from wonderful_team.core.geometry import Box
+from wonderful_team.core.pictures import Point
+from wonderful_team.core.values import GroundedTarget, Limits, PointRole
 from wonderful_team.errors import PlanError
-from wonderful_team.geometry import Box
 from wonderful_team.motion.beside import beside_px, half_extents
 from wonderful_team.motion.lift import Lift, Spot
 from wonderful_team.motion.progress import Progress
 from wonderful_team.motion.sharing import Share, share_px
-from wonderful_team.pictures import Point
-from wonderful_team.types import GroundedTarget, Limits, PointRole
 
 TO_PICK: tuple[PointRole, ...] = ("pick", "grasp")
 TO_PLACE: tuple[PointRole, ...] = ("place", "push_end", "pick", "grasp")

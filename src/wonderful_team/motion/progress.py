@@ -8,11 +8,11 @@ from types import MappingProxyType
 
 import numpy as np
 
-from wonderful_team.actions import Height
-from wonderful_team.geometry.arrays import Array
+from wonderful_team.core.actions import Height
+from wonderful_team.core.geometry.arrays import Array
+from wonderful_team.core.pictures import Point
 from wonderful_team.motion.lift import Lift, Spot
 from wonderful_team.motion.turns import turned_m, turned_px
-from wonderful_team.pictures import Point
 
 
 @dataclass(frozen=True, eq=False)

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from wonderful_team.actions import At, Place, Push, PushStep
+from wonderful_team.core.actions import At, Place, Push, PushStep
+from wonderful_team.core.pictures import Point
+from wonderful_team.core.values import NO_WORKSPACE, PlannedAction, PointRole
 from wonderful_team.motion.beside import behind_px
 from wonderful_team.motion.lift import Spot
 from wonderful_team.motion.places import Places
 from wonderful_team.motion.progress import Moved, Progress
 from wonderful_team.motion.sources import source
-from wonderful_team.pictures import Point
-from wonderful_team.types import NO_WORKSPACE, PlannedAction, PointRole
 
 _TO_END: tuple[PointRole, ...] = ("push_end", "place", "pick", "grasp")
 

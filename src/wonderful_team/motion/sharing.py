@@ -8,13 +8,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from wonderful_team.actions import At, PickPlaceStep, Step
-from wonderful_team.geometry import Box
+from wonderful_team.core.actions import At, PickPlaceStep, Step
+from wonderful_team.core.geometry import Box
+from wonderful_team.core.pictures import Point
+from wonderful_team.core.values import GroundedTarget
 from wonderful_team.motion.beside import LEAST_GAP_PX, half_extents
 from wonderful_team.motion.lift import Lift
 from wonderful_team.motion.turns import yaw_of
-from wonderful_team.pictures import Point
-from wonderful_team.types import GroundedTarget
 
 LEVEL_M = 0.006
 """A floor may rise or fall by this much under what is put on it [m]."""

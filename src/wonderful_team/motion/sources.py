@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from wonderful_team.core.values import NumberSource
 from wonderful_team.motion.lift import Spot
-from wonderful_team.types import NumberSource
 
 
 def source(role: str, target: str, spot: Spot) -> NumberSource:

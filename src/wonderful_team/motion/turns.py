@@ -6,8 +6,8 @@ import math
 
 import numpy as np
 
-from wonderful_team.geometry.arrays import Array
-from wonderful_team.pictures import Point
+from wonderful_team.core.geometry.arrays import Array
+from wonderful_team.core.pictures import Point
 
 
 def yaw_of(rotate_deg: float) -> float:

@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
-from wonderful_team.actions import Step
 from wonderful_team.contracts import PlanReview, ReviewSteps, StepList, WriteSteps
+from wonderful_team.core.actions import Step
+from wonderful_team.core.pictures import BoxMark, PathMark, Picture, Point, PointMark
+from wonderful_team.core.values import Doubt, GroundedTarget, PlannedAction, View
 from wonderful_team.motion import ground_actions
-from wonderful_team.pictures import BoxMark, PathMark, Picture, Point, PointMark
 from wonderful_team.planning.desk import Desk
 from wonderful_team.planning.plan_loop import PlanState
 from wonderful_team.planning.scene import SceneShown
-from wonderful_team.types import Doubt, GroundedTarget, PlannedAction, View
 
 
 async def write_steps(

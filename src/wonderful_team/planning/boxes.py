@@ -20,13 +20,13 @@ from wonderful_team.contracts import (
     ShownSlot,
     Strip,
 )
-from wonderful_team.geometry import Box
+from wonderful_team.core.geometry import Box
+from wonderful_team.core.pictures import Axes, BoxMark, Picture, Point
+from wonderful_team.core.values import Answer, GroundingEvent, Provenance, Target
 from wonderful_team.images import crop, edge_strips
-from wonderful_team.pictures import Axes, BoxMark, Picture, Point
 from wonderful_team.planning.desk import Desk
 from wonderful_team.planning.scene import SceneShown
 from wonderful_team.planning.together import together
-from wonderful_team.types import Answer, GroundingEvent, Provenance, Target
 
 BoxFate: TypeAlias = Literal["accepted", "rejected", "exhausted"]
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import Literal
 
 from wonderful_team.contracts import BoxAnswer, ChooseMark, GiveBox, LocatePoints, MarkChoice, Points
-from wonderful_team.geometry import Box
-from wonderful_team.pictures import Candidates, Picture, Point, PointMark
+from wonderful_team.core.geometry import Box
+from wonderful_team.core.pictures import Candidates, Picture, Point, PointMark
 from wonderful_team.planning.boxes import Job
 from wonderful_team.planning.together import together
 

@@ -10,11 +10,11 @@ from typing import Any
 from wonderful_team.agents import build_request
 from wonderful_team.agents.request import role_for
 from wonderful_team.contracts import MemoryEntry, Question, Remember
+from wonderful_team.core.values import Answer, Note
 from wonderful_team.errors import ModelOutputError
 from wonderful_team.models.door import Door
 from wonderful_team.planning.config import Members, TeamConfig
 from wonderful_team.planning.memory import Notebooks, SystemMemory
-from wonderful_team.types import Answer, Note
 
 STAGES = ("plan", "ground", "act", "replan", "memory")
 """Order in which memory entries of one attempt stand."""

@@ -12,15 +12,15 @@ from collections.abc import Mapping, Sequence
 from typing import Literal, TypeAlias
 
 from wonderful_team.contracts import LocatePoints, Points, ReadScene, SceneReading
-from wonderful_team.geometry import Box
-from wonderful_team.pictures import Point
+from wonderful_team.core.geometry import Box
+from wonderful_team.core.pictures import Point
+from wonderful_team.core.values import GroundedTarget, Provenance, Subgoal, Target
 from wonderful_team.planning.boxes import Job, refine
 from wonderful_team.planning.centres import choose, give_box, propose
 from wonderful_team.planning.desk import Desk
 from wonderful_team.planning.points import choose_points
 from wonderful_team.planning.scene import SceneShown, plan_lines
 from wonderful_team.planning.together import together
-from wonderful_team.types import GroundedTarget, Provenance, Subgoal, Target
 
 Fate: TypeAlias = Literal["found", "absent", "gave_up"]
 MOVED_SHARE = 0.15

@@ -8,9 +8,9 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from wonderful_team.actions import PushStep
 from wonderful_team.agents import step_words
-from wonderful_team.types import Plan
+from wonderful_team.core.actions import PushStep
+from wonderful_team.core.values import Plan
 
 
 def is_uncertain(plan: Plan) -> bool:

@@ -11,7 +11,7 @@ from collections.abc import Callable, Coroutine
 from typing import Any
 
 from wonderful_team.contracts import MemoryEntry
-from wonderful_team.types import Note
+from wonderful_team.core.values import Note
 
 NOTEBOOK_LINES = 12
 """Most lines of a notebook that a request carries: the newest ones."""

@@ -19,11 +19,11 @@ from wonderful_team.contracts import (
     RevisePlan,
     TargetList,
 )
+from wonderful_team.core.text import counted
+from wonderful_team.core.values import Answer, Doubt, Subgoal, Target
 from wonderful_team.errors import NeedsClarification
 from wonderful_team.planning.desk import Desk
 from wonderful_team.planning.scene import SceneShown
-from wonderful_team.text import counted
-from wonderful_team.types import Answer, Doubt, Subgoal, Target
 
 
 @dataclass(frozen=True, eq=False)

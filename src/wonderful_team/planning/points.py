@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from wonderful_team.contracts import ChoosePoint, PointChoice
-from wonderful_team.geometry import Box
+from wonderful_team.core.geometry import Box
+from wonderful_team.core.pictures import BoxMark, Candidates, Picture, Point
+from wonderful_team.core.values import PointRole
 from wonderful_team.images import beside_points, crop, inside_points
-from wonderful_team.pictures import BoxMark, Candidates, Picture, Point
 from wonderful_team.planning.boxes import Job
 from wonderful_team.planning.together import together
-from wonderful_team.types import PointRole
 
 GRID = 3
 """Candidates per side of the box in each round (nine inside)."""

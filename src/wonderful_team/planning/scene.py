@@ -6,11 +6,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
-from wonderful_team.actions import Vocabulary
 from wonderful_team.contracts import ShownSlot, ShownTask
+from wonderful_team.core.actions import Vocabulary
+from wonderful_team.core.pictures import Axes, Picture
+from wonderful_team.core.values import Instruction, Limits, Observation, Subgoal, Target, View
 from wonderful_team.images import whole
-from wonderful_team.pictures import Axes, Picture
-from wonderful_team.types import Instruction, Limits, Observation, Subgoal, Target, View
 
 
 @dataclass(frozen=True, eq=False)

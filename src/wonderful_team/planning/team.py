@@ -6,7 +6,22 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal, TypeAlias
 
-from wonderful_team.actions import Vocabulary
+from wonderful_team.core.actions import Vocabulary
+from wonderful_team.core.caps import Caps
+from wonderful_team.core.pictures import Point
+from wonderful_team.core.protocols import Act, Decision, Done, GaveUp, Model, Situation, Subscriber
+from wonderful_team.core.text import counted
+from wonderful_team.core.values import (
+    NO_WORKSPACE,
+    GroundedTarget,
+    Instruction,
+    KeepOut,
+    Limits,
+    Observation,
+    Plan,
+    Usage,
+    Verdict,
+)
 from wonderful_team.errors import (
     ActionRefusedError,
     BudgetReached,
@@ -18,10 +33,8 @@ from wonderful_team.errors import (
     PlanError,
     WonderfulTeamError,
 )
-from wonderful_team.interfaces import Act, Decision, Done, GaveUp, Model, Situation, Subscriber
-from wonderful_team.models.budget import Budget, Caps
+from wonderful_team.models.budget import Budget
 from wonderful_team.models.door import Door
-from wonderful_team.pictures import Point
 from wonderful_team.planning import acting, grounding, judging, plan_loop
 from wonderful_team.planning.config import TeamConfig
 from wonderful_team.planning.desk import Desk, settle
@@ -30,18 +43,6 @@ from wonderful_team.planning.looking import first_part, is_uncertain, looking_li
 from wonderful_team.planning.plan_loop import PlanState
 from wonderful_team.planning.scene import SceneShown
 from wonderful_team.planning.together import both
-from wonderful_team.text import counted
-from wonderful_team.types import (
-    NO_WORKSPACE,
-    GroundedTarget,
-    Instruction,
-    KeepOut,
-    Limits,
-    Observation,
-    Plan,
-    Usage,
-    Verdict,
-)
 
 Until: TypeAlias = Literal["draft", "checked", "grounded", "actions"]
 UNTIL: tuple[Until, ...] = ("draft", "checked", "grounded", "actions")

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 from shapely import LineString, Point
 
-from wonderful_team.actions import (
+from wonderful_team.core.actions import (
     ACTION_TYPES,
     GRIPPER_STATES,
     STEP_TYPES,
@@ -29,9 +29,9 @@ from wonderful_team.actions import (
     places_of,
     steps_for,
 )
-from wonderful_team.geometry import wrap_angle
-from wonderful_team.geometry.arrays import Array
-from wonderful_team.types import GateCheck, NumberSource, PlannedAction, View
+from wonderful_team.core.geometry import wrap_angle
+from wonderful_team.core.geometry.arrays import Array
+from wonderful_team.core.values import GateCheck, NumberSource, PlannedAction, View
 
 MOST_TURN_RAD = 2 * math.pi
 """Largest turn of one action [rad]: once round. A larger number is a mistake, and a robot might really turn so far."""

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TypeAlias
 
-from wonderful_team.types import GateCheck, GateReport, Plan, PlannedAction, content_hash, file_hash
+from wonderful_team.core.values import GateCheck, GateReport, Plan, PlannedAction, content_hash, file_hash
 
 APPROVAL_S = 600.0
 """How long a consent holds [s]: as long as the picture that was looked at may be acted upon."""

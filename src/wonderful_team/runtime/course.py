@@ -9,13 +9,23 @@ from typing import Any
 import numpy as np
 from shapely import MultiPolygon, affinity
 
-from wonderful_team.actions import At, Beside, Gripper, MoveStep, OriginOf, PickPlace, PickPlaceStep, Push, PushStep
-from wonderful_team.geometry import Box
-from wonderful_team.geometry.arrays import Array
+from wonderful_team.core.actions import (
+    At,
+    Beside,
+    Gripper,
+    MoveStep,
+    OriginOf,
+    PickPlace,
+    PickPlaceStep,
+    Push,
+    PushStep,
+)
+from wonderful_team.core.geometry import Box
+from wonderful_team.core.geometry.arrays import Array
+from wonderful_team.core.values import GroundedTarget, Limits, Plan, PlannedAction, View
 from wonderful_team.runtime.keep_out import table_height_m
 from wonderful_team.runtime.relief import RAISED_M, Relief, covered, outline
 from wonderful_team.runtime.sweep import sweep_of
-from wonderful_team.types import GroundedTarget, Limits, Plan, PlannedAction, View
 
 RING_SHARE, LEAST_RING_PX = 0.15, 2.0
 """How far round a box its support is looked for: share of its smaller side, and at least so many pixels."""

@@ -5,13 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from wonderful_team.errors import WonderfulTeamError
-from wonderful_team.jsonable import to_jsonable
-from wonderful_team.pictures import Picture
-from wonderful_team.runtime.picture_store import PictureStore
-from wonderful_team.runtime.stored import view_entry
-from wonderful_team.runtime.values_file import encode
-from wonderful_team.types import (
+from wonderful_team.core.jsonable import to_jsonable
+from wonderful_team.core.pictures import Picture
+from wonderful_team.core.values import (
     Answer,
     GateReport,
     Instruction,
@@ -23,6 +19,10 @@ from wonderful_team.types import (
     Target,
     Usage,
 )
+from wonderful_team.errors import WonderfulTeamError
+from wonderful_team.runtime.picture_store import PictureStore
+from wonderful_team.runtime.stored import view_entry
+from wonderful_team.runtime.values_file import encode
 
 
 def request_key(request: Request) -> str:

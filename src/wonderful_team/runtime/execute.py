@@ -6,18 +6,10 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from wonderful_team.errors import ConfigError
-from wonderful_team.geometry import Box
-from wonderful_team.interfaces import Act, World
-from wonderful_team.runtime.approval import Approval, Approver, Declined, Proposal
-from wonderful_team.runtime.course import Stage, stages_of
-from wonderful_team.runtime.freshness import freshness_checks, touched, watched
-from wonderful_team.runtime.gate import check_gate
-from wonderful_team.runtime.progress import Ending, Progress
-from wonderful_team.runtime.read_plan_checks import read_plan_checks
-from wonderful_team.runtime.seen_checks import still_free_checks
-from wonderful_team.text import counted
-from wonderful_team.types import (
+from wonderful_team.core.geometry import Box
+from wonderful_team.core.protocols import Act, World
+from wonderful_team.core.text import counted
+from wonderful_team.core.values import (
     GateReport,
     Observation,
     Plan,
@@ -27,6 +19,14 @@ from wonderful_team.types import (
     SubgoalRun,
     file_hash,
 )
+from wonderful_team.errors import ConfigError
+from wonderful_team.runtime.approval import Approval, Approver, Declined, Proposal
+from wonderful_team.runtime.course import Stage, stages_of
+from wonderful_team.runtime.freshness import freshness_checks, touched, watched
+from wonderful_team.runtime.gate import check_gate
+from wonderful_team.runtime.progress import Ending, Progress
+from wonderful_team.runtime.read_plan_checks import read_plan_checks
+from wonderful_team.runtime.seen_checks import still_free_checks
 
 
 class Execution:

@@ -8,12 +8,12 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
-from wonderful_team.actions import PickPlace, Push, places_of
-from wonderful_team.geometry import Box
-from wonderful_team.geometry.arrays import Array
+from wonderful_team.core.actions import PickPlace, Push, places_of
+from wonderful_team.core.geometry import Box
+from wonderful_team.core.geometry.arrays import Array
+from wonderful_team.core.pictures import Point
+from wonderful_team.core.values import GateCheck, Observation, Plan, PlannedAction, View
 from wonderful_team.images import CHANGED, region_change
-from wonderful_team.pictures import Point
-from wonderful_team.types import GateCheck, Observation, Plan, PlannedAction, View
 
 NOISE_LEVELS = 14
 """A pixel counts as changed when a channel, smoothed over 3 x 3 pixels, differs by more than this (of 255).

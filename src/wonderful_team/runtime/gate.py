@@ -12,10 +12,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from wonderful_team.actions import Action, EndEffectorDelta, PickPlace, Vocabulary
-from wonderful_team.geometry import Box
-from wonderful_team.geometry.arrays import Array
-from wonderful_team.jsonable import to_jsonable
+from wonderful_team.core.actions import Action, EndEffectorDelta, PickPlace, Vocabulary
+from wonderful_team.core.geometry import Box
+from wonderful_team.core.geometry.arrays import Array
+from wonderful_team.core.jsonable import to_jsonable
+from wonderful_team.core.text import counted
+from wonderful_team.core.values import GateCheck, GateReport, KeepOut, Limits, Observation, Plan, PlannedAction
 from wonderful_team.runtime.agreement import agreement_checks, class_checks, form_checks
 from wonderful_team.runtime.approval import Approval, Declined, approval_checks, approved_id
 from wonderful_team.runtime.course import Course, Stage
@@ -24,8 +26,6 @@ from wonderful_team.runtime.keep_out import table_height_m
 from wonderful_team.runtime.keep_out_checks import keep_out_checks, keep_out_px_checks
 from wonderful_team.runtime.seen_checks import height_checks, place_checks, way_checks
 from wonderful_team.runtime.sweep import Sweep, carry_height_m, sweep_of, swept_path_px
-from wonderful_team.text import counted
-from wonderful_team.types import GateCheck, GateReport, KeepOut, Limits, Observation, Plan, PlannedAction
 
 TOOL_RADIUS_M = 0.01
 """Half-width of what moves [m]: a path may not come nearer than this to a keep-out region; a finger's width."""

@@ -9,9 +9,9 @@ import numpy as np
 from shapely import LineString, Polygon
 from shapely import Point as ShapelyPoint
 
-from wonderful_team.geometry import Box, Camera
-from wonderful_team.geometry.arrays import Array
-from wonderful_team.types import KeepOut, Limits
+from wonderful_team.core.geometry import Box, Camera
+from wonderful_team.core.geometry.arrays import Array
+from wonderful_team.core.values import KeepOut, Limits
 
 
 def table_height_m(limits: Limits) -> float:

@@ -8,13 +8,13 @@ from typing import Any
 import numpy as np
 from shapely import MultiPoint, unary_union
 
-from wonderful_team.actions import Action, PickPlace, Push
-from wonderful_team.geometry import Box, Camera
-from wonderful_team.geometry.arrays import Array
+from wonderful_team.core.actions import Action, PickPlace, Push
+from wonderful_team.core.geometry import Box, Camera
+from wonderful_team.core.geometry.arrays import Array
+from wonderful_team.core.values import GateCheck, KeepOut, Limits, PlannedAction
 from wonderful_team.runtime.course import Carried
 from wonderful_team.runtime.keep_out import line, region_m, region_px, table_height_m
 from wonderful_team.runtime.sweep import Sweep, swept_path_px
-from wonderful_team.types import GateCheck, KeepOut, Limits, PlannedAction
 
 UNKNOWN_REACH_M = 0.1
 """How far a carried thing of which neither a box nor depth tells the size is taken to reach from the tool [m]."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any, Protocol
 
-from wonderful_team.types import Provenance, Usage
+from wonderful_team.core.values import Provenance, Usage
 
 
 class Horizon(Protocol):

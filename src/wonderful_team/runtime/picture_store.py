@@ -8,11 +8,11 @@ from pathlib import Path
 
 import numpy as np
 
-from wonderful_team.geometry.arrays import Array
+from wonderful_team.core.geometry.arrays import Array
+from wonderful_team.core.pictures import Picture
+from wonderful_team.core.values import Observation, View
 from wonderful_team.images import Ticks, to_png
 from wonderful_team.images.drawn import drawn, drawn_hash
-from wonderful_team.pictures import Picture
-from wonderful_team.types import Observation, View
 
 FOLDER = "pictures"
 

@@ -11,9 +11,9 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from wonderful_team.core.values import Plan
 from wonderful_team.errors import ConfigError
 from wonderful_team.runtime.values_file import decode, encode
-from wonderful_team.types import Plan
 
 PLAN_SCHEMA_VERSION = 2
 _SHORT_IDS = 1

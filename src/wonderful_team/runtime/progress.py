@@ -6,10 +6,19 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
+from wonderful_team.core.protocols import Act, Decision, Event, Policy, Situation, Subscriber, World, offers
+from wonderful_team.core.values import (
+    GateReport,
+    Observation,
+    Plan,
+    PlannedAction,
+    StepReport,
+    SubgoalRun,
+    Trial,
+    Verdict,
+)
 from wonderful_team.errors import WonderfulTeamError
-from wonderful_team.interfaces import Act, Decision, Event, Policy, Situation, Subscriber, World, offers
 from wonderful_team.runtime.optional import Accounting, Configured, NamedModel, Sourced
-from wonderful_team.types import GateReport, Observation, Plan, PlannedAction, StepReport, SubgoalRun, Trial, Verdict
 
 
 @dataclass(frozen=True)

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from wonderful_team.geometry import Box
+from wonderful_team.core.geometry import Box
+from wonderful_team.core.values import GateCheck, Instruction, Observation, ReadPlan, View
 from wonderful_team.images import CHANGED, region_change
-from wonderful_team.types import GateCheck, Instruction, Observation, ReadPlan, View
 
 CAMERA_PX = 2.0
 """Most that a point of the plan may be seen elsewhere by the camera of now [px]: about what a good calibration leaves."""

@@ -12,8 +12,8 @@ from typing import Annotated, Any, Literal
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError
 
+from wonderful_team.core.jsonable import read_json
 from wonderful_team.errors import ConfigError
-from wonderful_team.jsonable import read_json
 
 RECORD_SCHEMA_VERSION = 1
 SCHEMA_FILE = Path(__file__).with_name("record-v1.schema.json")

@@ -12,11 +12,13 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any
 
+from wonderful_team.core.jsonable import to_jsonable
+from wonderful_team.core.protocols import Event
+from wonderful_team.core.text import counted, picture_names, spoken, visible
+from wonderful_team.core.values import GateCheck, GateReport, Instruction, Limits, Observation, Plan, Request, Trial
 from wonderful_team.errors import ActionRefusedError, WonderfulTeamError
 from wonderful_team.images import Ticks, action_arrows, overview, to_png
-from wonderful_team.interfaces import Event
 from wonderful_team.interrupts import held
-from wonderful_team.jsonable import to_jsonable
 from wonderful_team.runtime import entries
 from wonderful_team.runtime.keep_out import outlines
 from wonderful_team.runtime.picture_store import PictureStore
@@ -24,8 +26,6 @@ from wonderful_team.runtime.plan_file import plan_to_json
 from wonderful_team.runtime.record_schema import RECORD_SCHEMA_VERSION
 from wonderful_team.runtime.redact import redact, redact_all, secrets_of_environment
 from wonderful_team.runtime.versions import versions
-from wonderful_team.text import counted, picture_names, spoken, visible
-from wonderful_team.types import GateCheck, GateReport, Instruction, Limits, Observation, Plan, Request, Trial
 
 _REWRITE_EVERY_S = 0.3
 """Least time between two rewrites of record.json; important events are written at once."""

@@ -10,9 +10,9 @@ import numpy as np
 import shapely
 from shapely import MultiPoint
 
-from wonderful_team.geometry import Box, PlanarCamera
-from wonderful_team.geometry.arrays import Array
-from wonderful_team.types import View
+from wonderful_team.core.geometry import Box, PlanarCamera
+from wonderful_team.core.geometry.arrays import Array
+from wonderful_team.core.values import View
 
 FARTHEST_M = 50.0
 """Depth beyond this is none [m]."""

@@ -6,6 +6,8 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, cast
 
+from wonderful_team.core.protocols import Act, Done, GaveUp, Policy, Privileged, Situation, Subscriber, World, offers
+from wonderful_team.core.values import Observation, Plan, ReadPlan, Trial
 from wonderful_team.errors import (
     ConfigError,
     ModelUnavailableError,
@@ -14,7 +16,6 @@ from wonderful_team.errors import (
     WonderfulTeamError,
     WorldUnavailableError,
 )
-from wonderful_team.interfaces import Act, Done, GaveUp, Policy, Privileged, Situation, Subscriber, World, offers
 from wonderful_team.runtime.approval import Approval, Approver
 from wonderful_team.runtime.execute import Execution
 from wonderful_team.runtime.freshness import MAX_AGE_S
@@ -22,7 +23,6 @@ from wonderful_team.runtime.loop import Caller
 from wonderful_team.runtime.optional import ChunkPolicy, Horizon
 from wonderful_team.runtime.progress import Ending, Progress
 from wonderful_team.runtime.user_code import GuardedScorer, GuardedWorld, decision_of
-from wonderful_team.types import Observation, Plan, ReadPlan, Trial
 
 NOBODY_JUDGED = "; nobody judged the result: there is no scorer, and a method judges only where it may replan"
 

@@ -8,12 +8,12 @@ import numpy as np
 import shapely
 from shapely import LineString, Point
 
-from wonderful_team.actions import Action, MoveTo, PickPlace, Push, Trajectory
-from wonderful_team.geometry.arrays import Array
+from wonderful_team.core.actions import Action, MoveTo, PickPlace, Push, Trajectory
+from wonderful_team.core.geometry.arrays import Array
+from wonderful_team.core.values import GateCheck, Limits, PlannedAction, View
 from wonderful_team.runtime.course import Stage
 from wonderful_team.runtime.relief import Relief, covered, outline
 from wonderful_team.runtime.sweep import Sweep
-from wonderful_team.types import GateCheck, Limits, PlannedAction, View
 
 AGREE_M = 0.02
 """How far the height of a pick or of a place that no plan names may be from the surface seen there [m]."""

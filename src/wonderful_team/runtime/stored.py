@@ -10,14 +10,14 @@ from typing import Any
 import numpy as np
 from PIL import Image
 
+from wonderful_team.core.geometry import AffineCamera, Camera, PinholeCamera, PlanarCamera
+from wonderful_team.core.geometry.arrays import Array
+from wonderful_team.core.pictures import picture_hash
+from wonderful_team.core.values import Instruction, Observation, Plan, RobotState, Slot, View
 from wonderful_team.errors import ConfigError
-from wonderful_team.geometry import AffineCamera, Camera, PinholeCamera, PlanarCamera
-from wonderful_team.geometry.arrays import Array
-from wonderful_team.pictures import picture_hash
 from wonderful_team.runtime.picture_store import PictureStore
 from wonderful_team.runtime.plan_file import plan_from_json
 from wonderful_team.runtime.values_file import decode, encode
-from wonderful_team.types import Instruction, Observation, Plan, RobotState, Slot, View
 
 _CAMERAS = (PinholeCamera, AffineCamera, PlanarCamera)
 

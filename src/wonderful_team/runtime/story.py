@@ -6,12 +6,12 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-from wonderful_team.actions import Vocabulary
+from wonderful_team.core.actions import Vocabulary
+from wonderful_team.core.protocols import Situation
+from wonderful_team.core.values import GateCheck, GateReport, Observation, Plan, StepReport, SubgoalRun
 from wonderful_team.errors import ConfigError
-from wonderful_team.interfaces import Situation
 from wonderful_team.runtime.setup import Setup, same_limits
 from wonderful_team.runtime.stored import stored_instruction, stored_observation, stored_plan
-from wonderful_team.types import GateCheck, GateReport, Observation, Plan, StepReport, SubgoalRun
 
 Record = Mapping[str, Any]
 _NOTHING = {"gates": 0, "executions": 0, "subgoals": 0}

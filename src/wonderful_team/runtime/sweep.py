@@ -6,18 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from wonderful_team.actions import (
-    Action,
-    EndEffectorDelta,
-    MoveTo,
-    Navigate,
-    PickPlace,
-    Push,
-    Trajectory,
-)
-from wonderful_team.geometry.arrays import Array
-from wonderful_team.pictures import Point
-from wonderful_team.types import Limits, PlannedAction
+from wonderful_team.core.actions import Action, EndEffectorDelta, MoveTo, Navigate, PickPlace, Push, Trajectory
+from wonderful_team.core.geometry.arrays import Array
+from wonderful_team.core.pictures import Point
+from wonderful_team.core.values import Limits, PlannedAction
 
 
 def carry_height_m(action: PickPlace, limits: Limits) -> float:

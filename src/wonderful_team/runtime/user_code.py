@@ -9,7 +9,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, TypeVar, cast
 
-from wonderful_team.actions import Action, Vocabulary
+from wonderful_team.core.actions import Action, Vocabulary
+from wonderful_team.core.protocols import Act, Decision, Done, GaveUp, Policy, Privileged, Score, Situation, World
+from wonderful_team.core.values import Instruction, Limits, Observation, Plan, PlannedAction, StepReport
 from wonderful_team.errors import (
     MethodCodeError,
     RobotFaultError,
@@ -17,9 +19,7 @@ from wonderful_team.errors import (
     WorldUnavailableError,
     code_of,
 )
-from wonderful_team.interfaces import Act, Decision, Done, GaveUp, Policy, Privileged, Score, Situation, World
 from wonderful_team.runtime.loop import Caller
-from wonderful_team.types import Instruction, Limits, Observation, Plan, PlannedAction, StepReport
 
 Kind = TypeVar("Kind")
 _OURS = "wonderful_team."

@@ -14,7 +14,7 @@ from typing import Any, Literal, Union, get_args, get_origin, get_type_hints
 import numpy as np
 from PIL import Image
 
-from wonderful_team.types import View
+from wonderful_team.core.values import View
 
 
 def encode(value: Any) -> Any:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 
-from wonderful_team.pictures import Point
+from wonderful_team.core.pictures import Point
 from wonderful_team.sandbox.errors import SandboxError
 
 MAX_COORDINATE_PX = 1e6

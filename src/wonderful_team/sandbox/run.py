@@ -7,8 +7,8 @@ from typing import Any
 
 import pydantic_monty
 
-from wonderful_team.geometry import Box
-from wonderful_team.pictures import Point
+from wonderful_team.core.geometry import Box
+from wonderful_team.core.pictures import Point
 from wonderful_team.sandbox.errors import SandboxError
 from wonderful_team.sandbox.returned import cut, describing, parsed
 from wonderful_team.sandbox.worker import WorkerLostError, discarded_output, in_worker

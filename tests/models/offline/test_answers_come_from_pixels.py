@@ -8,18 +8,18 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from wonderful_team.actions import PICK_PLACE
 from wonderful_team.contracts import GiveBox, JudgeBox, LocatePoints, Presence, ReadScene, Strip
-from wonderful_team.geometry import Box
+from wonderful_team.core.actions import PICK_PLACE
+from wonderful_team.core.geometry import Box
+from wonderful_team.core.pictures import PointMark
+from wonderful_team.core.values import Observation, Target
 from wonderful_team.models.door import Door
 from wonderful_team.models.offline import OfflineModel
-from wonderful_team.pictures import PointMark
 from wonderful_team.planning import Team, TeamConfig
 from wonderful_team.planning.boxes import Job
 from wonderful_team.planning.desk import Desk
 from wonderful_team.planning.scene import SceneShown
 from wonderful_team.sims.tabletop import make_world
-from wonderful_team.types import Observation, Target
 
 SEED = 4
 TARGET = Target("T1", "object", "object shown in {dragged_obj}", source="slot", like=("dragged_obj",), use=("pick",))

@@ -11,14 +11,14 @@ import numpy as np
 import pytest
 
 from wonderful_team.contracts.shown import ShownTask
+from wonderful_team.core.geometry.arrays import Array
+from wonderful_team.core.values import Subgoal, Target, View
 from wonderful_team.errors import NotUnderstoodError
-from wonderful_team.geometry.arrays import Array
 from wonderful_team.images import whole
 from wonderful_team.models.offline.answers.drafting import draft
 from wonderful_team.models.offline.answers.reviewing import findings
 from wonderful_team.planning.scene import SceneShown
 from wonderful_team.sims.tabletop import make_world
-from wonderful_team.types import Subgoal, Target, View
 
 HERE = Path(__file__).parent
 DESK = Path(__file__).parents[3] / "examples" / "desk.png"

@@ -15,11 +15,11 @@ from tests.servers.wiring import Wire
 from wonderful_team.agents import build_request
 from wonderful_team.contracts import ReadScene
 from wonderful_team.contracts.read_scene import SceneReading
+from wonderful_team.core.values import Answer, Request, Target, View
 from wonderful_team.errors import WonderfulTeamError
 from wonderful_team.images import whole
 from wonderful_team.models.agreeable import agreeable_script
 from wonderful_team.models.door import Door
-from wonderful_team.types import Answer, Request, Target, View
 
 TARGETS = (Target("T1", "object", "the red cube"), Target("T2", "area", "the free corner"))
 

@@ -16,10 +16,10 @@ from tests.servers.faults import PROMPT_INJECTION, Fault
 from tests.servers.server import KEY, Rules, WireServer
 from tests.servers.wiring import WIRES
 from wonderful_team.cli.app import run
+from wonderful_team.core.values import Answer, Request
 from wonderful_team.images import to_png
 from wonderful_team.models.providers import SERVER_KEY, Provider
 from wonderful_team.models.providers import make as making
-from wonderful_team.types import Answer, Request
 
 QUICK_S = 0.01
 EXIT_CODES = {

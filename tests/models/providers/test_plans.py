@@ -10,10 +10,10 @@ import pytest
 from tests.servers.brains import Desk, Tapped, offline_brain
 from tests.servers.server import Rules, WireServer
 from tests.servers.wiring import OTHER_FAMILIES, WIRES, Wire
+from wonderful_team.core.values import Plan
 from wonderful_team.models.offline import OfflineModel
 from wonderful_team.planning import Team
 from wonderful_team.sims.tabletop import make_world
-from wonderful_team.types import Plan
 
 COARSEST_PX = 0.6
 """Half of a thousandth of the picture's longest side, and half a pixel: what whole numbers lose."""

@@ -19,6 +19,8 @@ from tests.servers.brains import Desk, Tapped, scripted_brain, typed_brain
 from tests.servers.faults import Fault
 from tests.servers.server import KEY, Rules, WireServer
 from tests.servers.wiring import WIRES, Wire
+from wonderful_team.core.caps import Caps
+from wonderful_team.core.values import Answer
 from wonderful_team.errors import (
     BudgetReached,
     ConfigError,
@@ -29,13 +31,12 @@ from wonderful_team.errors import (
     UnknownModelError,
     WonderfulTeamError,
 )
-from wonderful_team.models.budget import Budget, Caps
+from wonderful_team.models.budget import Budget
 from wonderful_team.models.door import Door
 from wonderful_team.models.prices import GivenPrice
 from wonderful_team.models.profiles import Profile
 from wonderful_team.models.providers import make_provider
 from wonderful_team.models.wire import compose
-from wonderful_team.types import Answer
 
 VIEW = picture()
 REQUEST = reading(VIEW, (picture((300, 200), "front"),))

@@ -32,13 +32,13 @@ from wonderful_team.contracts import (
     WriteFunction,
     WriteSteps,
 )
+from wonderful_team.core.geometry import Box
+from wonderful_team.core.pictures import BoxMark, Candidates, Picture, PointMark
+from wonderful_team.core.values import Doubt, Subgoal, Target, Verdict
 from wonderful_team.errors import UnsupportedQuestion
-from wonderful_team.geometry import Box
 from wonderful_team.images import crop, crop_pair, edge_strips
 from wonderful_team.models.reshown import CHANGES, Reshown
 from wonderful_team.models.simulated.model import ANSWERS
-from wonderful_team.pictures import BoxMark, Candidates, Picture, PointMark
-from wonderful_team.types import Doubt, Subgoal, Target, Verdict
 
 from .tables import Set, set_table, show_views
 

@@ -10,12 +10,12 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from wonderful_team.geometry import Box, Frame
-from wonderful_team.geometry.arrays import Array
+from wonderful_team.core.geometry import Box, Frame
+from wonderful_team.core.geometry.arrays import Array
+from wonderful_team.core.pictures import BoxMark, Picture
 from wonderful_team.images import crop, edge_strips, whole
 from wonderful_team.models.reshown import CHANGES
 from wonderful_team.models.simulated.seeing import Eyes
-from wonderful_team.pictures import BoxMark, Picture
 
 from .tables import Set, set_table
 

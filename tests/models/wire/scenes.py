@@ -6,9 +6,9 @@ import numpy as np
 
 from wonderful_team import contracts as c
 from wonderful_team.agents import build_request
+from wonderful_team.core.pictures import Axes, Picture
+from wonderful_team.core.values import Request, Target, View
 from wonderful_team.images import whole
-from wonderful_team.pictures import Axes, Picture
-from wonderful_team.types import Request, Target, View
 
 TARGETS = (Target("T1", "object", "red disc"), Target("T2", "area", "free spot", use=("place",)))
 

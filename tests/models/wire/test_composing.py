@@ -11,12 +11,12 @@ import pytest
 from tests.models.wire.scenes import answer_px, picture, reading
 from wonderful_team import contracts as c
 from wonderful_team.agents import build_request
-from wonderful_team.geometry import Box
+from wonderful_team.core.geometry import Box
+from wonderful_team.core.pictures import Axes
+from wonderful_team.core.values import Subgoal
 from wonderful_team.models.conventions import CONVENTIONS
 from wonderful_team.models.wire import compose
 from wonderful_team.models.wire.composing import Composed
-from wonderful_team.pictures import Axes
-from wonderful_team.types import Subgoal
 
 
 def words(composed: Composed) -> str:

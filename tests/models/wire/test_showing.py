@@ -9,11 +9,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tests.models.wire.scenes import picture
-from wonderful_team.geometry import Box
+from wonderful_team.core.geometry import Box
+from wonderful_team.core.pictures import BoxMark, Candidates, LineMark, PathMark, PointMark
 from wonderful_team.models.conventions import CONVENTIONS
 from wonderful_team.models.wire.png import fast_png
 from wonderful_team.models.wire.showing import paste, scaled, show, show_encoded
-from wonderful_team.pictures import BoxMark, Candidates, LineMark, PathMark, PointMark
 
 
 @settings(deadline=None, max_examples=40)

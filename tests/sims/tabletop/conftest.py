@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator
 import numpy as np
 import pytest
 
-from wonderful_team.actions import PickPlace, Push
+from wonderful_team.core.actions import PickPlace, Push
 from wonderful_team.sims.tabletop import TabletopWorld, make_world
 
 AWAY_M = (0.9, 0.0)

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from wonderful_team.actions import PickPlace
+from wonderful_team.core.actions import PickPlace
 from wonderful_team.sims.tabletop import TabletopWorld, make_world
 
 

@@ -7,9 +7,9 @@ import math
 import numpy as np
 import pytest
 
-from wonderful_team.actions import Home, PickPlace
+from wonderful_team.core.actions import Home, PickPlace
+from wonderful_team.core.protocols import Privileged, World, offers
 from wonderful_team.errors import ConfigError
-from wonderful_team.interfaces import Privileged, World, offers
 from wonderful_team.sims.tabletop import Scene, TabletopWorld, make_world, task
 
 

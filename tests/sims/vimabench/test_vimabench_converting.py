@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from wonderful_team.actions import PickPlace, Push
+from wonderful_team.core.actions import PickPlace, Push
 from wonderful_team.sims.vimabench.converting import (
     HIGH_XY_M,
     LOW_XY_M,

@@ -7,8 +7,8 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from wonderful_team.actions import PickPlace, Push
 from wonderful_team.cli.app import run
+from wonderful_team.core.actions import PickPlace, Push
 from wonderful_team.errors import WorldUnavailableError
 from wonderful_team.registry import make_world
 from wonderful_team.sims.vimabench import VimaWorld

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from wonderful_team import registry
+from wonderful_team.core.protocols import privileged
 from wonderful_team.errors import ConfigError, UnknownNameError
 from wonderful_team.evals.suites import VIMA_TASKS
 from wonderful_team.sims.vimabench.finding import PATH_VARIABLE, PYTHON_VARIABLE
@@ -66,8 +67,8 @@ def test_names_that_mean_nothing_are_told_with_the_nearest() -> None:
 
 def test_truth_leaves_by_the_registry_alone_and_not_with_other_words() -> None:
     world = registry.make_world("vimabench/rotate", seed=1)
-    assert registry.privileged(world) is not None
+    assert privileged(world) is not None
     world.close()
     other = registry.make_world("vimabench/rotate", seed=1, instruction="Turn the {dragged_obj} a little.")
-    assert registry.privileged(other) is None
+    assert privileged(other) is None
     other.close()

@@ -16,10 +16,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from wonderful_team.actions import Home, PickPlace, Push
+from wonderful_team.core.actions import Home, PickPlace, Push
+from wonderful_team.core.protocols import Act, Done, SceneTruth, Situation, World, offers
 from wonderful_team.errors import ConfigError, UnknownNameError, WorldUnavailableError
 from wonderful_team.evals.controls import planned
-from wonderful_team.interfaces import Act, Done, SceneTruth, Situation, World, offers
 from wonderful_team.runtime import rollout
 from wonderful_team.sims.vimabench import VimaWorld, client
 from wonderful_team.sims.vimabench.client import Simulator

@@ -12,6 +12,7 @@ from typing import Any
 import cv2
 from markupsafe import Markup
 
+from wonderful_team.core.text import counted
 from wonderful_team.errors import MissingExtraError
 from wonderful_team.evals.pairing import Pair
 from wonderful_team.evals.paper import published
@@ -19,7 +20,6 @@ from wonderful_team.evals.report import tables
 from wonderful_team.evals.report.plots import cost_plot, rate_plot, task_plot
 from wonderful_team.evals.summary import Summary
 from wonderful_team.evals.trials import Condition, Row
-from wonderful_team.text import counted
 
 EXAMPLES = 3
 GALLERY = 24

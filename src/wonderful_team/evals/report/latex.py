@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from wonderful_team.core.intervals import Rate, wilson_interval
 from wonderful_team.evals.names import short_names
 from wonderful_team.evals.paper import PaperFigure, paper_beside, published
 from wonderful_team.evals.report.tables import PAIR_HEAD, in_order, number, pair_words
-from wonderful_team.evals.statistics import Rate, wilson_interval
 from wonderful_team.evals.summary import Summary
 
 CONDITIONS_HEAD = ("method · model", "success [%]", "95 %", "n", "errors", "unscored", "USD/trial", "calls", "rounds")

@@ -11,6 +11,7 @@ from typing import Any
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
+from wonderful_team.core.text import counted, visible
 from wonderful_team.errors import ConfigError
 from wonderful_team.evals.names import short_names
 from wonderful_team.evals.report import tables
@@ -19,7 +20,6 @@ from wonderful_team.evals.report.latex import latex_tables
 from wonderful_team.evals.store import Store
 from wonderful_team.evals.summary import Summary, merge, summarise
 from wonderful_team.evals.trials import Row
-from wonderful_team.text import counted, visible
 
 _HERE = Path(__file__).parent
 

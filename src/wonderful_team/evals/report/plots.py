@@ -6,10 +6,10 @@ import io
 import warnings
 from typing import Any
 
+from wonderful_team.core.intervals import wilson_interval
 from wonderful_team.errors import MissingExtraError
 from wonderful_team.evals.names import short_names
 from wonderful_team.evals.paper import paper_beside
-from wonderful_team.evals.statistics import wilson_interval
 from wonderful_team.evals.summary import Summary
 from wonderful_team.evals.trials import Condition
 

@@ -9,13 +9,13 @@ import json
 from collections.abc import Sequence
 from typing import Any
 
+from wonderful_team.core.intervals import wilson_interval
+from wonderful_team.core.text import visible
 from wonderful_team.errors import MissingExtraError
 from wonderful_team.evals.pairing import Pair
 from wonderful_team.evals.paper import paper_beside
-from wonderful_team.evals.statistics import wilson_interval
 from wonderful_team.evals.summary import Cell, Summary
 from wonderful_team.evals.trials import Condition, Row
-from wonderful_team.text import visible
 
 _RESULT = (
     "outcome",

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
+from wonderful_team.core.caps import Estimate
+from wonderful_team.core.values import Answer, Request, Usage
 from wonderful_team.errors import ModelOutputError, UnsupportedQuestion
-from wonderful_team.models.budget import Estimate
 from wonderful_team.models.offline.answers import ANSWERS, SAMPLED
 from wonderful_team.models.offline.vision import NotSeen, in_plain_light
 from wonderful_team.models.reshown import with_pictures
-from wonderful_team.types import Answer, Request, Usage
 
 MODEL_ID = "offline"
 

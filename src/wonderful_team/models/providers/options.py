@@ -6,12 +6,12 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TypeAlias, cast, get_args
 
+from wonderful_team.core.caps import Caps
+from wonderful_team.core.protocols import Model
+from wonderful_team.core.values import Usage
 from wonderful_team.errors import ConfigError, UnknownNameError
-from wonderful_team.interfaces import Model
-from wonderful_team.models.budget import Caps
 from wonderful_team.models.prices import GivenPrice, read_price
 from wonderful_team.models.providers.settings import Thinking
-from wonderful_team.types import Usage
 
 REST = "*"
 """Key for the roles that are not named."""

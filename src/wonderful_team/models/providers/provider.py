@@ -12,6 +12,8 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 from weakref import WeakKeyDictionary
 
+from wonderful_team.core.caps import Estimate
+from wonderful_team.core.values import Answer, Request, Usage, Words
 from wonderful_team.errors import (
     BudgetReached,
     ContentFilterError,
@@ -21,7 +23,7 @@ from wonderful_team.errors import (
     WonderfulTeamError,
 )
 from wonderful_team.images import Ticks
-from wonderful_team.models.budget import Estimate, Ticket, current_ticket
+from wonderful_team.models.budget import Ticket, current_ticket
 from wonderful_team.models.conventions import Convention
 from wonderful_team.models.prices import Prices
 from wonderful_team.models.providers import library
@@ -29,7 +31,6 @@ from wonderful_team.models.providers.faults import Fault, fault_of, scrubbed
 from wonderful_team.models.providers.settings import LONGEST_WAIT_S, Settings
 from wonderful_team.models.providers.specs import SERVER_KEY, VENDORS, Spec
 from wonderful_team.models.wire import Composed, Reading, Unreadable, compose, encodable, ticks_of
-from wonderful_team.types import Answer, Request, Usage, Words
 
 if TYPE_CHECKING:
     from pydantic_ai.messages import ModelResponse

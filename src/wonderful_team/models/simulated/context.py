@@ -9,9 +9,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from wonderful_team.contracts import ShownSlot, ShownTask
+from wonderful_team.core.geometry import Box
+from wonderful_team.core.pictures import Picture
+from wonderful_team.core.protocols import SceneTruth
+from wonderful_team.core.values import Instruction, Subgoal, Target, TrueSight, TrueThing
 from wonderful_team.errors import UnsupportedQuestion
-from wonderful_team.geometry import Box
-from wonderful_team.interfaces import SceneTruth
 from wonderful_team.models.simulated.draft import Meaning, Names, Written, write
 from wonderful_team.models.simulated.finding import meaning_of
 from wonderful_team.models.simulated.luck import Luck
@@ -19,8 +21,6 @@ from wonderful_team.models.simulated.naming import unique_words
 from wonderful_team.models.simulated.plan import Move, Shove, moves_of
 from wonderful_team.models.simulated.profiles import PROFILES, Profile
 from wonderful_team.models.simulated.seeing import Eyes, Seen
-from wonderful_team.pictures import Picture
-from wonderful_team.types import Instruction, Subgoal, Target, TrueSight, TrueThing
 
 ROOM_M = 0.02
 """How much more room a place offers than the thing that goes there takes [m]."""

@@ -18,12 +18,12 @@ from wonderful_team.contracts import (
     PresenceAnswer,
     RevisionVerdict,
 )
-from wonderful_team.geometry import Box
+from wonderful_team.core.geometry import Box
+from wonderful_team.core.pictures import BoxMark, Picture, Point
 from wonderful_team.models.simulated.context import Context
 from wonderful_team.models.simulated.grounding import find
 from wonderful_team.models.simulated.places import Place, point_of
 from wonderful_team.models.simulated.seeing import Seen
-from wonderful_team.pictures import BoxMark, Picture, Point
 
 SLACK = 0.08
 """How far an edge of a good box may lie off, as a share of the target's side across it."""

@@ -10,8 +10,8 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from wonderful_team.contracts import SubgoalDraft, TargetDraft
+from wonderful_team.core.values import PointRole, Subgoal, Target
 from wonderful_team.models.simulated.plan import Move, Put, Shove, Spot
-from wonderful_team.types import PointRole, Subgoal, Target
 
 Key = tuple[str, str, tuple[str, ...]]
 """What a target is known by: its words, where it is, and the pictures that it is like."""

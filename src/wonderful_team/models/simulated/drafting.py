@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from wonderful_team.actions import Step, places_of
 from wonderful_team.contracts import (
     ClarificationDraft,
     DraftPlan,
@@ -24,10 +23,11 @@ from wonderful_team.contracts import (
     step_list_type,
 )
 from wonderful_team.contracts.review_plan import DoubtDraft
+from wonderful_team.core.actions import Step, places_of
+from wonderful_team.core.values import Subgoal, Target
 from wonderful_team.errors import UnsupportedQuestion
 from wonderful_team.models.simulated.context import Context
 from wonderful_team.models.simulated.draft import Written, key_of
-from wonderful_team.types import Subgoal, Target
 
 BLIND = "one of the pictures of this task shows nothing that was ever there"
 

@@ -7,14 +7,14 @@ import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
-from wonderful_team.geometry import Box
+from wonderful_team.core.geometry import Box
+from wonderful_team.core.values import Target, TrueThing
 from wonderful_team.models.simulated.draft import Meaning
 from wonderful_team.models.simulated.looks import fit, known, lightness, tokens
 from wonderful_team.models.simulated.naming import ORDINALS
 from wonderful_team.models.simulated.plan import stands_at
 from wonderful_team.models.simulated.seeing import Seen
 from wonderful_team.models.simulated.spots import free_spot, room_spot
-from wonderful_team.types import Target, TrueThing
 
 NEARLY = 0.3
 """Things whose words fit less well than the best by no more than this fit as well."""

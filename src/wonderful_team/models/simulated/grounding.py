@@ -17,13 +17,13 @@ from wonderful_team.contracts import (
     SceneTarget,
     ShownSlot,
 )
-from wonderful_team.geometry import Box
+from wonderful_team.core.geometry import Box
+from wonderful_team.core.pictures import Picture, PointMark
+from wonderful_team.core.values import PointRole, Target
 from wonderful_team.models.simulated.context import Context
 from wonderful_team.models.simulated.draft import Meaning
 from wonderful_team.models.simulated.places import Place, box_px, place_of, point_of, point_px
 from wonderful_team.models.simulated.seeing import Seen
-from wonderful_team.pictures import Picture, PointMark
-from wonderful_team.types import PointRole, Target
 
 POINT_PX = 20.0
 """Side of what a marked point points at [picture px]."""

@@ -7,10 +7,10 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from wonderful_team.core.values import TrueThing
 from wonderful_team.models.offline.description import COLOURS
 from wonderful_team.models.offline.vision.colours import memberships, to_lab
 from wonderful_team.models.simulated.seeing import Seen
-from wonderful_team.types import TrueThing
 
 SAME: tuple[tuple[str, ...], ...] = (
     ("stripe", "striped", "stripes", "stripy", "lined"),

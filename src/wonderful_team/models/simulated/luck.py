@@ -21,9 +21,9 @@ from wonderful_team.contracts import (
     RolePoint,
     SceneReading,
 )
+from wonderful_team.core.pictures import Picture
+from wonderful_team.core.values import Request
 from wonderful_team.models.simulated.profiles import Profile
-from wonderful_team.pictures import Picture
-from wonderful_team.types import Request
 
 T = TypeVar("T")
 LEAST_SIDE_PX = 2.0

@@ -26,14 +26,14 @@ from wonderful_team.contracts import (
     RevisePlan,
     WriteSteps,
 )
+from wonderful_team.core.caps import Estimate
+from wonderful_team.core.protocols import SceneTruth
+from wonderful_team.core.values import Answer, Instruction, Request, Usage
 from wonderful_team.errors import UnsupportedQuestion
-from wonderful_team.interfaces import SceneTruth
-from wonderful_team.models.budget import Estimate
 from wonderful_team.models.simulated import crops, drafting, grounding, outcome
 from wonderful_team.models.simulated.context import Context
 from wonderful_team.models.simulated.luck import Luck
 from wonderful_team.models.simulated.profiles import PROFILES, Profile
-from wonderful_team.types import Answer, Instruction, Request, Usage
 
 ANSWERS: dict[type[Question], Callable[[Context, Any], Any]] = {
     DraftPlan: drafting.answer_draft,

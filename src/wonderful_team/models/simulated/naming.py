@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from wonderful_team.types import TrueSight, TrueThing
+from wonderful_team.core.values import TrueSight, TrueThing
 
 ORDINALS = ("first", "second", "third", "fourth", "fifth", "sixth", "seventh", "eighth", "ninth", "tenth")
 TALLER = 1.3

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from wonderful_team.contracts import Advice, JudgeOutcome, MemoryEntry, Outcome, Remember, Replan, VerdictDraft
-from wonderful_team.geometry import Box
+from wonderful_team.core.geometry import Box
+from wonderful_team.core.pictures import BoxMark
+from wonderful_team.core.values import Subgoal, Target
 from wonderful_team.models.simulated.context import Context
 from wonderful_team.models.simulated.plan import Move, moves_of
 from wonderful_team.models.simulated.seeing import Seen
-from wonderful_team.pictures import BoxMark
-from wonderful_team.types import Subgoal, Target
 
 SAME_BOX = 0.3
 """A marked box means the thing with which it shares at least this much (intersection over union)."""

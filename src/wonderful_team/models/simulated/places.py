@@ -7,11 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from wonderful_team.contracts import BoxPx, PointPx
-from wonderful_team.geometry import Box
+from wonderful_team.core.geometry import Box
+from wonderful_team.core.pictures import Picture, Point
+from wonderful_team.core.values import PointRole
 from wonderful_team.models.simulated.draft import Meaning
 from wonderful_team.models.simulated.seeing import Seen
-from wonderful_team.pictures import Picture, Point
-from wonderful_team.types import PointRole
 
 
 @dataclass(frozen=True)

@@ -12,12 +12,12 @@ from dataclasses import dataclass, field
 import numpy as np
 import shapely
 
-from wonderful_team.actions import Action, PickPlace, Push
-from wonderful_team.geometry import wrap_angle
-from wonderful_team.geometry.arrays import Array
-from wonderful_team.geometry.cameras import Camera
-from wonderful_team.interfaces import SceneTruth
-from wonderful_team.types import Instruction, TrueSight, TrueThing
+from wonderful_team.core.actions import Action, PickPlace, Push
+from wonderful_team.core.geometry import wrap_angle
+from wonderful_team.core.geometry.arrays import Array
+from wonderful_team.core.geometry.cameras import Camera
+from wonderful_team.core.protocols import SceneTruth
+from wonderful_team.core.values import Instruction, TrueSight, TrueThing
 
 SAME_M = 0.02
 """Two centres this close are the same place [m]."""

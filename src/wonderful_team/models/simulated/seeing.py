@@ -13,12 +13,12 @@ from functools import cached_property
 import cv2
 import numpy as np
 
-from wonderful_team.geometry import Box, Frame
-from wonderful_team.geometry.arrays import Array
-from wonderful_team.interfaces import SceneTruth
+from wonderful_team.core.geometry import Box, Frame
+from wonderful_team.core.geometry.arrays import Array
+from wonderful_team.core.pictures import Picture, Point
+from wonderful_team.core.protocols import SceneTruth
+from wonderful_team.core.values import TrueSight, TrueThing
 from wonderful_team.models.simulated.agreement import difference, expected
-from wonderful_team.pictures import Picture, Point
-from wonderful_team.types import TrueSight, TrueThing
 
 LEAST_PX = 8
 """Fewer pixels of a thing than this are not seen [view px]."""

@@ -9,8 +9,8 @@ import numpy as np
 import shapely
 import shapely.affinity
 
+from wonderful_team.core.values import TrueThing
 from wonderful_team.models.simulated.seeing import Seen
-from wonderful_team.types import TrueThing
 
 EDGE = 0.12
 """How far from the edge of the view free room is looked for, as a share of its sides."""

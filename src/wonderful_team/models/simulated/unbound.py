@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from wonderful_team.core.values import Answer, Request
 from wonderful_team.errors import ConfigError
-from wonderful_team.types import Answer, Request
 
 
 class Unbound:

@@ -6,10 +6,10 @@ import base64
 import json
 from typing import Any
 
+from wonderful_team.core.values import Request, Words
 from wonderful_team.errors import ConfigError
 from wonderful_team.images.drawn import drawn
 from wonderful_team.models.wire.png import fast_png
-from wonderful_team.types import Request, Words
 
 PICTURES = ("data_url", "png")
 

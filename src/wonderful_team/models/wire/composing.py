@@ -10,15 +10,15 @@ from typing import Any, TypeAlias, cast
 import numpy as np
 from pydantic import BaseModel
 
-from wonderful_team.geometry.arrays import Array
+from wonderful_team.core.geometry.arrays import Array
+from wonderful_team.core.pictures import Axes, Picture
+from wonderful_team.core.values import Request, Words
 from wonderful_team.images.telling import axes_words, size_words
 from wonderful_team.models.conventions import PIXELS, Convention
 from wonderful_team.models.wire.form import Form, box_keys, point_keys
 from wonderful_team.models.wire.png import fast_png
 from wonderful_team.models.wire.reading import Reading, read_json, read_point_tags
 from wonderful_team.models.wire.showing import Shown, paste, show_encoded, ticks_of
-from wonderful_team.pictures import Axes, Picture
-from wonderful_team.types import Request, Words
 
 Piece: TypeAlias = str | bytes
 

@@ -11,8 +11,8 @@ import zlib
 
 import numpy as np
 
-from wonderful_team.geometry.arrays import Array
-from wonderful_team.pictures import checked_rgb
+from wonderful_team.core.geometry.arrays import Array
+from wonderful_team.core.pictures import checked_rgb
 
 _SIGNATURE = b"\x89PNG\r\n\x1a\n"
 _UP = 2  # filter type 2 of the PNG specification: the byte above is subtracted

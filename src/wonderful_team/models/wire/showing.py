@@ -10,23 +10,13 @@ from dataclasses import dataclass, replace
 import cv2
 import numpy as np
 
-from wonderful_team.geometry import Box, Frame
-from wonderful_team.geometry.arrays import Array
+from wonderful_team.core.geometry import Box, Frame
+from wonderful_team.core.geometry.arrays import Array
+from wonderful_team.core.pictures import Axes, BoxMark, Candidates, LineMark, Mark, PathMark, Picture, Point, PointMark
 from wonderful_team.images import Ticks, draw
 from wonderful_team.images.canvas import Canvas
 from wonderful_team.models.conventions import PIXELS, Convention, Size
 from wonderful_team.models.wire.png import fast_png
-from wonderful_team.pictures import (
-    Axes,
-    BoxMark,
-    Candidates,
-    LineMark,
-    Mark,
-    PathMark,
-    Picture,
-    Point,
-    PointMark,
-)
 
 _TICKS = {"pixels": Ticks.PIXELS, "thousandths": Ticks.THOUSANDTHS, "percent": Ticks.PERCENT, "unit": Ticks.UNIT}
 GAP_PX = 12

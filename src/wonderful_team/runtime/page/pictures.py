@@ -11,7 +11,7 @@ from typing import Any
 from markupsafe import Markup, escape
 from PIL import Image
 
-from wonderful_team.text import PLACEHOLDER
+from wonderful_team.core.text import PLACEHOLDER
 
 MOST_BYTES = 3_600_000
 """Bytes of pictures that a page may hold before base64 (4.8 MB of text); beyond, pictures get coarser, not fewer."""

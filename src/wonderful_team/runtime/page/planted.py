@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
+from wonderful_team.core.text import counted
 from wonderful_team.runtime.page.look_up import chapters
 from wonderful_team.runtime.page.pictures import Album
 from wonderful_team.runtime.page.plans import diff_rows
 from wonderful_team.runtime.page.requests import Asked
 from wonderful_team.runtime.page.strips import history_frames
-from wonderful_team.text import counted
 
 _PLANS = frozenset({"DraftPlan", "RevisePlan", "ExtractTargets"})
 

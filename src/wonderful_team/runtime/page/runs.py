@@ -17,12 +17,12 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 from PIL import Image
 
+from wonderful_team.core.text import counted, visible
 from wonderful_team.errors import ConfigError
 from wonderful_team.runtime.page.sections import summary
 from wonderful_team.runtime.page.words import brief, money, seconds
 from wonderful_team.runtime.page.write import PAGE_NAME
 from wonderful_team.runtime.record_schema import read_record
-from wonderful_team.text import counted, visible
 
 _HERE = Path(__file__).parent
 THUMBNAIL_PX = 320

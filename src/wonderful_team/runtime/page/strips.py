@@ -7,6 +7,7 @@ from typing import Any
 
 from markupsafe import Markup
 
+from wonderful_team.core.text import counted
 from wonderful_team.runtime.page.figures import (
     arrow_layer,
     box_layer,
@@ -23,7 +24,6 @@ from wonderful_team.runtime.page.figures import (
 from wonderful_team.runtime.page.look_up import chapters, main_key, scene_of
 from wonderful_team.runtime.page.pictures import Album
 from wonderful_team.runtime.page.requests import Asked
-from wonderful_team.text import counted
 
 _GOES_THERE = ("place", "push_end")
 

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from wonderful_team.core.geometry import AffineCamera
+from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.errors import ConfigError
-from wonderful_team.geometry import AffineCamera
-from wonderful_team.geometry.arrays import Array
 
 TABLE_LOW_M = (0.25, -0.5, 0.0)
 TABLE_HIGH_M = (0.75, 0.5, 0.3)

@@ -13,7 +13,7 @@ import shapely
 from shapely import Point, box
 from shapely.geometry.base import BaseGeometry
 
-from wonderful_team.geometry import Pose
+from wonderful_team.core.geometry import Pose
 from wonderful_team.sims.tabletop import textures
 from wonderful_team.sims.tabletop.cameras import TABLE_HIGH_M, TABLE_LOW_M
 from wonderful_team.sims.tabletop.goals import Poses, footprint_at, footprint_of

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from wonderful_team.geometry.arrays import Array
+from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.sims.tabletop import textures
 from wonderful_team.sims.tabletop.cameras import Lens
 from wonderful_team.sims.tabletop.drawing import Drawn

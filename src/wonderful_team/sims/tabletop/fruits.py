@@ -9,7 +9,7 @@ import numpy as np
 from shapely import LineString, Point
 from shapely.geometry.base import BaseGeometry
 
-from wonderful_team.geometry.arrays import Array
+from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.sims.tabletop.solids import Mesh
 
 NAMES = ("apple", "lime", "orange", "banana", "plum", "blueberry")

@@ -14,8 +14,8 @@ from shapely import Point, Polygon
 from shapely.affinity import rotate, translate
 from shapely.geometry.base import BaseGeometry
 
-from wonderful_team.geometry import Pose, wrap_angle
-from wonderful_team.geometry.arrays import Array
+from wonderful_team.core.geometry import Pose, wrap_angle
+from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.sims.tabletop.cameras import TABLE_HIGH_M, TABLE_LOW_M
 from wonderful_team.sims.tabletop.model import Thing
 from wonderful_team.sims.tabletop.shapes import shape

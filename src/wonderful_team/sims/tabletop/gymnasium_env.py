@@ -28,9 +28,9 @@ from typing import Any
 
 import numpy as np
 
-from wonderful_team.actions import PickPlace, Push
+from wonderful_team.core.actions import PickPlace, Push
+from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.errors import ConfigError, MissingExtraError
-from wonderful_team.geometry.arrays import Array
 from wonderful_team.sims.tabletop.cameras import CAMERA_NAMES, TABLE_HIGH_M, TABLE_LOW_M
 from wonderful_team.sims.tabletop.options import Tiers, asked
 from wonderful_team.sims.tabletop.registering import find_task, task_names

@@ -6,13 +6,13 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from wonderful_team.actions import PickPlace, Push
-from wonderful_team.interfaces import Score
+from wonderful_team.core.actions import PickPlace, Push
+from wonderful_team.core.protocols import Score
+from wonderful_team.core.text import counted
 from wonderful_team.sims.tabletop.goals import Goal, Poses, Verdict
 from wonderful_team.sims.tabletop.model import Thing
 from wonderful_team.sims.tabletop.rules import Progress, Rules
 from wonderful_team.sims.tabletop.suction import Picked
-from wonderful_team.text import counted
 
 MOVED_M = 0.004
 """How far a thing must have moved to count as pushed [m]."""

@@ -7,7 +7,7 @@ from functools import cache
 
 import numpy as np
 
-from wonderful_team.geometry.arrays import Array
+from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.sims.tabletop import textures
 
 NEAREST = {2: 6, 3: 2}

@@ -10,7 +10,7 @@ from typing import Any, Literal, TypeAlias
 import numpy as np
 import shapely
 
-from wonderful_team.geometry.arrays import Array
+from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.sims.tabletop import textures
 from wonderful_team.sims.tabletop.cameras import SEEN_WIDTH_M, Lens
 from wonderful_team.sims.tabletop.engine import mj

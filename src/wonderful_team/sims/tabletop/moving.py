@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from wonderful_team.geometry import Pose
+from wonderful_team.core.geometry import Pose
 from wonderful_team.sims.tabletop.engine import mj
 from wonderful_team.sims.tabletop.model import TIMESTEP_S, BuiltModel
 

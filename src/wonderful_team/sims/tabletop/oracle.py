@@ -10,8 +10,8 @@ from shapely import Point, box
 from shapely.affinity import translate
 from shapely.geometry.base import BaseGeometry
 
-from wonderful_team.actions import PickPlace
-from wonderful_team.geometry import Pose, wrap_angle
+from wonderful_team.core.actions import PickPlace
+from wonderful_team.core.geometry import Pose, wrap_angle
 from wonderful_team.sims.tabletop.cameras import TABLE_HIGH_M, TABLE_LOW_M
 from wonderful_team.sims.tabletop.goals import Goal, Poses, footprint_of
 from wonderful_team.sims.tabletop.model import Thing

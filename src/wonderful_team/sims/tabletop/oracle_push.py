@@ -10,9 +10,9 @@ import numpy as np
 import shapely
 from shapely.geometry.base import BaseGeometry
 
-from wonderful_team.actions import Push
-from wonderful_team.geometry import Pose
-from wonderful_team.geometry.arrays import Array
+from wonderful_team.core.actions import Push
+from wonderful_team.core.geometry import Pose
+from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.sims.tabletop.cameras import TABLE_HIGH_M, TABLE_LOW_M
 from wonderful_team.sims.tabletop.goals import Count, Poses, footprint_at, footprint_of
 from wonderful_team.sims.tabletop.model import BLADE_HALF_M, Thing

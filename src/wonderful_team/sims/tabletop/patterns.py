@@ -6,7 +6,7 @@ from typing import TypeAlias
 
 import numpy as np
 
-from wonderful_team.geometry.arrays import Array
+from wonderful_team.core.geometry.arrays import Array
 
 Colour: TypeAlias = tuple[int, int, int]
 SIDE_PX = 128

@@ -8,17 +8,17 @@ from typing import Any
 
 import numpy as np
 
-from wonderful_team.actions import Action
+from wonderful_team.core.actions import Action
+from wonderful_team.core.geometry.arrays import Array
+from wonderful_team.core.jsonable import to_jsonable
+from wonderful_team.core.protocols import Score
+from wonderful_team.core.values import Observation, TrueSight, TrueThing
 from wonderful_team.errors import UnknownNameError
-from wonderful_team.geometry.arrays import Array
-from wonderful_team.interfaces import Score
-from wonderful_team.jsonable import to_jsonable
 from wonderful_team.sims.tabletop import oracle as _oracle
 from wonderful_team.sims.tabletop import oracle_push
 from wonderful_team.sims.tabletop.judging import score_of
 from wonderful_team.sims.tabletop.sights import Sights, true_things
 from wonderful_team.sims.tabletop.table import Table
-from wonderful_team.types import Observation, TrueSight, TrueThing
 
 
 class TabletopTruth:

@@ -10,7 +10,7 @@ from typing import TypeAlias
 
 import numpy as np
 
-from wonderful_team.actions import PICK_PLACE, Vocabulary
+from wonderful_team.core.actions import PICK_PLACE, Vocabulary
 from wonderful_team.errors import ConfigError, UnknownNameError
 from wonderful_team.sims.tabletop.clutter import add_clutter
 from wonderful_team.sims.tabletop.options import Tiers

@@ -6,6 +6,7 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
+from wonderful_team.core.values import SlotKind
 from wonderful_team.errors import ConfigError
 from wonderful_team.sims.tabletop import textures
 from wonderful_team.sims.tabletop.goals import NEAR_M, Count, Goal, Never, Zone, footprint_at
@@ -14,7 +15,6 @@ from wonderful_team.sims.tabletop.model import Thing
 from wonderful_team.sims.tabletop.placing import CrowdedError, Floor, Room, Spot
 from wonderful_team.sims.tabletop.rules import Distractors, Order
 from wonderful_team.sims.tabletop.showing import Shown, Stand
-from wonderful_team.types import SlotKind
 
 __all__ = ["CrowdedError", "Scene", "Spot"]
 

@@ -11,8 +11,8 @@ import shapely
 from shapely import LineString, Point, Polygon, box
 from shapely.geometry.base import BaseGeometry
 
+from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.errors import UnknownNameError
-from wonderful_team.geometry.arrays import Array
 from wonderful_team.sims.tabletop import fruits
 from wonderful_team.sims.tabletop.outlines import outline
 from wonderful_team.sims.tabletop.solids import CHAMFER_M, Mesh, convex_pieces, extruded, joined, polygons, prism

@@ -16,13 +16,13 @@ import numpy as np
 import shapely
 from shapely.geometry.base import BaseGeometry
 
-from wonderful_team.geometry import Pose
-from wonderful_team.geometry.arrays import Array
+from wonderful_team.core.geometry import Pose
+from wonderful_team.core.geometry.arrays import Array
+from wonderful_team.core.values import Observation, TrueSight, TrueThing, View
 from wonderful_team.sims.tabletop.goals import footprint_of
 from wonderful_team.sims.tabletop.model import Thing
 from wonderful_team.sims.tabletop.oracle import grasp_point
 from wonderful_team.sims.tabletop.table import Snapshot, Table
-from wonderful_team.types import Observation, TrueSight, TrueThing, View
 
 LOOKS = 24
 """How many different looks are kept; a task of the suite has at most 17 actions."""

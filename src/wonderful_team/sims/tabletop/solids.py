@@ -14,7 +14,7 @@ import shapely
 from shapely import Polygon
 from shapely.geometry.base import BaseGeometry
 
-from wonderful_team.geometry.arrays import Array
+from wonderful_team.core.geometry.arrays import Array
 
 CHAMFER_M = 0.003
 """How far the top edge is cut back, so that edges catch light [m]."""

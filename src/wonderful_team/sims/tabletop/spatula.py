@@ -12,9 +12,9 @@ import shapely
 from shapely import Polygon
 from shapely.geometry.base import BaseGeometry
 
-from wonderful_team.actions import Push
-from wonderful_team.geometry import Pose
-from wonderful_team.geometry.arrays import Array
+from wonderful_team.core.actions import Push
+from wonderful_team.core.geometry import Pose
+from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.sims.tabletop.engine import mj
 from wonderful_team.sims.tabletop.goals import Poses, footprint_of
 from wonderful_team.sims.tabletop.model import BLADE_HALF_M, TIMESTEP_S, BuiltModel, Thing

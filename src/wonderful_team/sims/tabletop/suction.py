@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from wonderful_team.actions import PickPlace
-from wonderful_team.geometry.arrays import Array
+from wonderful_team.core.actions import PickPlace
+from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.sims.tabletop.engine import mj
 from wonderful_team.sims.tabletop.model import TABLE_GROUP, THING_GROUP, TIMESTEP_S, BuiltModel
 from wonderful_team.sims.tabletop.moving import settle

@@ -9,10 +9,11 @@ from typing import Any
 
 import numpy as np
 
-from wonderful_team.actions import PickPlace, Push
+from wonderful_team.core.actions import PickPlace, Push
+from wonderful_team.core.geometry import Pose
+from wonderful_team.core.geometry.arrays import Array
+from wonderful_team.core.values import Instruction
 from wonderful_team.errors import ConfigError
-from wonderful_team.geometry import Pose
-from wonderful_team.geometry.arrays import Array
 from wonderful_team.sims.tabletop.drawing import Drawn, Renderer, open_renderer
 from wonderful_team.sims.tabletop.engine import mj
 from wonderful_team.sims.tabletop.goals import Poses
@@ -26,7 +27,6 @@ from wonderful_team.sims.tabletop.rules import Rules
 from wonderful_team.sims.tabletop.showing import Studio
 from wonderful_team.sims.tabletop.spatula import Spatula
 from wonderful_team.sims.tabletop.suction import Picked, Suction
-from wonderful_team.types import Instruction
 
 
 @dataclass(frozen=True, eq=False)

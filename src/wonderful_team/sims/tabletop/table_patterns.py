@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from wonderful_team.geometry.arrays import Array
+from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.sims.tabletop.patterns import Colour, blended, noise, tile_grid
 
 

@@ -7,8 +7,8 @@ from functools import cache, partial
 
 import numpy as np
 
+from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.errors import UnknownNameError
-from wonderful_team.geometry.arrays import Array
 from wonderful_team.sims.tabletop import patterns, table_patterns
 from wonderful_team.sims.tabletop.patterns import SIDE_PX, TILE_M, Colour, mixed
 

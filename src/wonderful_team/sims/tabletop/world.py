@@ -6,16 +6,16 @@ import math
 from collections.abc import Callable, Mapping
 from functools import cached_property
 
-from wonderful_team.actions import Action, PickPlace, Push, Vocabulary
+from wonderful_team.core.actions import Action, PickPlace, Push, Vocabulary
+from wonderful_team.core.geometry.arrays import Array
+from wonderful_team.core.values import Instruction, Limits, Observation, RobotState, StepReport, View
 from wonderful_team.errors import ConfigError
-from wonderful_team.geometry.arrays import Array
 from wonderful_team.sims.tabletop.cameras import CAMERA_NAMES, TABLE_HIGH_M, TABLE_LOW_M
 from wonderful_team.sims.tabletop.options import Tiers, asked
 from wonderful_team.sims.tabletop.privileged import TabletopTruth
 from wonderful_team.sims.tabletop.registering import find_task
 from wonderful_team.sims.tabletop.spatula import SHORTEST_M
 from wonderful_team.sims.tabletop.table import Snapshot, Table
-from wonderful_team.types import Instruction, Limits, Observation, RobotState, StepReport, View
 
 MOST_TURN_RAD = 2 * math.pi + 1e-6
 

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from wonderful_team.geometry import AffineCamera
+from wonderful_team.core.geometry import AffineCamera
 
 CAMERA_NAMES = ("top", "front")
 SIZE_PX = (256, 128)

@@ -15,8 +15,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, BinaryIO, cast
 
+from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.errors import ConfigError, WorldUnavailableError
-from wonderful_team.geometry.arrays import Array
 from wonderful_team.sims.vimabench.finding import Installation, find_installation, missing
 from wonderful_team.sims.vimabench.remote.frames import read_message, write_message
 from wonderful_team.sims.vimabench.remote.launch import CANNOT_RUN

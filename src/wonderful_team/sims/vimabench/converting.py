@@ -13,9 +13,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from wonderful_team.actions import PickPlace, Push
-from wonderful_team.geometry.arrays import Array
-from wonderful_team.types import Limits
+from wonderful_team.core.actions import PickPlace, Push
+from wonderful_team.core.geometry.arrays import Array
+from wonderful_team.core.values import Limits
 
 LOW_XY_M, HIGH_XY_M = (0.25, -0.5), (0.75, 0.5)
 TOP_M = 0.3

@@ -9,8 +9,8 @@ import sys
 from dataclasses import dataclass
 from pathlib import Path
 
+from wonderful_team.core.text import user_path
 from wonderful_team.errors import ConfigError
-from wonderful_team.text import user_path
 
 PYTHON_VARIABLE = "WONDERFUL_TEAM_VIMABENCH_PYTHON"
 PATH_VARIABLE = "WONDERFUL_TEAM_VIMABENCH_PATH"

@@ -6,8 +6,8 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from wonderful_team.interfaces import Score
-from wonderful_team.text import counted
+from wonderful_team.core.protocols import Score
+from wonderful_team.core.text import counted
 
 FAILURE = "the simulator says failure: a rule of the task was broken"
 

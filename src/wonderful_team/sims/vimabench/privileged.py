@@ -8,13 +8,13 @@ from typing import Any
 
 import numpy as np
 
-from wonderful_team.actions import Action, Vocabulary
-from wonderful_team.geometry.arrays import Array
-from wonderful_team.interfaces import Score
+from wonderful_team.core.actions import Action, Vocabulary
+from wonderful_team.core.geometry.arrays import Array
+from wonderful_team.core.protocols import Score
+from wonderful_team.core.values import Instruction, Observation, TrueSight, TrueThing, View
 from wonderful_team.sims.vimabench.client import Simulator
 from wonderful_team.sims.vimabench.converting import pick_of, push_of
 from wonderful_team.sims.vimabench.judging import score_of
-from wonderful_team.types import Instruction, Observation, TrueSight, TrueThing, View
 
 
 @dataclass(frozen=True, eq=False)

@@ -5,16 +5,16 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 
-from wonderful_team.actions import PICK_PLACE, Action, PickPlace, Push, Vocabulary
+from wonderful_team.core.actions import PICK_PLACE, Action, PickPlace, Push, Vocabulary
+from wonderful_team.core.geometry.arrays import Array
+from wonderful_team.core.values import Instruction, Limits, Observation, RobotState, Slot, SlotKind, StepReport, View
 from wonderful_team.errors import ConfigError, UnknownNameError, WorldUnavailableError
-from wonderful_team.geometry.arrays import Array
 from wonderful_team.sims.vimabench.cameras import CAMERA_NAMES, camera
 from wonderful_team.sims.vimabench.client import OPEN_TIMEOUT_S, STEP_TIMEOUT_S, Simulator
 from wonderful_team.sims.vimabench.converting import PICK_LIMITS, PUSH_LIMITS, Converted, converted
 from wonderful_team.sims.vimabench.finding import find_installation
 from wonderful_team.sims.vimabench.privileged import Episode, VimaTruth
 from wonderful_team.sims.vimabench.tasks import TASKS, partitions
-from wonderful_team.types import Instruction, Limits, Observation, RobotState, Slot, SlotKind, StepReport, View
 
 PUSH = Vocabulary(("push",))
 ORDERED_SLOT = re.compile(r"(frame|before|after)(?:_[a-z]+)*_(\d+)")

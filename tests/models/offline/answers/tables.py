@@ -5,13 +5,13 @@ from __future__ import annotations
 import cv2
 import numpy as np
 
-from wonderful_team.actions import PICK_PLACE
 from wonderful_team.contracts import DraftPlan, PlanDraft, ShownSlot, ShownTask
-from wonderful_team.geometry.arrays import Array
+from wonderful_team.core.actions import PICK_PLACE
+from wonderful_team.core.geometry.arrays import Array
+from wonderful_team.core.pictures import Picture
+from wonderful_team.core.values import Request, View
 from wonderful_team.images import whole
 from wonderful_team.models.offline import OfflineModel
-from wonderful_team.pictures import Picture
-from wonderful_team.types import Request, View
 
 COLOURS = {
     "red": (205, 40, 40), "green": (50, 160, 60), "blue": (45, 90, 200), "yellow": (235, 205, 50),

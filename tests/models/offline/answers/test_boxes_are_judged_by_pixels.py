@@ -9,11 +9,11 @@ from hypothesis import strategies as st
 
 from tests.models.offline.answers.tables import SIZE, ask, picture, slot, table
 from wonderful_team.contracts import BoxVerdict, JudgeBox, ShownSlot
-from wonderful_team.geometry import Box
-from wonderful_team.geometry.arrays import Array
+from wonderful_team.core.geometry import Box
+from wonderful_team.core.geometry.arrays import Array
+from wonderful_team.core.pictures import BoxMark
+from wonderful_team.core.values import Target, View
 from wonderful_team.images import crop
-from wonderful_team.pictures import BoxMark
-from wonderful_team.types import Target, View
 
 THINGS = (("square", "red", 80, 80, 26), ("star", "green", 500, 80, 36), ("disc", "yellow", 520, 240, 30))
 SCENE = table(*THINGS)

@@ -6,8 +6,8 @@ import pytest
 
 from tests.models.offline.answers.tables import KINDS, ask, draft, slot, table, task
 from wonderful_team.contracts import DraftPlan, ExtractTargets, PlanDraft, PlanRevision, RevisePlan, TargetList
+from wonderful_team.core.values import Doubt, Subgoal
 from wonderful_team.errors import NotUnderstoodError
-from wonderful_team.types import Doubt, Subgoal
 
 SCENE = table(
     ("square", "red", 80, 80, 26),

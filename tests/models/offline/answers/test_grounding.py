@@ -27,11 +27,11 @@ from wonderful_team.contracts import (
     SceneReading,
     Strip,
 )
+from wonderful_team.core.geometry import Box
+from wonderful_team.core.pictures import BoxMark, Candidates, Picture, PointMark
+from wonderful_team.core.values import Target, View
 from wonderful_team.errors import NotUnderstoodError
-from wonderful_team.geometry import Box
 from wonderful_team.images import crop, edge_strips, inside_points
-from wonderful_team.pictures import BoxMark, Candidates, Picture, PointMark
-from wonderful_team.types import Target, View
 
 SCENE = table(
     ("square", "red", 80, 80, 26),

@@ -18,10 +18,10 @@ from wonderful_team.contracts import (
     ReviewPath,
     WriteFunction,
 )
+from wonderful_team.core.pictures import PathMark
+from wonderful_team.core.values import Request, Subgoal, Verdict, View
 from wonderful_team.errors import UnsupportedQuestion
 from wonderful_team.models.offline import OfflineModel
-from wonderful_team.pictures import PathMark
-from wonderful_team.types import Request, Subgoal, Verdict, View
 
 REST = (("square", "blue", 300, 160, 52), ("disc", "yellow", 520, 240, 30))
 BEFORE = table(("star", "green", 500, 80, 36), *REST)

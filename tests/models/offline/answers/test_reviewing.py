@@ -8,7 +8,7 @@ import pytest
 
 from tests.models.offline.answers.tables import KINDS, ask, draft, slot, table, task
 from wonderful_team.contracts import PlanReview, ReviewPlan, ShownTask
-from wonderful_team.types import Subgoal, Target
+from wonderful_team.core.values import Subgoal, Target
 
 SCENE = table(
     ("square", "red", 80, 80, 26),

@@ -6,8 +6,8 @@ import pytest
 
 from tests.models.offline.answers.tables import KINDS, ask, picture, slot, table
 from wonderful_team.contracts import DraftPlan, PlanDraft, ReadScene, SceneReading, ShownSlot, ShownTask
+from wonderful_team.core.values import View
 from wonderful_team.errors import NotUnderstoodError
-from wonderful_team.types import View
 
 NOW = (("square", "red", 100, 80, 24), ("star", "blue", 300, 80, 30), ("triangle", "green", 500, 80, 30))
 

@@ -7,12 +7,12 @@ from dataclasses import replace
 import pytest
 
 from tests.models.offline.answers.tables import KINDS, ask, draft, table, task
-from wonderful_team.actions import ARM, At, Beside, OriginOf, PickPlaceStep, PushStep, Step
 from wonderful_team.contracts import PlanReview, ReviewSteps, StepList, WriteSteps
+from wonderful_team.core.actions import ARM, At, Beside, OriginOf, PickPlaceStep, PushStep, Step
+from wonderful_team.core.geometry import Box
+from wonderful_team.core.pictures import BoxMark, PathMark, Picture
+from wonderful_team.core.values import Subgoal, Target
 from wonderful_team.errors import UnsupportedQuestion
-from wonderful_team.geometry import Box
-from wonderful_team.pictures import BoxMark, PathMark, Picture
-from wonderful_team.types import Subgoal, Target
 
 SCENE = table(
     ("square", "red", 80, 80, 26),

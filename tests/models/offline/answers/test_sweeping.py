@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 
 from tests.models.offline.answers.tables import COLOURS, ask, picture, table
-from wonderful_team.actions import At, PushStep
 from wonderful_team.contracts import (
     DraftPlan,
     JudgeOutcome,
@@ -22,9 +21,10 @@ from wonderful_team.contracts import (
     StepList,
     WriteSteps,
 )
-from wonderful_team.geometry.arrays import Array
-from wonderful_team.pictures import Point
-from wonderful_team.types import View
+from wonderful_team.core.actions import At, PushStep
+from wonderful_team.core.geometry.arrays import Array
+from wonderful_team.core.pictures import Point
+from wonderful_team.core.values import View
 
 FRAME = (470, 60, 590, 260)
 """A frame that is open to the left: left end of its arms, top, right, bottom [px]."""

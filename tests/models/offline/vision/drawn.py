@@ -7,8 +7,8 @@ from collections.abc import Callable
 import cv2
 import numpy as np
 
-from wonderful_team.geometry import Frame
-from wonderful_team.pictures import Picture
+from wonderful_team.core.geometry import Frame
+from wonderful_team.core.pictures import Picture
 
 Paint = Callable[[np.ndarray, np.ndarray], np.ndarray]
 

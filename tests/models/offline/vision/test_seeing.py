@@ -23,10 +23,10 @@ from tests.models.offline.vision.drawn import (
     round_shape,
     striped,
 )  # fmt: skip
-from wonderful_team.geometry import Frame
+from wonderful_team.core.geometry import Frame
+from wonderful_team.core.pictures import Picture
 from wonderful_team.models.offline.description import Description
 from wonderful_team.models.offline.vision import Thing, resolve, see
-from wonderful_team.pictures import Picture
 
 
 def at(picture: Picture, x: float, y: float) -> Thing:

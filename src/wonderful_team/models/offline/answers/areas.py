@@ -7,15 +7,15 @@ from collections.abc import Sequence
 import numpy as np
 
 from wonderful_team.contracts import ShownSlot
-from wonderful_team.geometry import Box
-from wonderful_team.geometry.arrays import Array
+from wonderful_team.core.geometry import Box
+from wonderful_team.core.geometry.arrays import Array
+from wonderful_team.core.pictures import Picture, Point
 from wonderful_team.models.offline.answers.eyes import eyes_of
 from wonderful_team.models.offline.description import Description
 from wonderful_team.models.offline.vision import BoxFit, Scene, free_spots, see
 from wonderful_team.models.offline.vision.colours import to_lab
 from wonderful_team.models.offline.vision.scene import shrink, working_zoom
 from wonderful_team.models.offline.vision.table import find_table
-from wonderful_team.pictures import Picture, Point
 
 PLACE_SLACK = 0.25
 """How far the middle of a box may lie from the place shown, in shares of the place's sides."""

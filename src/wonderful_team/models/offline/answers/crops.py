@@ -21,7 +21,9 @@ from wonderful_team.contracts import (
     RevisionVerdict,
     ShownSlot,
 )
-from wonderful_team.geometry import Box
+from wonderful_team.core.geometry import Box
+from wonderful_team.core.pictures import BoxMark, Picture, Point
+from wonderful_team.core.values import Target
 from wonderful_team.models.offline.answers.areas import judge_area, judge_place, nearest_free
 from wonderful_team.models.offline.answers.eyes import (
     examples_of,
@@ -32,8 +34,6 @@ from wonderful_team.models.offline.answers.eyes import (
 )
 from wonderful_team.models.offline.answers.finding import middle_of, push_goal
 from wonderful_team.models.offline.vision import BoxFit, fit_box, see, strip_presence
-from wonderful_team.pictures import BoxMark, Picture, Point
-from wonderful_team.types import Target
 
 SAME_SIZE = 0.2
 """A box whose sides differ from the target's by less than this share is moved as a whole, else its edges are set."""

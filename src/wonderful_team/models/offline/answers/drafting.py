@@ -19,6 +19,7 @@ from wonderful_team.contracts import (
     TargetList,
 )
 from wonderful_team.contracts.shown import ShownTask
+from wonderful_team.core.values import PointRole
 from wonderful_team.errors import NotUnderstoodError
 from wonderful_team.models.offline.answers.aims import Aim, Aims, derive
 from wonderful_team.models.offline.answers.eyes import Eyes, eyes_of_task, is_shown_alone, side_words, told_apart
@@ -28,7 +29,6 @@ from wonderful_team.models.offline.answers.sweeps import way_places
 from wonderful_team.models.offline.description import Description
 from wonderful_team.models.offline.language import describe, render, try_understand, understand
 from wonderful_team.models.offline.language.wording import relation_words
-from wonderful_team.types import PointRole
 
 _SIDE_WORDS = {"left": "to the left of", "right": "to the right of", "above": "above", "below": "below",
                "near": "next to", "in": "into", "on": "onto"}  # fmt: skip

@@ -6,6 +6,8 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from wonderful_team.contracts import ShownSlot, ShownTask
+from wonderful_team.core.pictures import Picture
+from wonderful_team.core.values import Target
 from wonderful_team.models.offline.description import COLOURS, SHAPES, Description, Way
 from wonderful_team.models.offline.language import describe, render, try_describe
 from wonderful_team.models.offline.vision import (
@@ -22,8 +24,6 @@ from wonderful_team.models.offline.vision import (
     with_heights,
 )
 from wonderful_team.models.offline.vision.relations import is_at, shares_from
-from wonderful_team.pictures import Picture
-from wonderful_team.types import Target
 
 NEARLY_EQUAL = 0.06
 """Two scores closer than this, both good, are a genuine ambiguity (0 to 1)."""

@@ -7,13 +7,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from wonderful_team.geometry import Box
+from wonderful_team.core.geometry import Box
+from wonderful_team.core.pictures import Picture, Point, PointMark
+from wonderful_team.core.values import PointRole, Target
 from wonderful_team.models.offline.answers.eyes import Eyes, is_free_area, target_description
 from wonderful_team.models.offline.description import Description
 from wonderful_team.models.offline.language import try_understand
 from wonderful_team.models.offline.vision import Match, Scene, Thing, free_spots
-from wonderful_team.pictures import Picture, Point, PointMark
-from wonderful_team.types import PointRole, Target
 
 STANDOFF = 0.35
 """How far beside a thing a push starts, in shares of its half side."""

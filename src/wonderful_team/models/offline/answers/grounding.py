@@ -20,7 +20,9 @@ from wonderful_team.contracts import (
     SceneReading,
     SceneTarget,
 )
-from wonderful_team.geometry import Box
+from wonderful_team.core.geometry import Box
+from wonderful_team.core.pictures import Picture, Point
+from wonderful_team.core.values import PointRole, Target
 from wonderful_team.models.offline.answers.eyes import Eyes, eyes_of
 from wonderful_team.models.offline.answers.finding import (
     Found,
@@ -33,8 +35,6 @@ from wonderful_team.models.offline.answers.finding import (
     untried,
     varied,
 )
-from wonderful_team.pictures import Picture, Point
-from wonderful_team.types import PointRole, Target
 
 YIELDS = 0.75
 """A target gives way to another on the same thing when its next best match scores at least this share."""

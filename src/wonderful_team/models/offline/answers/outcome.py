@@ -5,8 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from wonderful_team.contracts import Advice, JudgeOutcome, Outcome, Replan, VerdictDraft
+from wonderful_team.core.geometry import Box, Frame
+from wonderful_team.core.pictures import BoxMark, Picture
+from wonderful_team.core.values import Target
 from wonderful_team.errors import NotUnderstoodError
-from wonderful_team.geometry import Box, Frame
 from wonderful_team.models.offline.answers.aims import Aim, Named, already, derive
 from wonderful_team.models.offline.answers.eyes import Eyes, eyes_of, eyes_of_task
 from wonderful_team.models.offline.answers.instruction import read_task
@@ -17,8 +19,6 @@ from wonderful_team.models.offline.answers.turning import turned_deg
 from wonderful_team.models.offline.description import Description
 from wonderful_team.models.offline.vision import Thing, strip_presence
 from wonderful_team.models.offline.vision.things import covers
-from wonderful_team.pictures import BoxMark, Picture
-from wonderful_team.types import Target
 
 ALIKE = 0.55
 """Likeness of colours from which a thing after may be the thing before (0 to 1)."""

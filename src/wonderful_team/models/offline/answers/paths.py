@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from wonderful_team.contracts import PathReview, ReviewPath
-from wonderful_team.geometry import Box
+from wonderful_team.core.geometry import Box
+from wonderful_team.core.pictures import BoxMark, PathMark, Point
 from wonderful_team.models.offline.answers.eyes import eyes_of
 from wonderful_team.models.offline.language import try_understand
-from wonderful_team.pictures import BoxMark, PathMark, Point
 
 NEAR = 1.6
 """A path reaches a thing when its end lies in the thing's box, grown by this factor."""

@@ -11,12 +11,12 @@ from dataclasses import dataclass, replace
 import cv2
 import numpy as np
 
-from wonderful_team.geometry.arrays import Array
+from wonderful_team.core.geometry.arrays import Array
+from wonderful_team.core.pictures import Point
 from wonderful_team.models.offline.answers.room import Room, study_room
 from wonderful_team.models.offline.vision import Scene, Thing
 from wonderful_team.models.offline.vision.outlines import filled
 from wonderful_team.models.offline.vision.things import whole_mask
-from wonderful_team.pictures import Point
 
 TOOL_HALF = 0.8
 """Half the tool's width."""

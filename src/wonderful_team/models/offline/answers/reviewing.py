@@ -11,13 +11,13 @@ from dataclasses import dataclass
 
 from wonderful_team.contracts import DoubtDraft, PlanReview, ReviewPlan
 from wonderful_team.contracts.shown import ShownTask
+from wonderful_team.core.values import Subgoal, Target
 from wonderful_team.errors import NotUnderstoodError
 from wonderful_team.models.offline.answers.aims import Aim, Aims, Named, derive
 from wonderful_team.models.offline.answers.drafting import aim_text, cleared
 from wonderful_team.models.offline.answers.eyes import Eyes, eyes_of_task, target_description
 from wonderful_team.models.offline.answers.instruction import read_task
 from wonderful_team.models.offline.language import try_understand
-from wonderful_team.types import Subgoal, Target
 
 
 @dataclass(frozen=True)

@@ -6,11 +6,11 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from wonderful_team.core.values import Subgoal, Target
 from wonderful_team.models.offline.answers.aims import Aim, Named, derive
 from wonderful_team.models.offline.answers.eyes import Eyes
 from wonderful_team.models.offline.answers.reviewing import named
 from wonderful_team.models.offline.language import try_understand
-from wonderful_team.types import Subgoal, Target
 
 TO_MOVE = frozenset(("pick", "grasp", "push_start"))
 TO_RECEIVE = frozenset(("place", "push_end"))

@@ -10,16 +10,16 @@ from dataclasses import dataclass, replace
 import cv2
 import numpy as np
 
+from wonderful_team.core.geometry import Box
+from wonderful_team.core.geometry.arrays import Array
+from wonderful_team.core.pictures import Picture, Point
 from wonderful_team.errors import NotUnderstoodError
-from wonderful_team.geometry import Box
-from wonderful_team.geometry.arrays import Array
 from wonderful_team.models.offline.answers.aims import Aim, Aims, Named
 from wonderful_team.models.offline.answers.eyes import Eyes, unique_words
 from wonderful_team.models.offline.description import Description
 from wonderful_team.models.offline.language import Command, render
 from wonderful_team.models.offline.vision import Match, Thing, likeness, see
 from wonderful_team.models.offline.vision.colours import to_lab
-from wonderful_team.pictures import Picture, Point
 
 ALIKE = 0.35
 """Least likeness of looks at which two pictures may show the same thing (0 to 1)."""

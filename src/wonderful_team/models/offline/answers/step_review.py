@@ -6,7 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import TypeAlias
 
-from wonderful_team.actions import (
+from wonderful_team.contracts import DoubtDraft, PlanReview, ReviewSteps
+from wonderful_team.core.actions import (
     SIDES,
     At,
     Beside,
@@ -18,14 +19,13 @@ from wonderful_team.actions import (
     RotateGripperStep,
     Step,
 )
-from wonderful_team.contracts import DoubtDraft, PlanReview, ReviewSteps
-from wonderful_team.geometry import Box
+from wonderful_team.core.geometry import Box
+from wonderful_team.core.pictures import BoxMark, PathMark, Picture
+from wonderful_team.core.values import Subgoal
 from wonderful_team.models.offline.answers.eyes import Eyes, eyes_of, eyes_of_task
 from wonderful_team.models.offline.answers.reviewing import named
 from wonderful_team.models.offline.answers.roles import Task, tasks_of
 from wonderful_team.models.offline.answers.steps import place_of
-from wonderful_team.pictures import BoxMark, PathMark, Picture
-from wonderful_team.types import Subgoal
 
 SAME_ANGLE_DEG = 0.5
 """Turns closer than this are the same [degrees]."""

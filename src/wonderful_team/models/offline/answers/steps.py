@@ -4,16 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from wonderful_team.actions import (
-    SIDES,
-    Side,
-)
 from wonderful_team.contracts import StepList, WriteSteps, step_list_type
+from wonderful_team.core.actions import SIDES, Side
+from wonderful_team.core.values import Subgoal
 from wonderful_team.errors import NotUnderstoodError, UnsupportedQuestion
 from wonderful_team.models.offline.answers.eyes import Eyes, eyes_of_task
 from wonderful_team.models.offline.answers.roles import Task, tasks_of
 from wonderful_team.models.offline.vision import Thing
-from wonderful_team.types import Subgoal
 
 SAME_ANGLE_DEG = 0.5
 

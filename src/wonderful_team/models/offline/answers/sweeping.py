@@ -11,14 +11,14 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import TypeAlias
 
-from wonderful_team.geometry import Box
-from wonderful_team.geometry.arrays import Array
+from wonderful_team.core.geometry import Box
+from wonderful_team.core.geometry.arrays import Array
+from wonderful_team.core.pictures import Point
 from wonderful_team.models.offline.answers.pushing import Field, Way, best_way, inside, study_field
 from wonderful_team.models.offline.description import Description
 from wonderful_team.models.offline.description import Way as Place
 from wonderful_team.models.offline.language import describe, render, try_understand
 from wonderful_team.models.offline.vision import Match, Scene
-from wonderful_team.pictures import Point
 
 Number: TypeAlias = Callable[[Description], int | None]
 """Who is meant by a description of one thing: its number in a scene, or None."""

@@ -7,9 +7,9 @@ from collections.abc import Sequence
 import cv2
 import numpy as np
 
-from wonderful_team.geometry.arrays import Array
+from wonderful_team.core.geometry.arrays import Array
+from wonderful_team.core.pictures import Picture
 from wonderful_team.models.offline.vision import Thing
-from wonderful_team.pictures import Picture
 
 SIDE_PX = 96
 STEP_DEG = 3.0

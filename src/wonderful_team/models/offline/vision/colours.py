@@ -12,7 +12,7 @@ from functools import cache
 import cv2
 import numpy as np
 
-from wonderful_team.geometry.arrays import Array
+from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.models.offline.description import COLOURS
 
 _HUES: tuple[tuple[str, float, float], ...] = (

@@ -9,8 +9,9 @@ from typing import Literal
 import cv2
 import numpy as np
 
-from wonderful_team.geometry import Box
-from wonderful_team.geometry.arrays import Array
+from wonderful_team.core.geometry import Box
+from wonderful_team.core.geometry.arrays import Array
+from wonderful_team.core.pictures import Picture
 from wonderful_team.models.offline.vision.colours import to_lab
 from wonderful_team.models.offline.vision.outlines import Outline, filled, same_outline, study_outline
 from wonderful_team.models.offline.vision.scene import shrink, working_zoom
@@ -18,7 +19,6 @@ from wonderful_team.models.offline.vision.segments import close_ring, fill_speck
 from wonderful_team.models.offline.vision.splitting import components, kernel
 from wonderful_team.models.offline.vision.table import RAISED_M, height_above_table
 from wonderful_team.models.offline.vision.things import Example, Look, NotSeen, Thing, study_look
-from wonderful_team.pictures import Picture
 
 _STANDS_OUT = 7.0
 """CIELAB distance from the background at which a pixel belongs to the thing shown."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from wonderful_team.geometry.arrays import Array
+from wonderful_team.core.geometry.arrays import Array
 
 _STEADY = 1e8
 """Condition number of the normal equations up to which they are solved as they are."""

@@ -9,11 +9,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from wonderful_team.geometry import Box
-from wonderful_team.geometry.arrays import Array
+from wonderful_team.core.geometry import Box
+from wonderful_team.core.geometry.arrays import Array
+from wonderful_team.core.pictures import Picture
 from wonderful_team.models.offline.vision.scene import see
 from wonderful_team.models.offline.vision.things import Scene, Thing
-from wonderful_team.pictures import Picture
 
 _ACROSS = 0.02
 """Difference in left-right place [share of the width] at which a pair of sightings gets doubtful."""

@@ -14,10 +14,10 @@ from dataclasses import dataclass, replace
 import cv2
 import numpy as np
 
-from wonderful_team.geometry.arrays import Array
+from wonderful_team.core.geometry.arrays import Array
+from wonderful_team.core.pictures import Picture
 from wonderful_team.models.offline.vision.colours import to_lab
 from wonderful_team.models.offline.vision.table import NO_TABLE, RAISED_M, Table, find_table, height_above_table
-from wonderful_team.pictures import Picture
 
 _SIDE = 320
 """Longest side at which light is measured [px]."""

@@ -8,15 +8,15 @@ from typing import Literal, TypeAlias
 
 import numpy as np
 
-from wonderful_team.geometry import Box
-from wonderful_team.geometry.arrays import Array
+from wonderful_team.core.geometry import Box
+from wonderful_team.core.geometry.arrays import Array
+from wonderful_team.core.pictures import Picture
 from wonderful_team.models.offline.description import COLOURS, Description
 from wonderful_team.models.offline.vision.colours import memberships, to_lab
 from wonderful_team.models.offline.vision.resolve import FITS, suits
 from wonderful_team.models.offline.vision.scene import see, shrink, working_zoom
 from wonderful_team.models.offline.vision.table import find_table
 from wonderful_team.models.offline.vision.things import _BINS, Example, Thing
-from wonderful_team.pictures import Picture
 
 Side: TypeAlias = Literal["left", "top", "right", "bottom"]
 SIDES: tuple[Side, ...] = ("left", "top", "right", "bottom")

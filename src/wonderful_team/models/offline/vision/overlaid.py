@@ -10,7 +10,7 @@ from typing import TypeAlias
 import cv2
 import numpy as np
 
-from wonderful_team.geometry.arrays import Array
+from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.models.offline.vision.outlines import filled, largest_contour
 from wonderful_team.models.offline.vision.splitting import components, kernel, placed, window
 

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
-from wonderful_team.geometry.arrays import Array
+from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.models.offline.vision.outlines import filled
 from wonderful_team.models.offline.vision.things import lab_histogram
 

@@ -8,11 +8,11 @@ from dataclasses import replace
 import cv2
 import numpy as np
 
-from wonderful_team.geometry.arrays import Array
+from wonderful_team.core.geometry.arrays import Array
+from wonderful_team.core.pictures import Point
 from wonderful_team.models.offline.vision.examples import alike_colour, alike_pattern
 from wonderful_team.models.offline.vision.outlines import filled, largest_contour, same_form, study_outline
 from wonderful_team.models.offline.vision.things import Look, Match, Scene, Thing, covers
-from wonderful_team.pictures import Point
 
 DIRECTIONS = {"left_of": (-1.0, 0.0), "right_of": (1.0, 0.0), "above": (0.0, -1.0), "below": (0.0, 1.0)}
 """Unit vectors in the picture: x right, y down."""

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from wonderful_team.core.pictures import Point
 from wonderful_team.models.offline.description import Description
 from wonderful_team.models.offline.vision.examples import alike
 from wonderful_team.models.offline.vision.kinds import is_kind_here, kind_score, named_score
@@ -14,7 +15,6 @@ from wonderful_team.models.offline.vision.materials import material_score
 from wonderful_team.models.offline.vision.relations import pick_in_corner, pick_superlative, relation_score
 from wonderful_team.models.offline.vision.spots import free_spots
 from wonderful_team.models.offline.vision.things import Example, Look, Match, NotSeen, Scene, Thing
-from wonderful_team.pictures import Point
 
 FITS = 0.4
 """Score from which a thing is taken to fit a description."""

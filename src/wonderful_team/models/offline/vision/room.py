@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from wonderful_team.geometry.arrays import Array
+from wonderful_team.core.geometry.arrays import Array
 
 _NEAR = 6.0
 """CIELAB distance up to which a pixel has the room's colour."""

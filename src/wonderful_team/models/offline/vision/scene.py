@@ -9,15 +9,15 @@ from dataclasses import replace
 import cv2
 import numpy as np
 
-from wonderful_team.geometry import Box
-from wonderful_team.geometry.arrays import Array
+from wonderful_team.core.geometry import Box
+from wonderful_team.core.geometry.arrays import Array
+from wonderful_team.core.pictures import Picture
 from wonderful_team.models.offline.vision.colours import to_lab
 from wonderful_team.models.offline.vision.outlines import filled
 from wonderful_team.models.offline.vision.segments import Segment, find_segments
 from wonderful_team.models.offline.vision.splitting import kernel, window
 from wonderful_team.models.offline.vision.table import Table, find_table
 from wonderful_team.models.offline.vision.things import Scene, Thing, study_look
-from wonderful_team.pictures import Picture
 
 _WORKING_SIDE = 640
 """Longest side that pictures are looked at in [px]; larger ones are shrunk first."""

@@ -9,7 +9,7 @@ import cv2
 import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
-from wonderful_team.geometry.arrays import Array
+from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.models.offline.description import SHAPES
 from wonderful_team.models.offline.vision.outlines import Forms, Outline, overlaps, study_outline
 

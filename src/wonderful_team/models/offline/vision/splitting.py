@@ -5,7 +5,7 @@ from __future__ import annotations
 import cv2
 import numpy as np
 
-from wonderful_team.geometry.arrays import Array
+from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.models.offline.vision.outlines import filled
 
 _SHARP = 5.0

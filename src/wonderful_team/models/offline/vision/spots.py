@@ -8,8 +8,8 @@ from dataclasses import replace
 import cv2
 import numpy as np
 
-from wonderful_team.geometry import Box
-from wonderful_team.geometry.arrays import Array
+from wonderful_team.core.geometry import Box
+from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.models.offline.vision.outlines import filled
 from wonderful_team.models.offline.vision.relations import DIRECTIONS, direction_score
 from wonderful_team.models.offline.vision.things import Match, Scene, Thing, whole_mask

@@ -7,14 +7,14 @@ from dataclasses import dataclass, field
 import cv2
 import numpy as np
 
+from wonderful_team.core.geometry import Box
+from wonderful_team.core.geometry.arrays import Array
+from wonderful_team.core.pictures import Picture, Point
 from wonderful_team.errors import WonderfulTeamError
-from wonderful_team.geometry import Box
-from wonderful_team.geometry.arrays import Array
 from wonderful_team.models.offline.vision.colours import ColourShare, colour_shares, darkness, membership_shares
 from wonderful_team.models.offline.vision.outlines import Outline, filled, study_outline
 from wonderful_team.models.offline.vision.patterns import Surface, pattern_scores, study_surface
 from wonderful_team.models.offline.vision.shapes import shape_scores
-from wonderful_team.pictures import Picture, Point
 
 
 class NotSeen(WonderfulTeamError):  # noqa: N818  the name says what it is

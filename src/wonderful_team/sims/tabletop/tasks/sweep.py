@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from wonderful_team.actions import VOCABULARIES
+from wonderful_team.core.actions import VOCABULARIES
 from wonderful_team.sims.tabletop.model import Thing
 from wonderful_team.sims.tabletop.registering import task
 from wonderful_team.sims.tabletop.scene import Scene

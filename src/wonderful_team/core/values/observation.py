@@ -9,12 +9,12 @@ from functools import cached_property
 from types import MappingProxyType
 from typing import Literal, TypeAlias
 
+from wonderful_team.core.geometry import Camera
+from wonderful_team.core.geometry.arrays import Array
+from wonderful_team.core.notebook import card
+from wonderful_team.core.pictures import checked_depth, checked_rgb, picture_hash, pixels_hash
+from wonderful_team.core.text import counted, picture_names, spoken
 from wonderful_team.errors import ConfigError
-from wonderful_team.geometry import Camera
-from wonderful_team.geometry.arrays import Array
-from wonderful_team.notebook import card
-from wonderful_team.pictures import checked_depth, checked_rgb, picture_hash, pixels_hash
-from wonderful_team.text import counted, picture_names, spoken
 
 SlotKind: TypeAlias = Literal["object", "scene", "frame", "before", "after"]
 

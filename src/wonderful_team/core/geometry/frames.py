@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from wonderful_team.geometry.arrays import Array, as_points, frozen_array
-from wonderful_team.geometry.boxes import Box
+from wonderful_team.core.geometry.arrays import Array, as_points, frozen_array
+from wonderful_team.core.geometry.boxes import Box
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,8 +6,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, ClassVar, Literal, TypeAlias
 
-from wonderful_team.pictures import Picture
-from wonderful_team.types.planned import Provenance
+from wonderful_team.core.pictures import Picture
+from wonderful_team.core.values.plan import Provenance
 
 
 @dataclass(frozen=True)

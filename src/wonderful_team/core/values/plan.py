@@ -4,19 +4,19 @@ from __future__ import annotations
 
 import hashlib
 import json
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from types import MappingProxyType
 from typing import Literal, TypeAlias
 
-from wonderful_team.actions import Action, Step
-from wonderful_team.geometry import Box
-from wonderful_team.jsonable import to_jsonable
-from wonderful_team.pictures import Point
-from wonderful_team.types.content import content_hash
-from wonderful_team.types.seen import Instruction
+from wonderful_team.core.actions import Action, Step
+from wonderful_team.core.geometry import Box
+from wonderful_team.core.jsonable import to_jsonable
+from wonderful_team.core.pictures import Point
+from wonderful_team.core.values.content import content_hash
+from wonderful_team.core.values.limits import KeepOut
+from wonderful_team.core.values.observation import Instruction
 
 Provenance: TypeAlias = Literal["model", "offline", "simulated", "scripted", "cached", "injected", "replayed", "user"]
 PointRole: TypeAlias = Literal["pick", "place", "push_start", "push_end", "grasp"]
@@ -204,40 +204,3 @@ class Plan:
 
     def with_status(self, status: str, message: str = "") -> Plan:
         return replace(self, status=status, message=message)
-
-
-@dataclass(frozen=True)
-class KeepOut:
-    """A region nothing may enter: a box in pixels of the main view, or in metres on the table (x0, y0, x1, y1)."""
-
-    name: str
-    box: Box
-    unit: Literal["px", "m"] = "px"
-
-
-@dataclass(frozen=True, eq=False)
-class Limits:
-    """What a world allows.
-
-    Attributes:
-        low_m, high_m: Corners of the workspace, shape (3,) [m], base frame.
-        keep_out: Regions nothing may enter.
-        clearance_m: Height at which things are carried over the table [m].
-    """
-
-    low_m: tuple[float, float, float]
-    high_m: tuple[float, float, float]
-    keep_out: tuple[KeepOut, ...] = ()
-    clearance_m: float = 0.2
-
-    def __post_init__(self) -> None:
-        if not all(math.isfinite(value) for value in (*self.low_m, *self.high_m, self.clearance_m)):
-            raise ValueError(
-                f"workspace: every number must be finite, got {self.low_m}, {self.high_m} m, clearance {self.clearance_m} m"
-            )
-        if any(low >= high for low, high in zip(self.low_m, self.high_m, strict=True)):
-            raise ValueError(f"workspace: every low must be below its high, got {self.low_m} and {self.high_m} m")
-
-
-NO_WORKSPACE = Limits((-100.0, -100.0, -100.0), (100.0, 100.0, 100.0))
-"""Limits of a photo without a robot: nobody has said where the workspace ends."""

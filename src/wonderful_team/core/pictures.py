@@ -13,8 +13,8 @@ from typing import Literal, TypeAlias
 
 import numpy as np
 
-from wonderful_team.geometry import Box, Frame
-from wonderful_team.geometry.arrays import Array
+from wonderful_team.core.geometry import Box, Frame
+from wonderful_team.core.geometry.arrays import Array
 
 Point: TypeAlias = tuple[float, float]
 BoxStyle: TypeAlias = Literal["target", "before", "after", "keep_out", "workspace"]

@@ -11,8 +11,8 @@ from typing import ClassVar, Literal, TypeAlias
 
 import numpy as np
 
-from wonderful_team.geometry import Pose
-from wonderful_team.geometry.arrays import Array, frozen_array
+from wonderful_team.core.geometry import Pose
+from wonderful_team.core.geometry.arrays import Array, frozen_array
 
 Side: TypeAlias = Literal["left", "right", "above", "below"]
 """A side of an object as the picture shows it: above is towards the picture's top edge."""

@@ -1,15 +1,13 @@
 """The values that flow through the system: frozen, checked once when built, arrays read-only."""
 
-from wonderful_team.types.asked import Answer, Note, Part, Request, Usage, Words
-from wonderful_team.types.content import content_hash, file_hash
-from wonderful_team.types.happened import GateCheck, GateReport, StepReport, SubgoalRun, Trial, Verdict
-from wonderful_team.types.planned import (
-    NO_WORKSPACE,
+from wonderful_team.core.values.content import content_hash, file_hash
+from wonderful_team.core.values.ground_truth import TrueSight, TrueThing
+from wonderful_team.core.values.limits import NO_WORKSPACE, KeepOut, Limits
+from wonderful_team.core.values.observation import Instruction, Observation, RobotState, Slot, SlotKind, View
+from wonderful_team.core.values.plan import (
     Doubt,
     GroundedTarget,
     GroundingEvent,
-    KeepOut,
-    Limits,
     NumberSource,
     Plan,
     PlannedAction,
@@ -18,9 +16,9 @@ from wonderful_team.types.planned import (
     Subgoal,
     Target,
 )
-from wonderful_team.types.read import ReadPlan
-from wonderful_team.types.seen import Instruction, Observation, RobotState, Slot, SlotKind, View
-from wonderful_team.types.true import TrueSight, TrueThing
+from wonderful_team.core.values.read import ReadPlan
+from wonderful_team.core.values.request import Answer, Note, Part, Request, Usage, Words
+from wonderful_team.core.values.result import GateCheck, GateReport, StepReport, SubgoalRun, Trial, Verdict
 
 __all__ = [
     "Answer",

@@ -6,10 +6,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
-from wonderful_team.actions import Action
-from wonderful_team.types.asked import Usage
-from wonderful_team.types.planned import Plan, Provenance
-from wonderful_team.types.seen import Observation
+from wonderful_team.core.actions import Action
+from wonderful_team.core.values.observation import Observation
+from wonderful_team.core.values.plan import Plan, Provenance
+from wonderful_team.core.values.request import Usage
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from wonderful_team.geometry.arrays import Array, as_points, frozen_array
+from wonderful_team.core.geometry.arrays import Array, as_points, frozen_array
 
 
 def wrap_angle(angle_rad: float) -> float:

@@ -11,8 +11,8 @@ from typing import Any
 
 import numpy as np
 
-from wonderful_team.pictures import pixels_hash
-from wonderful_team.types.seen import View
+from wonderful_team.core.pictures import pixels_hash
+from wonderful_team.core.values.observation import View
 
 _EXACT = 2**53
 """Whole numbers below it are the same as floating-point numbers, so 1 and 1.0 hash alike."""

@@ -10,8 +10,8 @@ from collections.abc import Iterable, Sequence
 
 import numpy as np
 
-from wonderful_team.geometry.arrays import Array
-from wonderful_team.text import visible
+from wonderful_team.core.geometry.arrays import Array
+from wonderful_team.core.text import visible
 
 WIDTH_PX = 720
 """Pictures are made no wider than this: a notebook keeps every one."""

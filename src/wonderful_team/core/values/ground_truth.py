@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from wonderful_team.geometry.arrays import Array, frozen_array
-from wonderful_team.types.seen import View
+from wonderful_team.core.geometry.arrays import Array, frozen_array
+from wonderful_team.core.values.observation import View
 
 
 @dataclass(frozen=True, eq=False)

@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
-from wonderful_team.types.content import file_hash
-from wonderful_team.types.planned import Plan
-from wonderful_team.types.seen import Observation
+from wonderful_team.core.values.content import file_hash
+from wonderful_team.core.values.observation import Observation
+from wonderful_team.core.values.plan import Plan
 
 
 @dataclass(frozen=True, eq=False)

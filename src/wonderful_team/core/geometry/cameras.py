@@ -11,9 +11,9 @@ from typing import Protocol, runtime_checkable
 import numpy as np
 from numpy.typing import ArrayLike
 
+from wonderful_team.core.geometry.arrays import Array, as_points, frozen_array
+from wonderful_team.core.geometry.poses import Pose
 from wonderful_team.errors import ConfigError, MissingDepthError
-from wonderful_team.geometry.arrays import Array, as_points, frozen_array
-from wonderful_team.geometry.poses import Pose
 
 
 @runtime_checkable

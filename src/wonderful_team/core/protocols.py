@@ -7,9 +7,9 @@ from collections.abc import Awaitable, Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Protocol, TypeAlias, TypeGuard, TypeVar, cast, runtime_checkable
 
-from wonderful_team.actions import Action, Vocabulary
-from wonderful_team.geometry.arrays import Array
-from wonderful_team.types import (
+from wonderful_team.core.actions import Action, Vocabulary
+from wonderful_team.core.geometry.arrays import Array
+from wonderful_team.core.values import (
     Answer,
     GateReport,
     Instruction,
@@ -214,6 +214,12 @@ class Event:
     name: str
     content: Any = None
     round: int | None = None
+
+
+def privileged(world: World) -> Privileged | None:
+    """The truth behind a simulator, for its scorer; None for real robots, own worlds without one, and changed instructions."""
+    truth = getattr(world, "privileged", None)
+    return truth if offers(truth, Privileged) else None
 
 
 __all__ = [

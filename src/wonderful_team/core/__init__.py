@@ -1,0 +1,1 @@
+"""What everything else rests on: values, actions, pictures, geometry, protocols. numpy alone."""

@@ -1,0 +1,46 @@
+"""What a world allows: its workspace, and regions that nothing may enter."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Literal
+
+from wonderful_team.core.geometry import Box
+
+
+@dataclass(frozen=True)
+class KeepOut:
+    """A region nothing may enter: a box in pixels of the main view, or in metres on the table (x0, y0, x1, y1)."""
+
+    name: str
+    box: Box
+    unit: Literal["px", "m"] = "px"
+
+
+@dataclass(frozen=True, eq=False)
+class Limits:
+    """What a world allows.
+
+    Attributes:
+        low_m, high_m: Corners of the workspace, shape (3,) [m], base frame.
+        keep_out: Regions nothing may enter.
+        clearance_m: Height at which things are carried over the table [m].
+    """
+
+    low_m: tuple[float, float, float]
+    high_m: tuple[float, float, float]
+    keep_out: tuple[KeepOut, ...] = ()
+    clearance_m: float = 0.2
+
+    def __post_init__(self) -> None:
+        if not all(math.isfinite(value) for value in (*self.low_m, *self.high_m, self.clearance_m)):
+            raise ValueError(
+                f"workspace: every number must be finite, got {self.low_m}, {self.high_m} m, clearance {self.clearance_m} m"
+            )
+        if any(low >= high for low, high in zip(self.low_m, self.high_m, strict=True)):
+            raise ValueError(f"workspace: every low must be below its high, got {self.low_m} and {self.high_m} m")
+
+
+NO_WORKSPACE = Limits((-100.0, -100.0, -100.0), (100.0, 100.0, 100.0))
+"""Limits of a photo without a robot: nobody has said where the workspace ends."""

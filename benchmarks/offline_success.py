@@ -70,7 +70,7 @@ def run(job: Job) -> Result:
     """Run one trial in this process."""
     # Imported here: a worker of a spawned pool pays for it once, the parent never.
     from wonderful_team.core.values import Instruction
-    from wonderful_team.models.offline import OfflineModel
+    from wonderful_team.offline import OfflineModel
     from wonderful_team.planning import Team, TeamConfig
     from wonderful_team.runtime import rollout
 

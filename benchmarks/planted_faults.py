@@ -32,8 +32,8 @@ from wonderful_team.core.values import Target
 from wonderful_team.errors import WonderfulTeamError
 from wonderful_team.evals import Confusion, Rate
 from wonderful_team.models.door import Door
-from wonderful_team.models.offline import OfflineModel
 from wonderful_team.models.wrappers import Injecting, Injection
+from wonderful_team.offline import OfflineModel
 from wonderful_team.planning import Team, TeamConfig
 from wonderful_team.planning.boxes import Job
 from wonderful_team.planning.desk import Desk

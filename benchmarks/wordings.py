@@ -95,7 +95,7 @@ class Scene:
 
     def read(self, text: str) -> Any:
         """A text read with the scene's pictures."""
-        from wonderful_team.models.offline.answers.instruction import read_task
+        from wonderful_team.offline.answers.instruction import read_task
 
         names = set(re.findall(r"\{([^{}]+)\}", text))
         slots = tuple(slot for slot in self.task.slots if slot.name in names)
@@ -171,7 +171,7 @@ def _what(description: Any) -> Any:
 def judge(wording: Wording) -> str:
     """Nothing when a wording is read as the task's own words are; else what is amiss."""
     from wonderful_team.errors import NotUnderstoodError
-    from wonderful_team.models.offline.language import understand
+    from wonderful_team.offline.language import understand
 
     try:
         if wording.is_plain:

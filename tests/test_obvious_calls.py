@@ -16,7 +16,7 @@ import wonderful_team as wt
 from wonderful_team.cli.app import run
 from wonderful_team.core.protocols import Filmed, Privileged, SceneTruth, offers, privileged
 from wonderful_team.errors import ConfigError, UnknownNameError
-from wonderful_team.models.offline import OfflineModel
+from wonderful_team.offline import OfflineModel
 from wonderful_team.runtime.optional import Accounting, ChunkPolicy, Configured, Horizon, NamedModel, Sourced
 from wonderful_team.simulated_models import scene_truth
 

@@ -11,7 +11,7 @@ import pytest
 import wonderful_team as wt
 from tests.desk import WORDS, draw_desk, read_record
 from wonderful_team.errors import ModelCodeError, ModelServerError
-from wonderful_team.models.offline import OfflineModel
+from wonderful_team.offline import OfflineModel
 from wonderful_team.replays import replay
 
 TASK = "tabletop/visual_manipulation"

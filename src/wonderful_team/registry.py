@@ -105,7 +105,7 @@ def make_model(
         return make_model(check_names_no_code(spec, f"profile {model!r}"), options, role, world)
     if model not in MODELS:
         raise UnknownNameError("model", model, [*MODELS, *profile_names(), *MODEL_FORMS])
-    return cast(Model, importlib.import_module("wonderful_team.models.offline").OfflineModel())
+    return cast(Model, importlib.import_module("wonderful_team.offline").OfflineModel())
 
 
 def make_models(

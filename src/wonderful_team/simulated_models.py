@@ -12,7 +12,7 @@ SIMULATED = "simulated:"
 
 def simulated_model(name: str, world: World | None) -> Model:
     """A model that answers from a world's truth; without a world, one that says what it waits for."""
-    from wonderful_team.models.simulated import SimulatedModel, Unbound, profile_named
+    from wonderful_team.simulated import SimulatedModel, Unbound, profile_named
 
     profile = profile_named(name.removeprefix(SIMULATED))
     if world is None:

@@ -18,8 +18,8 @@ from wonderful_team.lab.asking import Bench, look
 from wonderful_team.lab.limits import picture_limit, schema_kept, thinking_kind
 from wonderful_team.lab.marks import marked_scene
 from wonderful_team.lab.probe import Options, Subject, probe
-from wonderful_team.models.offline import OfflineModel
 from wonderful_team.models.profiles import Profile
+from wonderful_team.offline import OfflineModel
 
 ODD = {
     "plain pixels": Speech(),

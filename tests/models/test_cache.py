@@ -24,7 +24,7 @@ from wonderful_team.models.cache import Cached, cached_models
 from wonderful_team.models.cache_key import model_identity, request_key
 from wonderful_team.models.cache_store import CacheStore, Stored, default_cache_file, network_file_system
 from wonderful_team.models.door import Door
-from wonderful_team.models.offline import OfflineModel
+from wonderful_team.offline import OfflineModel
 
 
 @pytest.fixture

@@ -7,7 +7,7 @@ from dataclasses import replace
 from wonderful_team.core.actions import At, PickPlaceStep, PushStep
 from wonderful_team.core.protocols import Act
 from wonderful_team.core.values import Instruction, Plan, Subgoal
-from wonderful_team.models.offline import OfflineModel
+from wonderful_team.offline import OfflineModel
 from wonderful_team.planning import Team
 from wonderful_team.planning.looking import first_part, is_uncertain, looking_lines
 from wonderful_team.runtime import rollout

@@ -158,7 +158,7 @@ def _spoken(request: Request, result: Any, heard: Heard, speech: Speech) -> str:
 
 def offline_brain(desk: Desk, speech: Speech) -> Brain:
     """The real offline model behind the server."""
-    from wonderful_team.models.offline import OfflineModel
+    from wonderful_team.offline import OfflineModel
 
     return typed_brain(desk, OfflineModel().answer, speech)
 

@@ -127,7 +127,7 @@ def _prompts(out: Path | None) -> dict[str, str]:
 
 
 def _words(out: Path | None) -> dict[str, str]:
-    from wonderful_team.models.offline.language import known_words
+    from wonderful_team.offline.language import known_words
 
     return known_words()
 

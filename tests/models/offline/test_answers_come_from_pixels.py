@@ -14,7 +14,7 @@ from wonderful_team.core.geometry import Box
 from wonderful_team.core.pictures import PointMark
 from wonderful_team.core.values import Observation, Target
 from wonderful_team.models.door import Door
-from wonderful_team.models.offline import OfflineModel
+from wonderful_team.offline import OfflineModel
 from wonderful_team.planning import Team, TeamConfig
 from wonderful_team.planning.boxes import Job
 from wonderful_team.planning.desk import Desk

@@ -15,8 +15,8 @@ from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.values import Subgoal, Target, View
 from wonderful_team.errors import NotUnderstoodError
 from wonderful_team.images import whole
-from wonderful_team.models.offline.answers.drafting import draft
-from wonderful_team.models.offline.answers.reviewing import findings
+from wonderful_team.offline.answers.drafting import draft
+from wonderful_team.offline.answers.reviewing import findings
 from wonderful_team.planning.scene import SceneShown
 from wonderful_team.sims.tabletop import make_world
 

@@ -11,7 +11,7 @@ from tests.servers.brains import Desk, Tapped, offline_brain
 from tests.servers.server import Rules, WireServer
 from tests.servers.wiring import OTHER_FAMILIES, WIRES, Wire
 from wonderful_team.core.values import Plan
-from wonderful_team.models.offline import OfflineModel
+from wonderful_team.offline import OfflineModel
 from wonderful_team.planning import Team
 from wonderful_team.sims.tabletop import make_world
 

@@ -14,11 +14,11 @@ from wonderful_team.core.geometry import Box
 from wonderful_team.core.protocols import Model
 from wonderful_team.core.values import Request, Target, Trial
 from wonderful_team.models.reshown import CHANGES, Reshown
-from wonderful_team.models.simulated import PROFILES, SimulatedModel
 from wonderful_team.planning import Team, TeamConfig
 from wonderful_team.planning.scene import SceneShown, show_views
 from wonderful_team.runtime import rollout
 from wonderful_team.sims.tabletop import make_world
+from wonderful_team.simulated import PROFILES, SimulatedModel
 
 
 @dataclass

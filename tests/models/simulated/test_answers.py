@@ -38,7 +38,7 @@ from wonderful_team.core.values import Doubt, Subgoal, Target, Verdict
 from wonderful_team.errors import UnsupportedQuestion
 from wonderful_team.images import crop, crop_pair, edge_strips
 from wonderful_team.models.reshown import CHANGES, Reshown
-from wonderful_team.models.simulated.model import ANSWERS
+from wonderful_team.simulated.model import ANSWERS
 
 from .tables import Set, set_table, show_views
 

@@ -21,8 +21,8 @@ from wonderful_team.models.error_profile import (
     Pointing,
     SceneKind,
 )
-from wonderful_team.models.simulated import profile_named
-from wonderful_team.models.simulated.profiles import from_measured
+from wonderful_team.simulated import profile_named
+from wonderful_team.simulated.profiles import from_measured
 from wonderful_team.trial_runs import check_isolation, model_of
 
 

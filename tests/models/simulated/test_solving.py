@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from wonderful_team.models.offline import OfflineModel
+from wonderful_team.offline import OfflineModel
 
 from .tables import set_table, solve
 

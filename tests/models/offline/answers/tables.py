@@ -11,7 +11,7 @@ from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.pictures import Picture
 from wonderful_team.core.values import Request, View
 from wonderful_team.images import whole
-from wonderful_team.models.offline import OfflineModel
+from wonderful_team.offline import OfflineModel
 
 COLOURS = {
     "red": (205, 40, 40), "green": (50, 160, 60), "blue": (45, 90, 200), "yellow": (235, 205, 50),

@@ -21,7 +21,7 @@ from wonderful_team.contracts import (
 from wonderful_team.core.pictures import PathMark
 from wonderful_team.core.values import Request, Subgoal, Verdict, View
 from wonderful_team.errors import UnsupportedQuestion
-from wonderful_team.models.offline import OfflineModel
+from wonderful_team.offline import OfflineModel
 
 REST = (("square", "blue", 300, 160, 52), ("disc", "yellow", 520, 240, 30))
 BEFORE = table(("star", "green", 500, 80, 36), *REST)

@@ -9,8 +9,8 @@ from functools import cache
 
 from benchmarks.wordings import MOST_SEEDS, Wording
 from wonderful_team.core.values import SlotKind
-from wonderful_team.models.offline.language import Understood
-from wonderful_team.models.offline.language.instruction import read_instruction
+from wonderful_team.offline.language import Understood
+from wonderful_team.offline.language.instruction import read_instruction
 from wonderful_team.sims.tabletop.registering import filled, find_task
 
 TURN_DEG = 60.0

@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 
 from wonderful_team.errors import NotUnderstoodError
-from wonderful_team.models.offline.description import Description, Related
-from wonderful_team.models.offline.language import Command, describe, render, understand
+from wonderful_team.offline.description import Description, Related
+from wonderful_team.offline.language import Command, describe, render, understand
 
 
 def _plain(command: Command) -> tuple[object, ...]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from wonderful_team.errors import NotUnderstoodError
-from wonderful_team.models.offline.language import Command, understand
+from wonderful_team.offline.language import Command, understand
 
 
 def _told(command: Command) -> str:

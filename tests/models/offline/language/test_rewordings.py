@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from wonderful_team.models.offline.language import understand
+from wonderful_team.offline.language import understand
 
 PUT = """
 Put the {dragged_obj_1} into the {base_obj}.

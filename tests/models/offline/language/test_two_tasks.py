@@ -11,8 +11,8 @@ from benchmarks.wordings import Wording, filled, gist
 from tests.models.offline.language.scenes import StandIn, told
 from wonderful_team.core.values import SlotKind
 from wonderful_team.errors import NotUnderstoodError
-from wonderful_team.models.offline.language import Command, describe, understand
-from wonderful_team.models.offline.language.instruction import read_instruction
+from wonderful_team.offline.language import Command, describe, understand
+from wonderful_team.offline.language.instruction import read_instruction
 
 KINDS: dict[str, SlotKind] = {"s": "scene", "f": "frame", "b": "before", "a": "after"}
 """Kinds of pictures by the first letter of names such as {f0}."""

@@ -8,7 +8,7 @@ from benchmarks.wordings import gist
 from tests.models.offline.language.scenes import told
 from wonderful_team.errors import NotUnderstoodError
 from wonderful_team.evals.perturb import PHRASES
-from wonderful_team.models.offline.language import understand
+from wonderful_team.offline.language import understand
 from wonderful_team.sims.tabletop import task_names
 
 SAME = [

@@ -10,8 +10,8 @@ from tests.models.offline.vision.drawn import BLUE, GREEN, ORANGE, PURPLE, RED, 
 from wonderful_team.core.pictures import Picture
 from wonderful_team.core.values import View
 from wonderful_team.images import crop, whole
-from wonderful_team.models.offline.description import Description
-from wonderful_team.models.offline.vision import likeness, resolve, see, study_example, suits, with_heights
+from wonderful_team.offline.description import Description
+from wonderful_team.offline.vision import likeness, resolve, see, study_example, suits, with_heights
 
 TABLE, ROOM, PALE = (47, 47, 47), (238, 238, 238), (240, 240, 240)
 Colour = tuple[int, int, int]

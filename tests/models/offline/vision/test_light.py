@@ -9,7 +9,7 @@ import pytest
 
 from tests.models.offline.vision.drawn import Drawing, box_shape, plain, round_shape
 from wonderful_team.core.pictures import Picture, PointMark
-from wonderful_team.models.offline.vision import Scene, in_plain_light, see
+from wonderful_team.offline.vision import Scene, in_plain_light, see
 
 TABLE = (222, 219, 211)
 RED, BLUE, YELLOW = (205, 40, 45), (50, 80, 200), (235, 205, 50)

@@ -10,8 +10,8 @@ import pytest
 from tests.models.offline.vision.drawn import BLUE, GREEN, RED, YELLOW, Drawing, box_shape, plain, regular, striped
 from wonderful_team.core.geometry import Box, Frame
 from wonderful_team.core.pictures import Picture
-from wonderful_team.models.offline.description import Description
-from wonderful_team.models.offline.vision import fit_box, strip_presence
+from wonderful_team.offline.description import Description
+from wonderful_team.offline.vision import fit_box, strip_presence
 
 STAR = Description("object", "the green star", colours=("green",), shape="star")
 CROP = (

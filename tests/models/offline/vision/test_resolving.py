@@ -23,8 +23,8 @@ from tests.models.offline.vision.drawn import (
     round_shape,
     striped,
 )  # fmt: skip
-from wonderful_team.models.offline.description import Description, Related, Relation, Superlative
-from wonderful_team.models.offline.vision import NotSeen, resolve, see, study_example
+from wonderful_team.offline.description import Description, Related, Relation, Superlative
+from wonderful_team.offline.vision import NotSeen, resolve, see, study_example
 
 ROW = (
     Drawing()

@@ -25,8 +25,8 @@ from tests.models.offline.vision.drawn import (
 )  # fmt: skip
 from wonderful_team.core.geometry import Frame
 from wonderful_team.core.pictures import Picture
-from wonderful_team.models.offline.description import Description
-from wonderful_team.models.offline.vision import Thing, resolve, see
+from wonderful_team.offline.description import Description
+from wonderful_team.offline.vision import Thing, resolve, see
 
 
 def at(picture: Picture, x: float, y: float) -> Thing:

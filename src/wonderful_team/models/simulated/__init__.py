@@ -1,7 +1,0 @@
-"""Models that answer from a simulator's truth, seen through the pictures that they are shown."""
-
-from wonderful_team.models.simulated.model import SimulatedModel
-from wonderful_team.models.simulated.profiles import PROFILES, Profile, profile_named
-from wonderful_team.models.simulated.unbound import Unbound
-
-__all__ = ["PROFILES", "Profile", "SimulatedModel", "Unbound", "profile_named"]

@@ -1,0 +1,76 @@
+"""How the offline model answers each kind of question."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from wonderful_team.contracts import (
+    ChooseMark,
+    ChoosePoint,
+    DraftPlan,
+    ExtractTargets,
+    GiveBox,
+    JudgeBox,
+    JudgeOutcome,
+    JudgeRevision,
+    LocatePoints,
+    MoveBox,
+    Presence,
+    Question,
+    ReadScene,
+    Remember,
+    Replan,
+    ReviewPath,
+    ReviewPlan,
+    ReviewSteps,
+    RevisePlan,
+    WriteSteps,
+)
+from wonderful_team.offline.answers.crops import (
+    answer_choose_point,
+    answer_judge_box,
+    answer_judge_revision,
+    answer_move_box,
+    answer_presence,
+)
+from wonderful_team.offline.answers.drafting import answer_draft, answer_extract, answer_revise
+from wonderful_team.offline.answers.grounding import (
+    answer_choose_mark,
+    answer_give_box,
+    answer_locate,
+    answer_read_scene,
+)
+from wonderful_team.offline.answers.outcome import answer_outcome, answer_replan
+from wonderful_team.offline.answers.paths import answer_review_path
+from wonderful_team.offline.answers.remembering import answer_remember
+from wonderful_team.offline.answers.reviewing import answer_review
+from wonderful_team.offline.answers.step_review import answer_review_steps
+from wonderful_team.offline.answers.steps import answer_write_steps
+
+ANSWERS: dict[type[Question], Callable[..., Any]] = {
+    DraftPlan: answer_draft,
+    ReviewPlan: answer_review,
+    RevisePlan: answer_revise,
+    ExtractTargets: answer_extract,
+    LocatePoints: answer_locate,
+    ChooseMark: answer_choose_mark,
+    GiveBox: answer_give_box,
+    ReadScene: answer_read_scene,
+    Presence: answer_presence,
+    JudgeBox: answer_judge_box,
+    JudgeRevision: answer_judge_revision,
+    MoveBox: answer_move_box,
+    ChoosePoint: answer_choose_point,
+    WriteSteps: answer_write_steps,
+    ReviewSteps: answer_review_steps,
+    ReviewPath: answer_review_path,
+    Remember: answer_remember,
+    JudgeOutcome: answer_outcome,
+    Replan: answer_replan,
+}
+"""One function per kind of question; those that take independent samples also take the sample's number."""
+
+SAMPLED: frozenset[type[Question]] = frozenset((LocatePoints,))
+
+__all__ = ["ANSWERS", "SAMPLED"]

@@ -1,0 +1,429 @@
+"""What an instruction (or a subgoal) comes to in this picture: one aim per thing moved, with who is meant."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from typing import Literal
+
+from wonderful_team.offline.answers.eyes import (
+    GOOD,
+    NEARLY_EQUAL,
+    Eyes,
+    as_pictured,
+    is_shown_alone,
+    one_of,
+    seen_as,
+    side_words,
+    told_apart,
+    unique_words,
+)
+from wonderful_team.offline.description import Description
+from wonderful_team.offline.language import Command, Destination, Understood, describe, render
+from wonderful_team.offline.vision import Match, Thing
+from wonderful_team.offline.vision.relations import superlative_key
+from wonderful_team.offline.vision.things import covers
+
+RIVAL = 0.6
+"""A second match with at least this share of the best score could be taken for it."""
+SAME_SHAPE = 0.85
+"""A thing has a shape when it fits at least this share as well as its best one."""
+LARGER = 1.3
+"""A thing goes into another that is at least so many times its area."""
+HOLDERS = ("container", "area")
+"""Kinds that are larger than what goes onto them."""
+
+
+@dataclass(frozen=True)
+class Named:
+    """A thing or area in words, and its number in the picture where it was found."""
+
+    description: Description
+    number: int | None = None
+
+    @property
+    def words(self) -> str:
+        return self.description.text
+
+    def same(self, other: Named) -> bool:
+        """Whether both mean the same: the same thing in the picture, or the same words where it is not found."""
+        if self.number is not None and other.number is not None:
+            return self.number == other.number
+        return _alike(self.description, other.description)
+
+
+@dataclass(frozen=True)
+class Aim:
+    """One thing to be brought about.
+
+    Attributes:
+        how: As Destination.how without matching: in | on | left | right | above | below | near | between | origin | side;
+            "" for rotate.
+        to, other: References of the destination.
+        after: Positions of aims that must come first.
+        off, limit: What a pushed thing must not touch, and a line that it must not pass.
+        legs: Where straight pushes take it, one after the other: before | inside | away; () where one push does.
+        others: Numbers of other things that would do as well.
+    """
+
+    kind: Literal["put", "rotate", "push"]
+    thing: Named
+    how: str = ""
+    to: Named | None = None
+    other: Named | None = None
+    side: str = ""
+    rotate_deg: float = 0.0
+    after: tuple[int, ...] = ()
+    why: str = ""
+    off: Named | None = None
+    limit: Named | None = None
+    legs: tuple[str, ...] = ()
+    others: frozenset[int] = frozenset()
+
+    def same_goal(self, other: Aim) -> bool:
+        """Whether both bring the thing to the same state."""
+        if self.kind == "rotate" or other.kind == "rotate":
+            return self.kind == other.kind and abs((self.rotate_deg - other.rotate_deg + 180) % 360 - 180) < 0.5
+        if _family(self.how) != _family(other.how) or self.side != other.side:
+            return False
+        return _same(self.to, other.to) and _same(self.other, other.other)
+
+    def same(self, other: Aim) -> bool:
+        alike = self.thing.same(other.thing) or other.thing.number in self.others or self.thing.number in other.others
+        return alike and self.same_goal(other)
+
+
+@dataclass
+class Aims:
+    """Everything an instruction comes to, and what was left out on purpose.
+
+    Attributes:
+        absent: What the words presume and the picture does not show, each by name.
+        settled: What was seen in its place already; without any of it, nothing is fulfilled.
+    """
+
+    aims: list[Aim] = field(default_factory=list)
+    notes: list[str] = field(default_factory=list)
+    question: str = ""
+    choices: tuple[str, ...] = ()
+    literal: bool = False
+    absent: list[str] = field(default_factory=list)
+    settled: list[str] = field(default_factory=list)
+
+    def misses(self, description: Description, eyes: Eyes) -> None:
+        """Note that nothing fits a description."""
+        said = f"no {_absent_part(description, eyes)} is in the picture"
+        if said not in self.absent:
+            self.absent.append(said)
+
+    @property
+    def unfounded(self) -> str:
+        """What keeps the words from being carried out or fulfilled, or ""."""
+        if self.absent:
+            return "; ".join(self.absent)
+        if not self.aims and not self.settled:
+            return "; ".join(["nothing that the words speak of is seen in its place", *self.notes])
+        return ""
+
+
+def derive(understood: Understood, eyes: Eyes, *, strict: bool = True, literal: bool = False) -> Aims:
+    """Instantiate commands in a picture.
+
+    Args:
+        understood: The words, read.
+        eyes: The picture.
+        strict: Ask when two things fit equally; else take the better one.
+        literal: Keep aims that the picture shows as reached already.
+    """
+    result = Aims(literal=literal)
+    moved: dict[int, int] = {}
+    stay = _staying(understood, eyes, result)
+    for command in understood.commands:
+        first = len(result.aims)
+        for aim in _of_command(command, eyes, result, strict):
+            if aim.thing.number in stay:
+                result.notes.append(f"{aim.thing.words} stays where it is, as asked")
+                continue
+            after = set(aim.after)
+            if command.after_last and first:
+                after.add(first - 1)
+            if aim.thing.number is not None:
+                if aim.thing.number in moved:
+                    after.add(moved[aim.thing.number])
+                moved[aim.thing.number] = len(result.aims)
+            result.aims.append(replace(aim, after=tuple(sorted(after))))
+        if result.question:
+            break
+    return result
+
+
+def _staying(understood: Understood, eyes: Eyes, result: Aims) -> frozenset[int]:
+    """Numbers of the things that the words say must not be moved."""
+    return frozenset(number for what in understood.spared for number in _numbers(what, eyes, result))
+
+
+def _numbers(description: Description, eyes: Eyes, result: Aims) -> list[int]:
+    """Numbers of the things that a description means."""
+    found = [match.thing.number for match in eyes.find(one_of(description)) if match.thing is not None]
+    if not found:
+        result.misses(description, eyes)
+    return found[:1] if description.quantity == "one" else found
+
+
+def _absent_part(description: Description, eyes: Eyes) -> str:
+    """Words for what does not show: a thing that others are told by, or else the thing itself."""
+    others = (to for related in description.related for to in related.to)
+    gone = next((to for to in others if not eyes.find(one_of(to))), None)
+    return render(one_of(description)) if gone is None else _absent_part(gone, eyes)
+
+
+def _of_command(command: Command, eyes: Eyes, result: Aims, strict: bool) -> list[Aim]:
+    if command.kind == "arrange" or command.kind == "follow" or command.kind == "restore":  # noqa: PLR1714  narrows the type
+        from wonderful_team.offline.answers.showing import shown_aims
+
+        return shown_aims(command, eyes, result)
+    goal = command.to
+    into = goal is not None and goal.how == "in" and goal.what is not None
+    # What goes into something is smaller than it: that settles words which fit both.
+    place = eyes.best(one_of(goal.what)) if into and goal is not None and goal.what is not None else None
+    pushed = command.kind == "push" and into
+    things = _things(command.thing, eyes, result, strict, place.thing if place is not None else None, every=pushed)
+    if command.kind == "rotate":
+        return [Aim("rotate", thing, rotate_deg=command.rotate_deg) for thing in things]
+    assert goal is not None  # the grammar gives every put and push a goal
+    if goal.how == "matching":
+        return [aim for thing in things for aim in _matching_aim(command, goal, thing, eyes, result)]
+    if pushed and goal.what is not None:
+        from wonderful_team.offline.answers.sweeps import swept_aims
+
+        aims = swept_aims(command, goal.what, things, eyes, result)
+        if aims is not None:
+            return aims
+        things = things[: command.thing.number] if command.thing.quantity == "number" else things
+    if goal.what is not None and command.conditional and not eyes.find(one_of(goal.what)):
+        result.notes.append(f"there is no {render(one_of(goal.what))}")
+        return []
+    to, other = _places(goal, command.thing, things, eyes, result, strict)
+    aims = []
+    for thing in things:
+        if to is not None and command.thing.quantity != "one" and thing.number == to.number:
+            continue
+        moved_before = any(aim.thing.number == thing.number for aim in result.aims if thing.number is not None)
+        if (
+            goal.how in ("in", "on")
+            and to is not None
+            and not (result.literal or moved_before)
+            and already(eyes, thing, to)
+        ):
+            result.settled.append(f"{thing.words} is already {goal.how} {to.words}")
+            continue
+        aims.append(Aim(command.kind, thing, goal.how, to, other, goal.side))
+    return aims
+
+
+def _places(
+    goal: Destination, moved: Description, things: list[Named], eyes: Eyes, result: Aims, strict: bool
+) -> tuple[Named | None, Named | None]:
+    """The references of a destination; what is moved cannot be one, and what goes into something is smaller than it."""
+    if goal.how == "side" and not eyes.find(spot := describe(f"free area {side_words(goal.side)}")):
+        result.misses(spot, eyes)
+    taken = frozenset(item.number for item in things if item.number is not None and moved.quantity == "one")
+    fits = goal.how == "in" or (goal.how == "on" and goal.what is not None and goal.what.noun in HOLDERS)
+    held = eyes.thing(things[0].number) if len(things) == 1 and fits else None
+    to = None if goal.what is None else _one(goal.what, eyes, result, strict, taken=taken, holds=held)
+    return to, None if goal.other is None else _one(goal.other, eyes, result, strict, taken=taken)
+
+
+def _things(
+    description: Description, eyes: Eyes, result: Aims, strict: bool, place: Thing | None, *, every: bool = False
+) -> list[Named]:
+    """The things that a description means; `every`: all that it fits, however many are asked for."""
+    if description.quantity == "one":
+        return [_one(description, eyes, result, strict, fits_in=place)]
+    wanted = description if description.quantity == "all" else replace(description, quantity="all")
+    order = wanted.superlative if description.quantity == "number" and description.number > 1 else None
+    if order is not None:
+        wanted = replace(wanted, superlative=None)
+    left_out = {number for item in description.excluded for number in _numbers(item, eyes, result)}
+    matches = [match for match in eyes.find(wanted) if match.thing is not None and match.thing.number not in left_out]
+    if wanted.shape is not None:
+        # Of all that resemble it, those of that very shape: a disc is no square, though it comes near.
+        matches = [m for m in matches if m.thing is not None and _has_shape(m.thing, wanted.shape)] or matches
+    matches.sort(key=lambda match: match.box.x0)
+    if order is not None:
+        matches.sort(key=lambda match: superlative_key(match.thing, order) if match.thing is not None else 0.0)
+    if place is not None:
+        # What goes into something is neither that thing itself nor larger than it.
+        matches = [m for m in matches if m.thing is not None and m.thing.number != place.number] or matches
+    if matches and len(matches) < description.number:
+        result.absent.append(f"{description.number} are asked for, but only {len(matches)} fit '{description.text}'")
+    elif description.quantity == "all" and 1 < description.number < len(matches):
+        result.absent.append(f"'both' is said of {len(matches)} things that fit '{description.text}'")
+    if description.quantity == "number" and not every:
+        matches = matches[: description.number]
+    if not matches:
+        result.misses(description, eyes)
+    noun = description.noun if description.noun != "thing" else "object"
+    named = []
+    for match in matches:
+        assert match.thing is not None  # filtered above
+        named.append(
+            Named(unique_words(eyes, match.thing, noun, description.name, description.shape), match.thing.number)
+        )
+    return named
+
+
+def _has_shape(thing: Thing, shape: str) -> bool:
+    return thing.look.shapes[shape] >= SAME_SHAPE * max(thing.look.shapes.values())
+
+
+def _one(
+    description: Description,
+    eyes: Eyes,
+    result: Aims,
+    strict: bool,
+    *,
+    taken: frozenset[int] = frozenset(),
+    holds: Thing | None = None,
+    fits_in: Thing | None = None,
+) -> Named:
+    """Who is meant by a description of one thing.
+
+    Args:
+        description: The words.
+        eyes: The picture.
+        result: Takes the question when the words do not settle it.
+        strict: Whether to ask.
+        taken: Numbers of things that cannot be meant, since they are what is moved.
+        holds: The thing that is to go into it: of several that fit, one that is larger.
+        fits_in: The thing it is to go into: of several that fit, one that is smaller.
+    """
+    single = one_of(description)
+    single = replace(single, text=render(single))
+    everything = eyes.find(single)
+    matches = [match for match in everything if match.thing is None or match.thing.number not in taken]
+    matches = as_pictured(single, matches, eyes)
+    if holds is not None and single.noun in HOLDERS:
+        matches = [m for m in matches if m.thing is None or m.thing.area_px > LARGER * holds.area_px]
+    equal = _equal(single, matches)
+    if len(equal) > 1:
+        equal = _by_size(equal, holds, fits_in) or equal
+    if strict and not result.question and len(equal) > 1:
+        _ask(single, equal, eyes, result)
+    best = equal[0] if equal else next(iter(matches), None)
+    if best is None:
+        result.misses(single, eyes)
+    if best is None or best.thing is None:
+        return Named(single, None)
+    if is_shown_alone(single) and (seen := seen_as(eyes, best.thing)):
+        return Named(replace(single, text=seen), best.thing.number)
+    plain = not (single.superlative or single.like or single.related)
+    from_side = single.superlative in ("tallest", "shortest") and best.thing.height_m is None
+    rivalled = plain and len(equal) == 1 and len(everything) > 1 and _rivalled(everything)
+    if from_side or best is not everything[0] or rivalled:
+        # The words alone lead elsewhere or could: say it so that they do not.
+        return Named(unique_words(eyes, best.thing, single.noun, single.name, single.shape), best.thing.number)
+    return Named(single, best.thing.number)
+
+
+def _rivalled(matches: list[Match]) -> bool:
+    """Whether the second best fits nearly as well: where relations do not show, as in a crop, it could be taken."""
+    return matches[1].thing is not None and matches[1].score >= RIVAL * matches[0].score
+
+
+def _equal(description: Description, matches: list[Match]) -> list[Match]:
+    """The matches between which the words do not decide; at most one when they do."""
+    if not matches or matches[0].thing is None:
+        return []
+    if description.superlative or description.like or description.related:
+        return matches[:1]
+    return [
+        match
+        for match in matches
+        if match.thing is not None and match.score >= GOOD and matches[0].score - match.score < NEARLY_EQUAL
+    ]
+
+
+def _by_size(equal: list[Match], holds: Thing | None, fits_in: Thing | None) -> list[Match]:
+    if holds is not None:
+        return [m for m in equal if m.thing is not None and m.thing.area_px > LARGER * holds.area_px]
+    if fits_in is not None:
+        return [
+            m
+            for m in equal
+            if m.thing is not None and m.thing.number != fits_in.number and LARGER * m.thing.area_px < fits_in.area_px
+        ]
+    return []
+
+
+def _ask(description: Description, equal: list[Match], eyes: Eyes, result: Aims) -> None:
+    """Several things that fit equally well are a question for the human."""
+    places = []
+    for match in equal:
+        assert match.thing is not None  # filtered by _equal
+        places.append(told_apart(eyes, match.thing, description.noun, description.name, description.shape))
+    result.question = f"Which one is meant by 'the {description.text}'? {len(equal)} things fit equally well."
+    result.choices = tuple(places)
+
+
+def _matching_aim(command: Command, goal: Destination, thing: Named, eyes: Eyes, result: Aims) -> list[Aim]:
+    """The thing goes to the one of that kind which shares its colour (texture, shape); none, or there already: no aim."""
+    seen = eyes.thing(thing.number)
+    assert goal.what is not None  # the grammar gives matching a kind of thing
+    if seen is None:
+        return []
+    wanted = _sharing(one_of(goal.what), goal.aspect or "colour", seen)
+    matches = [match for match in eyes.find(wanted) if match.thing is not None and match.thing.number != seen.number]
+    if not matches or matches[0].score < GOOD:
+        result.notes.append(f"there is no {render(wanted)} for the {thing.words}")
+        return []
+    there = matches[0].thing
+    assert there is not None  # filtered above
+    to = Named(replace(wanted, text=render(wanted)), there.number)
+    if not result.literal and already(eyes, thing, to):
+        result.settled.append(f"the {thing.words} is already in the {to.words}")
+        return []
+    return [Aim("push" if command.kind == "push" else "put", thing, "in", to)]
+
+
+def _sharing(kind: Description, aspect: str, thing: Thing) -> Description:
+    if aspect == "colour":
+        return replace(kind, colours=(thing.look.colours[0].name,))
+    if aspect == "texture":
+        return replace(kind, colours=tuple(share.name for share in thing.look.colours[:2]), pattern=thing.look.pattern)
+    return replace(kind, shape=thing.look.shape)
+
+
+def already(eyes: Eyes, thing: Named, to: Named) -> bool:
+    """Whether the picture shows the thing in or on its destination."""
+    inner, outer = eyes.thing(thing.number), eyes.thing(to.number)
+    if inner is None or outer is None or inner.number == outer.number:
+        return False
+    return inner.on == outer.number or (outer.area_px > inner.area_px and covers(outer, inner.centre))
+
+
+def _family(how: str) -> str:
+    return "in" if how in ("in", "on") else how
+
+
+def _same(one: Named | None, other: Named | None) -> bool:
+    if one is None or other is None:
+        return one is None and other is None
+    return one.same(other)
+
+
+def _alike(one: Description, other: Description) -> bool:
+    """Whether two descriptions of things that are not both found in the picture may mean the same."""
+    if one.like or other.like:
+        return one.like == other.like
+    if one.superlative != other.superlative or one.ordinal != other.ordinal:
+        return False
+    if one.name and other.name and one.name != other.name:
+        return False
+    if set(one.colours) != set(other.colours) or (one.shape and other.shape and one.shape != other.shape):
+        return False
+    if one.material and other.material and one.material != other.material:
+        return False
+    if one.pattern and other.pattern and one.pattern != other.pattern:
+        return False
+    general = ("object", "thing")
+    return one.noun == other.noun or one.noun in general or other.noun in general

@@ -1,0 +1,50 @@
+"""What stands in the way of an aim: things that lie on the thing to be moved."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from wonderful_team.offline.answers.aims import Aim, Named
+from wonderful_team.offline.answers.eyes import Eyes, unique_words
+from wonderful_team.offline.description import Description
+from wonderful_team.offline.vision import Thing
+
+LOWER_M = 0.002
+"""What is lower than a thing by more than this does not lie on it [m]."""
+SAME_COLOURS = 0.6
+"""Likeness of colours from which two patches belong to one thing (0 to 1)."""
+
+
+def _shows_through(upper: Thing, thing: Thing, eyes: Eyes) -> bool:
+    """Whether a patch within a thing's outline is what the thing lies on or in, seen through a hole in it."""
+    if upper.height_m is not None and thing.height_m is not None and upper.height_m < thing.height_m - LOWER_M:
+        return True
+    host = eyes.thing(thing.on)
+    return host is not None and float(host.look.histogram @ upper.look.histogram) > SAME_COLOURS
+
+
+def obstacles(aim: Aim, others: Sequence[Aim], eyes: Eyes) -> list[Aim]:
+    """Aims that bring away what lies on the thing to be moved; what another aim moves anyway is left to it.
+
+    Only where the picture has depth or the thing is no container: what lies in a container travels with it.
+    """
+    thing = eyes.thing(aim.thing.number)
+    if thing is None or thing.flat or aim.thing.description.noun in ("container", "area"):
+        return []
+    away = []
+    for upper in eyes.scene.on(thing):
+        if upper.area_px > thing.area_px or any(other.thing.number == upper.number for other in others):
+            continue
+        if _shows_through(upper, thing, eyes):
+            continue
+        spot = Description(noun="area", name="free", text="free area")
+        away.append(
+            Aim(
+                "put",
+                Named(unique_words(eyes, upper, "object"), upper.number),
+                "in",
+                Named(spot),
+                why=f"it lies on the {aim.thing.words}",
+            )
+        )
+    return away

@@ -1,0 +1,225 @@
+"""Answers on crops and strips: Presence, JudgeBox, JudgeRevision, MoveBox, ChoosePoint."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from wonderful_team.contracts import (
+    EDGES,
+    BoxMove,
+    BoxVerdict,
+    ChoosePoint,
+    EdgePresence,
+    JudgeBox,
+    JudgeRevision,
+    MoveBox,
+    PointChoice,
+    Presence,
+    PresenceAnswer,
+    RevisionVerdict,
+    ShownSlot,
+)
+from wonderful_team.core.geometry import Box
+from wonderful_team.core.pictures import BoxMark, Picture, Point
+from wonderful_team.core.values import Target
+from wonderful_team.offline.answers.areas import judge_area, judge_place, nearest_free
+from wonderful_team.offline.answers.eyes import examples_of, eyes_of, is_free_area, shape_alone, target_description
+from wonderful_team.offline.answers.finding import middle_of, push_goal
+from wonderful_team.offline.vision import BoxFit, fit_box, see, strip_presence
+
+SAME_SIZE = 0.2
+"""A box whose sides differ from the target's by less than this share is moved as a whole, else its edges are set."""
+WIDEN = 0.3
+"""How far a box is widened where its target does not show, in shares of its sides."""
+
+
+def marked_box(crop: Picture) -> Box:
+    """The box drawn on a crop.
+
+    Raises:
+        ValueError: There is none.
+    """
+    boxes = [mark.box for mark in crop.marks if isinstance(mark, BoxMark)]
+    if not boxes:
+        raise ValueError(f"picture {crop.name!r} carries no box to judge")
+    return boxes[0]
+
+
+def measure(target: Target, crop: Picture, box: Box, examples: Sequence[ShownSlot]) -> BoxFit:
+    """How a box stands to what the crop shows of the target; a free area is judged by what lies in the box."""
+    description = target_description(target)
+    if is_free_area(description) or description.way is not None:
+        return judge_area(crop, box)
+    if description.placed is not None:
+        return judge_place(description, crop, box, examples)
+    known = examples_of(examples)
+    return fit_box(crop, box, shape_alone(description, known), known)
+
+
+def answer_presence(question: Presence) -> PresenceAnswer:
+    """Per edge, whether the target's colours show in the strips."""
+    description = target_description(question.target)
+    examples = examples_of(question.examples)
+    description = shape_alone(description, examples)
+    shows = {
+        (strip.edge, strip.side): strip_presence(strip.picture, description, examples) for strip in question.strips
+    }
+    edges = []
+    for edge in EDGES:
+        inside, outside = shows.get((edge, "inside")), shows.get((edge, "outside"))
+        edges.append(
+            EdgePresence(
+                edge=edge,
+                inside=inside is not None and inside.shows,
+                outside=outside is not None and outside.shows,
+            )
+        )
+    shares = ", ".join(f"{edge} {side} {fit.share:.2f}" for (edge, side), fit in shows.items())
+    return PresenceAnswer(reasoning=f"share of pixels with the target's colours: {shares or 'no strips'}", edges=edges)
+
+
+def answer_judge_box(question: JudgeBox) -> BoxVerdict:
+    """Accept what is tight, send back what can be moved onto the target, reject what is on another thing."""
+    fit = measure(question.target, question.crop, marked_box(question.crop), question.examples)
+    if fit.verdict == "tight":
+        return BoxVerdict(reasoning=fit.why, decision="accept", problem="")
+    if fit.verdict == "loose" or (fit.verdict == "empty" and fit.best is not None):
+        return BoxVerdict(reasoning=fit.why, decision="revise", problem=_problem(fit, marked_box(question.crop)))
+    return BoxVerdict(reasoning=fit.why, decision="reject", problem=f"the box is not on the target: {fit.why}")
+
+
+def _problem(fit: BoxFit, box: Box) -> str:
+    if fit.cut:
+        return f"the target reaches past the {' and '.join(fit.cut)} edge"
+    if fit.loose and fit.iou > 0:
+        return f"the {' and '.join(fit.loose)} edge leaves room round the target"
+    if fit.best is None:
+        return fit.why
+    dx, dy = fit.best.centre[0] - box.centre[0], fit.best.centre[1] - box.centre[1]
+    return f"the target lies {abs(dx):.0f} px {'right' if dx > 0 else 'left'} and {abs(dy):.0f} px {'down' if dy > 0 else 'up'}"
+
+
+def answer_judge_revision(question: JudgeRevision) -> RevisionVerdict:
+    """Compare both boxes with the outline measured in their crops."""
+    before_box, after_box = marked_box(question.before), marked_box(question.after)
+    before = measure(question.target, question.before, before_box, question.examples)
+    after = measure(question.target, question.after, after_box, question.examples)
+    says = f"before: {before.why}; after: {after.why}"
+    if after.verdict == "tight" and after.iou >= before.iou:
+        return RevisionVerdict(reasoning=says, decision="take_after_stop")
+    if after.best is None or after.verdict == "other" and before.verdict != "other":
+        return RevisionVerdict(reasoning=says, decision="keep_before")
+    nearer = _gap(after_box, after.best) < _gap(before_box, before.best or after.best)
+    if after.iou > before.iou or (after.iou == before.iou and nearer):
+        return RevisionVerdict(reasoning=says, decision="take_after_go_on")
+    return RevisionVerdict(reasoning=says, decision="keep_before")
+
+
+def _gap(box: Box, target: Box) -> float:
+    return float(np.hypot(box.centre[0] - target.centre[0], box.centre[1] - target.centre[1]))
+
+
+def answer_move_box(question: MoveBox) -> BoxMove:
+    """Put the box where the target was measured, in one revision."""
+    box = question.box
+    fit = measure(question.target, question.crop, box, question.examples)
+    if fit.verdict == "tight" and question.may_stop:
+        return _move(f"{fit.why}; nothing to change", "stop")
+    if fit.best is None:
+        if question.may_stop:
+            return _move(f"{fit.why}; the target does not show here", "stop")
+        return _resize(f"{fit.why}; widened to look further", WIDEN * box.width, WIDEN * box.height)
+    best = fit.best
+    cut = list(fit.cut)
+    alike = abs(best.width / box.width - 1) < SAME_SIZE and abs(best.height / box.height - 1) < SAME_SIZE
+    dx, dy = best.centre[0] - box.centre[0], best.centre[1] - box.centre[1]
+    if alike and max(abs(dx) / box.width, abs(dy) / box.height) > 0.1:
+        return _move(f"{fit.why}; its middle lies {dx:+.0f}, {dy:+.0f} px away", "move", dx, dy, cut)
+    grow = (box.x0 - best.x0, box.y0 - best.y0, best.x1 - box.x1, best.y1 - box.y1)
+    if max(abs(value) for value in grow) < 1e-3:
+        grow = (0.5, 0.5, 0.5, 0.5)
+    return BoxMove(
+        reasoning=f"{fit.why}; edges set to its outline",
+        action="resize",
+        right_px=0,
+        down_px=0,
+        grow_left_px=grow[0],
+        grow_top_px=grow[1],
+        grow_right_px=grow[2],
+        grow_bottom_px=grow[3],
+        cut_edges=cut,
+    )
+
+
+def _move(reasoning: str, action: str, dx: float = 0.0, dy: float = 0.0, cut: Sequence[str] = ()) -> BoxMove:
+    return BoxMove(
+        reasoning=reasoning,
+        action=action,
+        right_px=dx,
+        down_px=dy,
+        grow_left_px=0,
+        grow_top_px=0,
+        grow_right_px=0,
+        grow_bottom_px=0,
+        cut_edges=list(cut),
+    )
+
+
+def _resize(reasoning: str, x: float, y: float) -> BoxMove:
+    return BoxMove(
+        reasoning=reasoning,
+        action="resize",
+        right_px=0,
+        down_px=0,
+        grow_left_px=x,
+        grow_top_px=y,
+        grow_right_px=x,
+        grow_bottom_px=y,
+        cut_edges=[],
+    )
+
+
+def answer_choose_point(question: ChoosePoint) -> PointChoice:
+    """The candidate nearest to where the role wants it, on material for a pick."""
+    points = question.candidates.points
+    description = target_description(question.target)
+    box = marked_box(question.crop)
+    if description.placed is not None:
+        fit = judge_place(description, question.crop, box, question.examples)
+        wanted = (fit.best or box).centre
+        return _nearest(points, wanted, range(1, len(points) + 1), fit.why)
+    if is_free_area(description) or description.way is not None:
+        spot = nearest_free(see(question.crop), box)
+        return _nearest(points, spot, range(1, len(points) + 1), "the freest place in the box")
+    known = examples_of(question.examples)
+    fit = fit_box(question.crop, box, shape_alone(description, known), known)
+    if fit.target is None:
+        return _nearest(points, box.centre, range(1, len(points) + 1), f"{fit.why}; nearest to the middle of the box")
+    if question.role in ("pick", "grasp"):
+        on = [number for number, point in enumerate(points, start=1) if fit.target.holds(point)]
+        where = fit.target.steady_point()
+        return _nearest(points, where, on or range(1, len(points) + 1), f"on the material of a {fit.target.look.words}")
+    if question.role == "push_start":
+        return _push_start(question, box, points)
+    middle = middle_of(fit.target, description, see(question.crop))
+    return _nearest(points, middle, range(1, len(points) + 1), f"the middle of a {fit.target.look.words}")
+
+
+def _push_start(question: ChoosePoint, box: Box, points: Sequence[Point]) -> PointChoice:
+    """Beside the box, on the side away from where the push goes."""
+    goal = push_goal(question.plan, question.target, eyes_of(question.crop, question.examples))
+    cx, cy = box.centre
+    dx, dy = (goal[0] - cx, goal[1] - cy) if goal is not None else (1.0, 0.0)
+    beside = [number for number, point in enumerate(points, start=1) if not box.contains(point)]
+    best = max(
+        beside or range(1, len(points) + 1), key=lambda k: -(points[k - 1][0] - cx) * dx - (points[k - 1][1] - cy) * dy
+    )
+    why = "away from where it goes" if goal is not None else "left of it: the crop does not show where it goes"
+    return PointChoice(reasoning=f"beside the box, {why}", number=best)
+
+
+def _nearest(points: Sequence[Point], wanted: Point, allowed: Sequence[int] | range, why: str) -> PointChoice:
+    best = min(allowed, key=lambda k: np.hypot(points[k - 1][0] - wanted[0], points[k - 1][1] - wanted[1]))
+    return PointChoice(reasoning=f"nearest to ({wanted[0]:.0f}, {wanted[1]:.0f}): {why}", number=best)

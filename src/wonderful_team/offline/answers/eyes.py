@@ -1,0 +1,318 @@
+"""What the answers ask of the eyes: the scene and the instruction's pictures of one question, and who is meant."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+
+from wonderful_team.contracts import ShownSlot, ShownTask
+from wonderful_team.core.pictures import Picture
+from wonderful_team.core.values import Target
+from wonderful_team.images.colours import COLOURS
+from wonderful_team.offline.description import SHAPES, Description, Way
+from wonderful_team.offline.language import describe, render, try_describe
+from wonderful_team.offline.vision import (
+    Example,
+    Match,
+    NotSeen,
+    Scene,
+    Thing,
+    free_spots,
+    likeness,
+    resolve,
+    see,
+    study_example,
+    with_heights,
+)
+from wonderful_team.offline.vision.relations import is_at, shares_from
+
+NEARLY_EQUAL = 0.06
+"""Two scores closer than this, both good, are a genuine ambiguity (0 to 1)."""
+GOOD = 0.55
+"""A match with at least this score fits (0 to 1)."""
+SHOWN = 0.5
+"""Likeness from which a picture of a table shows a thing (0 to 1)."""
+CLEARLY_LESS = 0.15
+"""A thing whose likeness is this much lower is another one (0 to 1)."""
+COLOURLESS = 0.6
+"""From this degree of grey and plainness on, an example picture shows a shape and no looks (0 to 1)."""
+RIM_FILL, RIM_ASPECT = 0.4, 4.0
+"""A rim fills at most this share of the rectangle round it, which is at most so many times as long as wide."""
+WHOLE = frozenset(
+    ("whole", "centre", "center", "middle", "body", "inside", "interior", "surface", "top", "all", "top surface")
+)
+"""Parts that mean the thing as a whole."""
+
+
+@dataclass(frozen=True, eq=False)
+class Eyes:
+    """One picture and the instruction's pictures shown with it.
+
+    Attributes:
+        examples: What the pictures of single things show, by name.
+        pictures: The instruction's pictures of a whole table (scenes, frames), by name: the main camera's.
+        looked_at: The picture that `scene` was seen in.
+    """
+
+    scene: Scene
+    examples: Mapping[str, Example]
+    pictures: Mapping[str, Picture] = field(default_factory=dict)
+    looked_at: Picture | None = None
+
+    def find(self, description: Description) -> list[Match]:
+        """What fits, best first; empty when nothing does or it cannot be judged by eye."""
+        if description.placed is not None:
+            from wonderful_team.offline.answers.showing import place_shown
+
+            return place_shown(description, self)
+        if description.way is not None:
+            return self.on_the_way(description.way, ())
+        if description.like is not None and description.like not in self.examples:
+            return []
+        if is_free_area(description) and description.superlative is not None:
+            return self._spots_at(description)
+        try:
+            found = resolve(self.scene, description, self.examples)
+            if not found or description.superlative is not None:
+                by_shape = shape_alone(description, self.examples)
+                found = resolve(self.scene, by_shape, self.examples) if by_shape is not description else found
+            if not found and description.noun == "object" and description.shape is not None:
+                # "the blue square" may well be a flat one, such as a sheet of paper.
+                found = resolve(self.scene, replace(description, noun="thing"), self.examples)
+            if not found and description.shape == "frame":
+                # A frame may be open on one side: then it is a thin form that is no line.
+                loose = resolve(self.scene, replace(description, noun="thing", shape=None), self.examples)
+                found = [match for match in loose if match.thing is not None and _is_rim(match.thing)]
+        except NotSeen:
+            return []
+        return found
+
+    def on_the_way(self, place: Way, plan: Sequence[str]) -> list[Match]:
+        """Where a pushed thing comes to rest, by the plan's lines."""
+        from wonderful_team.offline.answers.sweeping import find_place
+
+        return find_place(place, self.scene, self.number, plan)
+
+    def _spots_at(self, description: Description) -> list[Match]:
+        """Free spots towards a side or corner of the picture, best first."""
+        wishes = description.name if " " in description.name else str(description.superlative)
+
+        def away(match: Match) -> float:
+            return sum(shares_from(self.scene, match.point, wishes)) - 0.1 * match.score
+
+        spots = [spot for spot in free_spots(self.scene, count=60) if is_at(self.scene, spot.point, wishes)]
+        return sorted(spots, key=lambda match: round(away(match), 6))
+
+    def best(self, description: Description) -> Match | None:
+        """The best match, or None."""
+        return next(iter(self.find(description)), None)
+
+    def number(self, description: Description) -> int | None:
+        """Number of the thing that is meant, or None."""
+        best = self.best(one_of(description))
+        return best.thing.number if best is not None and best.thing is not None else None
+
+    def thing(self, number: int | None) -> Thing | None:
+        return next((thing for thing in self.scene.things if thing.number == number), None)
+
+
+def _is_rim(thing: Thing) -> bool:
+    outline = thing.look.outline
+    return outline.fill < RIM_FILL and outline.aspect < RIM_ASPECT
+
+
+def as_pictured(description: Description, matches: list[Match], eyes: Eyes) -> list[Match]:
+    """Of several things that fit, those that a picture of a table among the instruction's pictures shows; else all.
+
+    "the wooden object in {scene}" is the one of that form which the picture shows.
+    """
+    things = [match for match in matches if match.thing is not None]
+    if len(things) < 2 or description.like is not None or description.placed is not None:  # noqa: PLR2004
+        return matches
+    for picture in eyes.pictures.values():
+        shown = [match.thing for match in Eyes(see(picture), {}).find(description) if match.thing is not None]
+        rated = [max((likeness(match.thing, one) for one in shown), default=0.0) for match in things if match.thing]
+        best = max(rated)
+        if best >= SHOWN:
+            return [match for match, value in zip(things, rated, strict=True) if value > best - CLEARLY_LESS]
+    return matches
+
+
+def shape_alone(description: Description, examples: Mapping[str, Example]) -> Description:
+    """The same description, its example counting for its shape only where the picture shows a plain grey thing."""
+    example = examples.get(description.like or "")
+    if example is None or description.like_only is not None:
+        return description
+    look = example.look
+    colourless = look.memberships["grey"] + look.memberships["white"] + look.memberships["black"]
+    if colourless < COLOURLESS or look.patterns["plain"] < COLOURLESS:
+        return description
+    return replace(description, like_only="shape")
+
+
+def is_free_area(description: Description) -> bool:
+    """Whether free table is meant and not a thing or coloured region with looks of its own."""
+    if description.placed is not None or description.way is not None:
+        return False
+    looks = description.colours or description.pattern or description.material or description.shape or description.like
+    return description.noun == "area" and not looks
+
+
+def eyes_of(picture: Picture, slots: Iterable[ShownSlot]) -> Eyes:
+    """Look at a picture and at the instruction's pictures."""
+    slots = tuple(slots)
+    tables = {slot.name: slot.pictures[0] for slot in slots if slot.kind != "object" and slot.pictures}
+    return Eyes(see(picture), examples_of(slots), tables, picture)
+
+
+def examples_of(slots: Iterable[ShownSlot]) -> dict[str, Example]:
+    """What each of the instruction's pictures of a single object shows; those that show nothing are left out."""
+    examples: dict[str, Example] = {}
+    for slot in slots:
+        if slot.kind != "object" or not slot.pictures:
+            continue
+        try:
+            examples[slot.name] = study_example(slot.pictures[0])
+        except NotSeen:
+            continue
+    return examples
+
+
+def eyes_of_task(task: ShownTask) -> Eyes:
+    """Look at a task's main view; without depth, a second view tells how tall things are."""
+    eyes = eyes_of(task.main, task.slots)
+    if eyes.scene.has_depth or len(task.views) < 2:  # noqa: PLR2004  one more than the main view
+        return eyes
+    return replace(eyes, scene=with_heights(eyes.scene, task.views[1]))
+
+
+def one_of(description: Description) -> Description:
+    """The same description of a single thing."""
+    return replace(description, quantity="one", number=1)
+
+
+def target_description(target: Target) -> Description:
+    """What a target's words say; its example picture decides where the words say more than the vocabulary holds.
+
+    Raises:
+        NotUnderstoodError: The words hold something unknown and no picture shows it.
+    """
+    words = target.words
+    from wonderful_team.offline.answers.sweeping import read_place
+
+    on_the_way = read_place(words, target.where)
+    if on_the_way is not None:
+        return on_the_way
+    if target.part and target.part.lower().strip() not in WHOLE:
+        describe(target.part)  # refuses by name: parts are not told apart by eye
+        words = f"{target.part} {target.words}" if try_describe(f"{target.part} {target.words}") else words
+    placed = try_describe(words)
+    if placed is not None and placed.placed is not None:
+        since = target.like[0] if len(target.like) > 1 else None
+        return replace(placed, like=target.like[-1] if target.like else placed.like, since=since)
+    if target.like and "{" not in words and not target.where and "texture" not in target.like[0]:
+        # The words say what the thing looks like; the picture decides.
+        return Description(noun="object", text=words, like=target.like[0])
+    if target.like:
+        description = try_describe(words, target.where) or try_describe(words)
+        if description is None:
+            description = Description(noun="object", text=target.words, like=target.like[0])
+        if description.like is None:
+            description = replace(description, like=target.like[0])
+            if "texture" in target.like[0]:
+                description = replace(description, like_only="texture")
+    else:
+        description = describe(words, target.where)
+    if target.kind == "area" and description.noun in ("object", "thing") and not description.like:
+        described = replace(description, noun="area")
+        description = replace(described, text=render(described))
+    return one_of(description)
+
+
+def unique_words(eyes: Eyes, thing: Thing, noun: str, name: str = "", shape: str | None = None) -> Description:
+    """Words that lead to this very thing alone in this picture, as simple as possible, checked by reading them back."""
+    base = Description(noun=noun, text="", name=name, shape=shape)
+    colour = thing.look.colours[0].name
+    second = tuple(share.name for share in thing.look.colours[:2])
+    tries = [replace(base, colours=(colour,))]
+    if thing.look.pattern != "plain":
+        tries.append(replace(base, colours=(colour,), pattern=thing.look.pattern))
+        if len(second) == 2:
+            tries.append(replace(base, colours=second, pattern=thing.look.pattern))
+    if noun in ("object", "thing", "container") and shape is None and thing.look.shape in SHAPES:
+        tries.append(replace(base, colours=(colour,), shape=thing.look.shape))
+    tries = [replace(item, colours=tuple(c for c in item.colours if c in COLOURS)) for item in tries]
+    for description in tries:
+        # As it will be read: "the brown letter" is a letter, not an object shaped like one.
+        matches = eyes.find(try_describe(render(description)) or description)
+        if _means(matches, thing):
+            return _worded(description)
+    return _by_place(eyes, thing, tries[0])
+
+
+def _means(matches: list[Match], thing: Thing) -> bool:
+    if not matches or matches[0].thing is None or matches[0].thing.number != thing.number:
+        return False
+    return len(matches) == 1 or matches[0].score - matches[1].score >= NEARLY_EQUAL
+
+
+def _by_place(eyes: Eyes, thing: Thing, base: Description) -> Description:
+    """Words such as "the second red block from the left"."""
+    fitting = [match.thing for match in eyes.find(replace(base, quantity="all")) if match.thing is not None]
+    ordered = sorted(fitting, key=lambda item: item.centre[0])
+    numbers = [item.number for item in ordered]
+    if thing.number not in numbers:
+        return _worded(base)
+    place = numbers.index(thing.number) + 1
+    candidates = [replace(base, superlative="leftmost", ordinal=place)]
+    candidates.append(replace(base, superlative="rightmost", ordinal=len(numbers) + 1 - place))
+    rows = [item.number for item in sorted(fitting, key=lambda item: item.centre[1])]
+    candidates.append(replace(base, superlative="topmost", ordinal=rows.index(thing.number) + 1))
+    for description in candidates:
+        if description.ordinal <= 5 and eyes.number(description) == thing.number:
+            return _worded(description)
+    return _worded(candidates[0] if place <= 5 else candidates[1])
+
+
+def _worded(description: Description) -> Description:
+    return replace(description, text=render(description))
+
+
+_PICTURE_SIDES = {"leftmost": "on the left", "rightmost": "on the right", "topmost": "at the top",
+                  "bottommost": "at the bottom", "middle": "in the middle"}  # fmt: skip
+
+
+def side_words(side: str) -> str:
+    """Such as "on the left", "in the top left corner"."""
+    if " " in side:
+        row, column = side.split()
+        return f"in the {'top' if row == 'topmost' else 'bottom'} {'left' if column == 'leftmost' else 'right'} corner"
+    return _PICTURE_SIDES[side]
+
+
+def is_shown_alone(description: Description) -> bool:
+    """Whether nothing but an example picture says which thing is meant."""
+    told = description.superlative or description.related or description.placed or description.excluded
+    return description.like is not None and description.like_only is None and not told
+
+
+def seen_as(eyes: Eyes, thing: Thing) -> str:
+    """Words such as "turquoise letter G" that lead to this thing alone wherever it lies, or "" where none do."""
+    letters = thing.look.letters
+    letter = thing.look.shape == "letter" and max(letters, key=lambda name: letters[name])
+    words = unique_words(eyes, thing, "letter", letter) if letter else unique_words(eyes, thing, "object")
+    return words.text if words.superlative is None and eyes.number(words) == thing.number else ""
+
+
+def told_apart(eyes: Eyes, thing: Thing, noun: str, name: str = "", shape: str | None = None) -> str:
+    """Words for a thing in a choice: what it looks like and where it lies."""
+    return f"the {unique_words(eyes, thing, noun, name, shape).text} ({place_words(thing, eyes.scene.size_px)})"
+
+
+def place_words(thing: Thing, size_px: tuple[int, int]) -> str:
+    """Where a thing lies in a picture, for a choice: "top left", "centre", "bottom right"."""
+    column = ("left", "centre", "right")[min(2, int(3 * thing.centre[0] / size_px[0]))]
+    row = ("top", "middle", "bottom")[min(2, int(3 * thing.centre[1] / size_px[1]))]
+    if row == "middle":
+        return column
+    return row if column == "centre" else f"{row} {column}"

@@ -1,0 +1,280 @@
+"""JudgeOutcome and Replan: where things are now against where they should be."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from wonderful_team.contracts import Advice, JudgeOutcome, Outcome, Replan, VerdictDraft
+from wonderful_team.core.geometry import Box, Frame
+from wonderful_team.core.pictures import BoxMark, Picture
+from wonderful_team.core.values import Target
+from wonderful_team.errors import NotUnderstoodError
+from wonderful_team.offline.answers.aims import Aim, Named, already, derive
+from wonderful_team.offline.answers.eyes import Eyes, eyes_of, eyes_of_task
+from wonderful_team.offline.answers.instruction import read_task
+from wonderful_team.offline.answers.roles import Task, tasks_of
+from wonderful_team.offline.answers.sweeping import swept
+from wonderful_team.offline.answers.sweeps import sweep_by_numbers
+from wonderful_team.offline.answers.turning import turned_deg
+from wonderful_team.offline.description import Description
+from wonderful_team.offline.vision import Thing, strip_presence
+from wonderful_team.offline.vision.things import covers
+
+ALIKE = 0.55
+"""Likeness of colours from which a thing after may be the thing before (0 to 1)."""
+STAYED = 0.5
+"""A thing that moved by less than this many of its radii has stayed."""
+GAINED = 0.4
+"""Share of a thing's own area by which its colours must have grown at its place."""
+ANGLE_SLACK_DEG = 15.0
+"""How far a measured turn may differ from the one asked for."""
+
+
+def answer_outcome(question: JudgeOutcome) -> Outcome:
+    """A verdict per subgoal from the pictures; what the robot reported explains failures."""
+    before = eyes_of_task(question.task)
+    after = eyes_of(question.after[0], question.task.slots)
+    judge = _Judge(question, before, after)
+    verdicts = []
+    for subgoal in question.subgoals:
+        parts = [judge.task(task) for task in tasks_of(subgoal, question.targets, before)]
+        order = ("not_done", "undone", "unclear", "done")
+        status, evidence = min(parts, key=lambda part: order.index(part[0]))
+        cause = judge.cause(subgoal.id, evidence) if status in ("not_done", "undone") else None
+        verdicts.append(VerdictDraft(subgoal=subgoal.id, status=status, cause=cause, evidence=evidence))
+    done = sum(item.status == "done" for item in verdicts)
+    return Outcome(
+        reasoning=f"{done} of {len(verdicts)} subgoals show as reached in the picture after.", verdicts=verdicts
+    )
+
+
+class _Judge:
+    """Compares two pictures."""
+
+    def __init__(self, question: JudgeOutcome, before: Eyes, after: Eyes) -> None:
+        self.question, self.before, self.after = question, before, after
+        self.boxes = {
+            mark.label.split()[0]: mark.box
+            for mark in question.task.main.marks
+            if isinstance(mark, BoxMark) and mark.label
+        }
+        self.claimed: set[int] = set()
+
+    def task(self, task: Task) -> tuple[str, str]:
+        """Status and evidence of one task."""
+        thing = self._was(task.thing, task.aim.thing.number if task.aim is not None else None)
+        if thing is None or task.thing is None:
+            return "unclear", "the thing does not show in the picture before"
+        if task.aim is not None and "inside" in task.aim.legs:
+            return self._swept(task.aim, thing)
+        now = self._now(thing)
+        if now is None:
+            return self._merged(task, thing)
+        if task.rotate_deg and task.place is None:
+            return self._turned(task, thing, now)
+        if task.place is None:
+            return self._back(task, thing, now)
+        if task.aim is not None and task.aim.how == "origin":
+            return self._took_place(task, thing, now)
+        return self._at_place(task, thing, now)
+
+    def _swept(self, aim: Aim, was: Thing) -> tuple[str, str]:
+        """Whether a thing lies wholly in the place it was pushed to; alike things in there count once each."""
+        name = aim.thing.words
+        parts = [
+            None if item is None else Named(item.description, self.after.number(item.description))
+            for item in (aim.to, aim.off, aim.limit)
+        ]
+        sweep = sweep_by_numbers(*parts)
+        if aim.to is None or sweep is None:
+            return "unclear", f"where the {name} was pushed to does not show"
+        like = [thing for thing in self.after.scene.things if _alike(was, thing)]
+        if any(self._moved(was, thing) < STAYED for thing in like):
+            return "not_done", f"the {name} has not moved"
+        stood = [thing.centre for thing in self.before.scene.things if thing.number != was.number]
+        new = [
+            thing
+            for thing in like
+            if thing.number not in self.claimed
+            and not any(np.hypot(x - thing.centre[0], y - thing.centre[1]) < STAYED * was.radius_px for x, y in stood)
+        ]
+        there = swept(self.after.scene, sweep, [thing.number for thing in new])
+        if there:
+            self.claimed.add(there[0])
+            return "done", f"the {name} lies wholly in the {aim.to.words} now"
+        nearest = min((self._moved(was, thing) for thing in new), default=None)
+        where = "does not show any more" if nearest is None else f"moved {nearest:.1f} of its radii"
+        return "not_done", f"the {name} does not lie wholly in the {aim.to.words}: it {where}"
+
+    def cause(self, subgoal: str, evidence: str) -> str:
+        """What the robot reported of it, else what the picture shows."""
+        lines = [line for line in self.question.measured if line.startswith(f"{subgoal}:")]
+        bad = [line for line in lines if "not executed" in line or "fault" in line or "False" in line]
+        return bad[0] if bad else evidence
+
+    def _was(self, target: Target | None, number: int | None) -> Thing | None:
+        """The thing that a target was, by its drawn box, else by its words."""
+        if target is None:
+            return None
+        box = self.boxes.get(target.id)
+        if box is not None:
+            best = max(self.before.scene.things, key=lambda thing: thing.box.iou(box), default=None)
+            if best is not None and best.box.iou(box) > 0.3:
+                return best
+        return self.before.thing(number)
+
+    def _now(self, was: Thing) -> Thing | None:
+        """The same thing in the picture after: alike in colours, outline and size; the nearer one of equals."""
+        best, most = None, 0.0
+        radius = max(was.radius_px, 1.0)
+        for thing in self.after.scene.things:
+            if not _alike(was, thing):
+                continue
+            colours = float(was.look.histogram @ thing.look.histogram)
+            size = min(was.area_px, thing.area_px) / max(was.area_px, thing.area_px)
+            distance = float(np.hypot(thing.centre[0] - was.centre[0], thing.centre[1] - was.centre[1]))
+            rating = colours * (0.4 + 0.6 * size) - 0.01 * min(distance / radius, 10.0)
+            if rating > most:
+                best, most = thing, rating
+        return best
+
+    def _merged(self, task: Task, was: Thing) -> tuple[str, str]:
+        """A thing that does not stand out any more may lie on its place: its colours then show there and not before."""
+        assert task.thing is not None  # checked by the caller
+        name = task.thing.words
+        how = task.aim.how if task.aim is not None else "in"
+        number = task.aim.to.number if task.aim is not None and task.aim.to is not None else None
+        place = self._was(task.place, number)
+        if place is None or how not in ("in", "on"):
+            return "unclear", f"the {name} does not show in the picture after"
+        before, after = self.question.task.main, self.question.after[0]
+        gained = colours_in(after, place.box, was) - colours_in(before, place.box, was)
+        left = colours_in(after, was.box, was)
+        if gained >= GAINED * was.area_px / place.box.area and left < GAINED:
+            return "done", f"{gained:.0%} of the place shows the colours of the {name} now"
+        return "unclear", f"the {name} does not show in the picture after, nor its colours at the place"
+
+    def _at_place(self, task: Task, was: Thing, now: Thing) -> tuple[str, str]:
+        assert task.thing is not None  # checked by the caller
+        assert task.place is not None  # checked by the caller
+        how = task.aim.how if task.aim is not None else "in"
+        place = self._was(task.place, task.aim.to.number if task.aim is not None and task.aim.to is not None else None)
+        spot = self._spot(task.place, place)
+        if spot is None:
+            moved = self._moved(was, now)
+            return ("unclear", f"the place {task.place.words} does not show; the thing moved {moved:.1f} radii")
+        name, where = task.thing.words, task.place.words
+        if how in ("in", "on", "side", "between"):
+            inside = self._inside(now, place, spot)
+            return ("done", f"the {name} is {'in' if how != 'on' else 'on'} the {where} now") if inside else (
+                "not_done", f"the {name} is not at the {where}: it {self._told_move(was, now)}")  # fmt: skip
+        dx, dy = now.centre[0] - spot.centre[0], now.centre[1] - spot.centre[1]
+        reach = 2.5 * (max(spot.width, spot.height) + 2 * now.radius_px) / 2
+        near = float(np.hypot(dx, dy)) <= reach
+        side = {"left": -dx, "right": dx, "above": -dy, "below": dy}.get(how)
+        ok = near if side is None else side > 0 and side >= 0.7 * max(abs(dx), abs(dy))
+        words = f"the {name} is {'' if ok else 'not '}{how} of the {where}; it {self._told_move(was, now)}"
+        return ("done" if ok else "not_done"), words
+
+    def _spot(self, target: Target, place: Thing | None) -> Box | None:
+        if place is not None:
+            moved = self._now(place)
+            return place.box if moved is None else moved.box
+        return self.boxes.get(target.id)
+
+    def _inside(self, now: Thing, place: Thing | None, spot: Box) -> bool:
+        there = self._now(place) if place is not None else None
+        if there is not None and there.number != now.number:
+            if now.on == there.number or covers(there, now.centre):
+                return True
+        return spot.contains(now.centre)
+
+    def _back(self, task: Task, was: Thing, now: Thing) -> tuple[str, str]:
+        moved = self._moved(was, now)
+        assert task.thing is not None  # checked by the caller
+        return (
+            "done" if moved <= 1.0 else "not_done"
+        ), f"the {task.thing.words} lies {moved:.1f} radii from where it was"
+
+    def _took_place(self, task: Task, was: Thing, now: Thing) -> tuple[str, str]:
+        """Whether a thing lies where another one was."""
+        assert task.thing is not None  # checked by the caller
+        assert task.place is not None  # checked by the caller
+        number = task.aim.to.number if task.aim is not None and task.aim.to is not None else None
+        other = self._was(task.place, number)
+        if other is None:
+            return "unclear", f"the {task.place.words} does not show in the picture before"
+        gap = float(np.hypot(now.centre[0] - other.centre[0], now.centre[1] - other.centre[1]))
+        away = gap / max(was.radius_px, other.radius_px, 1.0)
+        status = "done" if away <= 1.0 else "not_done"
+        return status, f"the {task.thing.words} lies {away:.1f} radii from where the {task.place.words} was"
+
+    def _turned(self, task: Task, was: Thing, now: Thing) -> tuple[str, str]:
+        assert task.thing is not None  # checked by the caller
+        if self._moved(was, now) > 2.0:
+            return "not_done", f"the {task.thing.words} was carried {self._moved(was, now):.1f} radii away"
+        measured = turned_deg(self.question.task.main, was, self.question.after[0], now, task.rotate_deg)
+        if measured is None:
+            return "unclear", f"the {task.thing.words} looks the same however it is turned"
+        ok = abs((measured - task.rotate_deg + 180) % 360 - 180) <= ANGLE_SLACK_DEG
+        text = f"the {task.thing.words} shows turned by {measured:.0f} degrees clockwise, asked for {task.rotate_deg:g}"
+        return ("done" if ok else "not_done"), text
+
+    @staticmethod
+    def _moved(was: Thing, now: Thing) -> float:
+        distance = float(np.hypot(now.centre[0] - was.centre[0], now.centre[1] - was.centre[1]))
+        return distance / max(was.radius_px, 1.0)
+
+    def _told_move(self, was: Thing, now: Thing) -> str:
+        moved = self._moved(was, now)
+        return "has not moved" if moved < STAYED else f"moved {moved:.1f} of its radii"
+
+
+def _alike(was: Thing, thing: Thing) -> bool:
+    """Whether a thing after may be the thing before, by its colours and size."""
+    size = min(was.area_px, thing.area_px) / max(was.area_px, thing.area_px)
+    return float(was.look.histogram @ thing.look.histogram) >= ALIKE and size >= 0.3
+
+
+def colours_in(picture: Picture, box: Box, thing: Thing) -> float:
+    """Share of a box of a picture that shows a thing's colours, 0 to 1."""
+    width, height = picture.size_px
+    x0, y0 = max(0, int(box.x0)), max(0, int(box.y0))
+    x1, y1 = min(width, max(x0 + 1, int(box.x1))), min(height, max(y0 + 1, int(box.y1)))
+    rgb = np.ascontiguousarray(picture.rgb[y0:y1, x0:x1])
+    part = Picture("part", rgb, Frame.whole("part", (x1 - x0, y1 - y0)))
+    return strip_presence(part, Description("thing", ""), {}, target=thing).share
+
+
+def answer_replan(question: Replan) -> Advice:
+    """Stop when all is done or nothing is left to try; else say what to do differently."""
+    open_ones = [item for item in question.verdicts if item.status in ("not_done", "undone")]
+    unclear = [item for item in question.verdicts if item.status == "unclear"]
+    if not open_ones and (not unclear or _nothing_left(question)):
+        return Advice(reasoning="Every subgoal shows as reached.", decision="done", cause="", advice="")
+    first = (open_ones or unclear)[0]
+    texts = {subgoal.id: subgoal.text for subgoal in question.subgoals}
+    cause = f"{first.subgoal} '{texts.get(first.subgoal, '')}': {first.cause or first.evidence or 'it is not clear'}"
+    if question.replans_left <= 0:
+        return Advice(reasoning="No replan is left.", decision="give_up", cause=cause, advice="")
+    names = ", ".join(item.subgoal for item in (open_ones or unclear))
+    return Advice(
+        reasoning=f"{len(open_ones)} subgoals are not reached, {len(unclear)} unclear.",
+        decision="replan",
+        cause=cause,
+        advice=f"Plan again from the picture as it is now; still open: {names}. {cause}",
+    )
+
+
+def _nothing_left(question: Replan) -> bool:
+    """Whether the instruction asks for nothing more in the picture as it is now."""
+    try:
+        understood = read_task(question.task)
+    except NotUnderstoodError:
+        return False
+    eyes = eyes_of_task(question.task)
+    return not [
+        aim
+        for aim in derive(understood, eyes, strict=False).aims
+        if aim.kind != "rotate" and not (aim.to is not None and not aim.legs and already(eyes, aim.thing, aim.to))
+    ]

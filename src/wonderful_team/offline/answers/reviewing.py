@@ -1,0 +1,300 @@
+"""ReviewPlan: derive again what the plan must achieve, read the plan as shown, and compare.
+
+The shown plan may be any planner's: its subgoals are read with the grammar and its targets by their words; both are
+looked up in the picture, so that different words for the same thing agree and the same words for another thing do not.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from wonderful_team.contracts import DoubtDraft, PlanReview, ReviewPlan
+from wonderful_team.contracts.shown import ShownTask
+from wonderful_team.core.values import Subgoal, Target
+from wonderful_team.errors import NotUnderstoodError
+from wonderful_team.offline.answers.aims import Aim, Aims, Named, derive
+from wonderful_team.offline.answers.drafting import aim_text, cleared
+from wonderful_team.offline.answers.eyes import Eyes, eyes_of_task, target_description
+from wonderful_team.offline.answers.instruction import read_task
+from wonderful_team.offline.language import try_understand
+
+
+@dataclass(frozen=True)
+class Finding:
+    """One thing that is amiss with a plan."""
+
+    about: str
+    kind: str
+    question: str
+
+
+@dataclass(frozen=True, eq=False)
+class ReadSubgoal:
+    """A subgoal as shown: what its words come to (None where they cannot be read), and its targets."""
+
+    subgoal: Subgoal
+    aims: tuple[Aim, ...] | None
+    targets: tuple[tuple[Target, Named | None], ...]
+
+    def names(self, named: Named) -> bool:
+        """Whether one of its targets means that thing."""
+        return any(known is not None and known.same(named) for _, known in self.targets)
+
+
+def findings(
+    task: ShownTask, subgoals: Sequence[Subgoal], targets: Sequence[Target], step_kinds: Sequence[str]
+) -> list[Finding]:
+    """Everything that is amiss, the most telling first.
+
+    Raises:
+        NotUnderstoodError: The instruction itself cannot be read.
+    """
+    eyes = eyes_of_task(task)
+    wanted = derive(read_task(task), eyes, strict=False)
+    wanted.aims = cleared(wanted.aims, eyes)
+    read = [read_subgoal(subgoal, targets, eyes) for subgoal in subgoals]
+    found = [Finding(subgoals[-1].id if subgoals else "plan", "ambiguity", f"{text}; is it?") for text in wanted.absent]
+    found += _cannot_be_done(read, step_kinds)
+    found += _differences(wanted, read)
+    found += [item for subgoal in read for item in _wrong_targets(subgoal)]
+    found += _order(wanted.aims, read)
+    return found
+
+
+def read_subgoal(subgoal: Subgoal, targets: Sequence[Target], eyes: Eyes) -> ReadSubgoal:
+    """Read a subgoal's words and look its targets up."""
+    understood = try_understand(subgoal.text)
+    aims: tuple[Aim, ...] | None = None
+    if understood is not None:
+        # What lies where it should go already is still what the words ask for.
+        aims = tuple(derive(understood, eyes, strict=False, literal=True).aims)
+    by_id = {target.id: target for target in targets}
+    known = [(by_id[name], named(by_id[name], eyes)) for name in subgoal.targets if name in by_id]
+    for target, who in tuple(known):
+        if who is not None and who.description.way is not None:
+            # A place inside of something stands for that thing.
+            into = who.description.way.into
+            known.append((target, Named(into, eyes.number(into))))
+    return ReadSubgoal(subgoal, aims, tuple(known))
+
+
+def named(target: Target, eyes: Eyes) -> Named | None:
+    """The thing that a target means, or None where its words cannot be read."""
+    try:
+        description = target_description(target)
+    except NotUnderstoodError:
+        return None
+    if description.way is not None:
+        return Named(description, None)
+    return Named(description, eyes.number(description))
+
+
+def _cannot_be_done(read: Sequence[ReadSubgoal], step_kinds: Sequence[str]) -> list[Finding]:
+    found = []
+    for item in read:
+        kinds = {aim.kind for aim in item.aims or ()}
+        arm = "move" in step_kinds
+        if "push" in kinds and not arm and "push" not in step_kinds and "pick_place" not in step_kinds:
+            found.append(_cannot(item, "pushing"))
+        if kinds & {"put", "rotate"} and not arm and "pick_place" not in step_kinds and "push" not in step_kinds:
+            found.append(_cannot(item, "picking up"))
+        if "rotate" in kinds and "pick_place" not in step_kinds and "rotate_gripper" not in step_kinds:
+            found.append(_cannot(item, "turning things"))
+    return found
+
+
+def _cannot(item: ReadSubgoal, what: str) -> Finding:
+    return Finding(
+        item.subgoal.id,
+        "physical_constraint",
+        f"Can this robot do '{item.subgoal.text}'? {what} is not among its steps.",
+    )
+
+
+def _differences(wanted: Aims, read: Sequence[ReadSubgoal]) -> list[Finding]:
+    """Compare what must be achieved with what the subgoals say, one to one."""
+    open_aims = list(range(len(wanted.aims)))
+    spare: list[tuple[ReadSubgoal, Aim]] = []
+    unread: list[ReadSubgoal] = []
+    for item in read:
+        if item.aims is None or (not item.aims and item.targets):
+            unread.append(item)
+            continue
+        for aim in item.aims:
+            match = next((index for index in open_aims if wanted.aims[index].same(aim)), None)
+            if match is None:
+                spare.append((item, aim))
+            else:
+                open_aims.remove(match)
+    open_aims, unread_found = _by_targets(wanted, open_aims, unread)
+    found = []
+    for item, aim in spare:
+        found.append(_spare(item, aim, wanted, open_aims))
+    found += unread_found
+    for index in open_aims:
+        found.append(_missing(wanted.aims[index], index, wanted, read))
+    return found
+
+
+def _by_targets(wanted: Aims, open_aims: list[int], unread: Sequence[ReadSubgoal]) -> tuple[list[int], list[Finding]]:
+    """Subgoals whose words cannot be read are judged by their targets; what they cover is not missing."""
+    left, found = list(open_aims), []
+    for item in unread:
+        covered = next((k for k in left if _covers(item, wanted.aims[k])), None)
+        if covered is not None:
+            left.remove(covered)
+        elif left or not item.targets:
+            found.append(
+                Finding(item.subgoal.id, "ambiguity", f"What does '{item.subgoal.text}' bring about? I cannot read it.")
+            )
+    return left, found
+
+
+def _covers(item: ReadSubgoal, aim: Aim) -> bool:
+    return item.names(aim.thing) and (aim.to is None or item.names(aim.to))
+
+
+def _spare(item: ReadSubgoal, aim: Aim, wanted: Aims, open_aims: list[int]) -> Finding:
+    """A subgoal that nothing asks for: the wrong thing or place when it resembles an open aim, else needless."""
+    about = item.subgoal.id
+    same_thing = next((k for k in open_aims if wanted.aims[k].thing.same(aim.thing)), None)
+    if same_thing is not None:
+        open_aims.remove(same_thing)
+        right = wanted.aims[same_thing]
+        return Finding(about, "wrong_target", f"Should it not be '{aim_text(right)}' instead of '{item.subgoal.text}'?")
+    same_goal = next((k for k in open_aims if wanted.aims[k].same_goal(aim)), None)
+    if same_goal is not None:
+        open_aims.remove(same_goal)
+        right = wanted.aims[same_goal]
+        return Finding(
+            about,
+            "wrong_target",
+            f"Is {aim.thing.words!r} the right thing? The instruction and the picture ask for '{aim_text(right)}'.",
+        )
+    crossed = next((k for k in open_aims if (to := wanted.aims[k].to) is not None and to.same(aim.thing)), None)
+    if crossed is not None:
+        open_aims.remove(crossed)
+        return Finding(
+            about, "wrong_target", f"Are thing and place swapped? Asked for is '{aim_text(wanted.aims[crossed])}'."
+        )
+    if open_aims:
+        right = wanted.aims[open_aims.pop(0)]
+        return Finding(
+            about, "wrong_target", f"Nothing asks for '{item.subgoal.text}'; asked for is '{aim_text(right)}'."
+        )
+    return Finding(about, "needless_step", f"What is '{item.subgoal.text}' for? The instruction does not ask for it.")
+
+
+def _missing(aim: Aim, index: int, wanted: Aims, read: Sequence[ReadSubgoal]) -> Finding:
+    """An aim that no subgoal serves; the doubt is about the subgoal that should follow it, or the last one."""
+    about = read[-1].subgoal.id if read else "plan"
+    followers = [k for k, other in enumerate(wanted.aims) if index in other.after]
+    for item in read:
+        if any(wanted.aims[k].same(own) for k in followers for own in item.aims or ()):
+            about = item.subgoal.id
+            break
+    why = f" ({aim.why})" if aim.why else ""
+    return Finding(about, "missing_prerequisite", f"Where is '{aim_text(aim)}'{why}? No subgoal brings it about.")
+
+
+def _wrong_targets(item: ReadSubgoal) -> list[Finding]:
+    """Targets that mean something else than the subgoal's words, or are missing."""
+    if not item.targets or not item.aims:
+        return []
+    needed = [who for aim in item.aims for who in (aim.thing, aim.to, aim.other) if who is not None]
+    found = []
+    for target, known in item.targets:
+        if known is None:
+            continue
+        spot = target.kind == "area" and known.number is None
+        if not spot and not any(known.same(who) for who in needed):
+            found.append(
+                Finding(
+                    item.subgoal.id,
+                    "wrong_target",
+                    f"{target.id} ({target.words}) is not what '{item.subgoal.text}' speaks of; is it the right target?",
+                )
+            )
+    for aim in item.aims:
+        for who in (aim.thing, aim.to):
+            if (
+                who is not None
+                and aim.how != "between"
+                and not item.names(who)
+                and all(k is not None for _, k in item.targets)
+            ):
+                found.append(
+                    Finding(item.subgoal.id, "wrong_target", f"Which target of {item.subgoal.id} is the {who.words}?")
+                )
+    return found[:1] + _wrong_use(item)
+
+
+def _wrong_use(item: ReadSubgoal) -> list[Finding]:
+    """The thing to be moved must have a point to pick it at."""
+    found = []
+    for aim in item.aims or ():
+        for target, known in item.targets:
+            if (
+                known is None
+                or not target.use
+                or not known.same(aim.thing)
+                or (aim.to is not None and known.same(aim.to))
+            ):
+                continue
+            if not set(target.use) & {"pick", "grasp", "push_start"}:
+                text = f"{target.id} ({target.words}) is to be moved, but its use is {', '.join(target.use)}; is it swapped?"
+                found.append(Finding(item.subgoal.id, "wrong_target", text))
+    return found
+
+
+def _order(wanted: Sequence[Aim], read: Sequence[ReadSubgoal]) -> list[Finding]:
+    """What must come first must stand first."""
+    place: dict[int, int] = {}
+    used: set[tuple[int, int]] = set()
+    for index, aim in enumerate(wanted):
+        for position, item in enumerate(read):
+            for k, own in enumerate(item.aims or ()):
+                if index not in place and (position, k) not in used and aim.same(own):
+                    place[index] = position
+                    used.add((position, k))
+    for index, aim in enumerate(wanted):
+        for first in aim.after:
+            if index in place and first in place and place[index] < place[first]:
+                item = read[place[index]]
+                return [
+                    Finding(
+                        item.subgoal.id,
+                        "missing_prerequisite",
+                        f"Must '{read[place[first]].subgoal.text}' not come before '{item.subgoal.text}'?",
+                    )
+                ]
+    return []
+
+
+def answer_review(question: ReviewPlan) -> PlanReview:
+    """One doubt about one subgoal, or approval."""
+    found = findings(question.task, question.subgoals, question.targets, question.step_kinds)
+    if question.under_check is not None:
+        found = [item for item in found if item.about in (question.under_check, "plan")]
+    fresh = [item for item in found if not _asked(item, question.checked)]
+    scope = question.under_check or "the plan"
+    if not fresh:
+        seen = (
+            "asked already and answered"
+            if found
+            else "what it must bring about is in it, each thing and place as asked"
+        )
+        return PlanReview(
+            reasoning=f"Derived again from words and picture; {scope}: {seen}.", approved=True, doubt=None
+        )
+    first = fresh[0]
+    return PlanReview(
+        reasoning=f"Derived again from words and picture, {scope} differs: {first.kind} in {first.about}.",
+        approved=False,
+        doubt=DoubtDraft(about=first.about, kind=first.kind, question=first.question),
+    )
+
+
+def _asked(item: Finding, checked: Sequence[str]) -> bool:
+    return any(item.question in line for line in checked)

@@ -1,0 +1,328 @@
+"""What the instruction's pictures of a whole table show: where things should be, and which thing moves where.
+
+Pictures of one camera share its framing: a pixel of the camera's view means the same place in every one of them.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import cv2
+import numpy as np
+
+from wonderful_team.core.geometry import Box
+from wonderful_team.core.geometry.arrays import Array
+from wonderful_team.core.pictures import Picture, Point
+from wonderful_team.errors import NotUnderstoodError
+from wonderful_team.images.colours import to_lab
+from wonderful_team.offline.answers.aims import Aim, Aims, Named
+from wonderful_team.offline.answers.eyes import Eyes, unique_words
+from wonderful_team.offline.description import Description
+from wonderful_team.offline.language import Command, render
+from wonderful_team.offline.vision import Match, Thing, likeness, see
+
+ALIKE = 0.35
+"""Least likeness of looks at which two pictures may show the same thing (0 to 1)."""
+SURE = 0.55
+"""Likeness from which two pictures show the same thing beyond doubt (0 to 1)."""
+STAYED = 0.35
+"""A thing that lies nearer to its place than this many of its radii is there."""
+IN_THE_WAY = 0.8
+"""Two things whose centres are nearer than this share of their radii together cannot both lie there."""
+CHANGED = 9.0
+"""CIELAB distance from which a pixel differs between two pictures of one camera."""
+LEFT = 0.5
+"""Share of a thing's former place that must show table once it has left."""
+
+
+@dataclass(frozen=True, eq=False)
+class Shift:
+    """A thing of the scene now, and where a picture shows it [px of the picture looked at]."""
+
+    thing: Thing
+    to: Point
+    placed: Description
+    like: str
+    since: str | None = None
+
+
+def place_shown(description: Description, eyes: Eyes) -> list[Match]:
+    """The place where one of the instruction's pictures shows a thing, in the picture looked at; [] when it does not."""
+    shown = eyes.pictures.get(description.like or "")
+    if shown is None or description.placed is None or eyes.looked_at is None:
+        return []
+    if description.since is not None and description.since in eyes.pictures:
+        arrived = came_to(eyes.pictures[description.since], shown)
+        box = None if arrived is None else arrived
+    else:
+        found = Eyes(see(shown), {}).best(replace(description.placed, noun="thing"))
+        box = found.thing.box if found is not None and found.thing is not None else None
+    if box is None:
+        return []
+    there = eyes.looked_at.frame.box_to_picture(shown.frame.box_to_view(box))
+    why = f"picture {{{description.like}}} shows the {description.placed.text} there"
+    return [Match(None, there, there.centre, 1.0, 1.0, why)]
+
+
+def shown_aims(command: Command, eyes: Eyes, result: Aims) -> list[Aim]:
+    """Aims of a goal picture, of a sequence of frames, or of "and then restore".
+
+    Raises:
+        NotUnderstoodError: The pictures were not given, or do not show what is moved.
+    """
+    missing = [name for name in command.pictures if name not in eyes.pictures]
+    if missing:
+        raise NotUnderstoodError(
+            f"the instruction speaks of {{{missing[0]}}}, but no such picture of the table was given"
+        )
+    if command.kind == "restore":
+        return _restored(result)
+    if command.kind == "follow":
+        return _followed(command, eyes, result)
+    return [aim for name in command.pictures for aim in _arranged(name, eyes, result)]
+
+
+def _restored(result: Aims) -> list[Aim]:
+    """Everything that was asked to be moved goes back, the last one first; what was only in the way may stay."""
+    wanted = [aim.thing for aim in result.aims if not aim.why and aim.kind != "rotate"]
+    back: dict[int | None, Named] = {}
+    for thing in reversed(wanted):
+        back.setdefault(thing.number, thing)
+    if not back:
+        raise NotUnderstoodError("it is not said what is to be restored: nothing is moved before")
+    return [Aim("put", thing, "origin", after=tuple(range(len(result.aims)))) for thing in back.values()]
+
+
+def _arranged(name: str, eyes: Eyes, result: Aims) -> list[Aim]:
+    """Every thing that a picture shows goes to where it is there; what lies on such a place is brought away first."""
+    shifts = _shifts(name, eyes)
+    moves = [shift for shift in shifts if _away(shift) > STAYED * shift.thing.radius_px or result.literal]
+    result.settled += [
+        f"the {shift.placed.text} is where {{{name}}} shows it" for shift in shifts if shift not in moves
+    ]
+    ordered = _in_free_order(moves)
+    first = len(result.aims)
+    known = {shift.thing.number for shift in shifts}
+    aims: list[Aim] = []
+    for other in eyes.scene.objects:
+        blocked = [shift for shift in moves if other.number not in known and _blocks(other, shift)]
+        if blocked:
+            spot = Description(noun="area", name="free", text="free area")
+            who = Named(unique_words(eyes, other, "object"), other.number)
+            why = f"it lies where the {blocked[0].placed.text} goes"
+            aims.append(Aim("put", who, "in", Named(spot), why=why))
+    cleared = tuple(range(first, first + len(aims)))
+    for shift in ordered:
+        who = Named(unique_words(eyes, shift.thing, "object"), shift.thing.number)
+        aims.append(Aim("put", who, "in", Named(_place(shift)), after=cleared))
+    return aims
+
+
+def _place(shift: Shift) -> Description:
+    place = Description(noun="area", text="", placed=shift.placed, like=shift.like, since=shift.since)
+    return replace(place, text=render(place))
+
+
+def _shifts(name: str, eyes: Eyes) -> list[Shift]:
+    """The things of a picture paired with those of now by their looks, the surest pair first."""
+    shown = eyes.pictures[name]
+    there = Eyes(see(shown), {})
+    assert eyes.looked_at is not None  # set by eyes_of
+    pairs = sorted(
+        ((likeness(one, other), k, one) for k, other in enumerate(there.scene.things) for one in eyes.scene.things),
+        key=lambda pair: -pair[0],
+    )
+    taken: set[int] = set()
+    given: set[int] = set()
+    shifts = []
+    for score, k, one in pairs:
+        if score < ALIKE or k in given or one.number in taken:
+            continue
+        given.add(k)
+        taken.add(one.number)
+        seen = there.scene.things[k]
+        to = eyes.looked_at.frame.point_to_picture(shown.frame.point_to_view(seen.centre))
+        shifts.append(Shift(one, to, unique_words(there, seen, "object"), name))
+    if not shifts:
+        raise NotUnderstoodError(f"none of the things that {{{name}}} shows is in the picture")
+    return sorted(shifts, key=lambda shift: shift.thing.centre)
+
+
+def _away(shift: Shift) -> float:
+    return float(np.hypot(shift.to[0] - shift.thing.centre[0], shift.to[1] - shift.thing.centre[1]))
+
+
+def _blocks(other: Thing, shift: Shift) -> bool:
+    gap = float(np.hypot(other.centre[0] - shift.to[0], other.centre[1] - shift.to[1]))
+    return gap < IN_THE_WAY * (other.radius_px + shift.thing.radius_px)
+
+
+def _in_free_order(moves: list[Shift]) -> list[Shift]:
+    """What stands on another's place goes first."""
+    left, done = list(moves), []
+    while left:
+        free = [
+            shift for shift in left if not any(other is not shift and _blocks(other.thing, shift) for other in left)
+        ]
+        done.append((free or left)[0])
+        left.remove(done[-1])
+    return done
+
+
+def _followed(command: Command, eyes: Eyes, result: Aims) -> list[Aim]:
+    """One move between each frame and the next, in order."""
+    frames = [eyes.pictures[name] for name in command.pictures]
+    named = None
+    if command.thing.quantity == "one":
+        best = eyes.best(command.thing)
+        named = None if best is None else best.thing
+    first = len(result.aims)
+    aims: list[Aim] = []
+    where: dict[int, Point] = {}
+    for k in range(1, len(frames)):
+        arrived = came_to(frames[k - 1], frames[k])
+        mover = _mover(frames[k - 1], frames[k], eyes, where, named)
+        if arrived is None or mover is None:
+            if difference(frames[k - 1], frames[k]).any():
+                raise NotUnderstoodError(
+                    f"it does not show what moves between {{{command.pictures[k - 1]}}} and {{{command.pictures[k]}}}"
+                )
+            continue
+        assert eyes.looked_at is not None  # set by eyes_of
+        to = eyes.looked_at.frame.box_to_picture(frames[k].frame.box_to_view(arrived)).centre
+        if named is not None and mover.number == named.number:
+            who = Named(command.thing, mover.number)
+        else:
+            who = Named(unique_words(eyes, mover, "object"), mover.number)
+        after = (first + len(aims) - 1,) if aims else ()
+        under = _under(to, mover, eyes, where, aims)
+        if under is not None:
+            aims.append(Aim("put", who, "on", under, after=after))
+        else:
+            shift = Shift(mover, to, who.description, command.pictures[k], command.pictures[k - 1])
+            placed = replace(shift, placed=unique_words(eyes, mover, "object"))
+            aims.append(Aim("put", who, "in", Named(_place(placed)), after=after))
+        where[mover.number] = to
+    return aims
+
+
+def _under(to: Point, mover: Thing, eyes: Eyes, where: dict[int, Point], aims: list[Aim]) -> Named | None:
+    """The thing that lies where something is put: what was put there last, else what has stood there."""
+    for aim in reversed(aims):
+        number = aim.thing.number
+        if number is not None and number != mover.number and number in where:
+            thing = eyes.thing(number)
+            if thing is not None and _gap(where[number], to) < 0.6 * thing.radius_px:
+                return aim.thing
+    for thing in eyes.scene.things:
+        if (
+            thing.number != mover.number
+            and thing.number not in where
+            and _gap(thing.centre, to) < 0.6 * thing.radius_px
+        ):
+            return Named(unique_words(eyes, thing, "object"), thing.number)
+    return None
+
+
+def _gap(one: Point, other: Point) -> float:
+    return float(np.hypot(one[0] - other[0], one[1] - other[1]))
+
+
+def moved_between(before: Picture, after: Picture) -> tuple[Thing, Thing] | None:
+    """The thing that both pictures show, in two places, as each of them shows it; None when no one thing stands out.
+
+    What only came to light, since something was taken from above it, was nowhere to be seen before.
+    """
+    first, second = see(before).things, see(after).things
+
+    def apart(was: Thing, now: Thing) -> float:
+        there = before.frame.point_to_view(was.centre)
+        here = after.frame.point_to_view(now.centre)
+        return _gap(there, here) * after.frame.scale / now.radius_px
+
+    rated = [(likeness(was, now), apart(was, now), was, now) for was in first for now in second]
+    stayed = {now.number for alike, far, _, now in rated if far < STAYED and alike > SURE}
+    moved = [(alike, was, now) for alike, far, was, now in rated if far >= STAYED and now.number not in stayed]
+    remain = {was.number for alike, far, was, _ in rated if far < STAYED and alike > SURE}
+    moved = sorted((item for item in moved if item[1].number not in remain), key=lambda item: -item[0])
+    if not moved or moved[0][0] < SURE:
+        return None
+    return moved[0][1], moved[0][2]
+
+
+def _mover(before: Picture, after: Picture, eyes: Eyes, where: dict[int, Point], named: Thing | None) -> Thing | None:
+    """The thing of now that moved between two frames: it looks like that, and is where that was."""
+    pair = moved_between(before, after)
+    assert eyes.looked_at is not None  # set by eyes_of
+    if pair is None:
+        return _left_its_place(before, after, eyes, where, named)
+    place = eyes.looked_at.frame.point_to_picture(before.frame.point_to_view(pair[0].centre))
+
+    def fits(thing: Thing) -> float:
+        away = _gap(where.get(thing.number, thing.centre), place) / thing.radius_px
+        bonus = 0.1 if named is not None and thing.number == named.number else 0.0
+        return likeness(thing, pair[1]) * float(np.exp(-0.5 * away**2)) + bonus
+
+    best = max(eyes.scene.things, key=fits, default=None)
+    return best if best is not None and fits(best) > ALIKE else _left_its_place(before, after, eyes, where, named)
+
+
+def _left_its_place(
+    before: Picture, after: Picture, eyes: Eyes, where: dict[int, Point], named: Thing | None
+) -> Thing | None:
+    """The thing of now whose place in the earlier frame shows table in the later one."""
+    changed = difference(before, after)
+    scene = see(after)
+    table = ~scene.occupied
+    best, most = None, LEFT
+    assert eyes.looked_at is not None  # set by eyes_of
+    for thing in eyes.scene.things:
+        x, y = where.get(thing.number, thing.centre)
+        points = _points(thing, (x - thing.centre[0], y - thing.centre[1]))
+        view = eyes.looked_at.frame.to_view(points)
+        pixels = (after.frame.to_picture(view) / scene.zoom).astype(int)
+        inside = (pixels >= 0).all(axis=1) & (pixels[:, 0] < table.shape[1]) & (pixels[:, 1] < table.shape[0])
+        pixels = pixels[inside]
+        if not len(pixels):
+            continue
+        grid = cv2.resize(changed.astype(np.uint8), table.shape[::-1], interpolation=cv2.INTER_NEAREST) > 0
+        left = float((table & grid)[pixels[:, 1], pixels[:, 0]].mean())
+        if named is not None and thing.number == named.number:
+            left += 0.1
+        if left > most:
+            best, most = thing, left
+    return best
+
+
+def _points(thing: Thing, move: Point) -> Array:
+    """Pixels of what shows of a thing, moved [picture px], shape (N, 2)."""
+    rows, columns = np.nonzero(thing.mask)
+    x = (columns + 0.5 + thing.offset[0]) * thing.zoom + move[0]
+    y = (rows + 0.5 + thing.offset[1]) * thing.zoom + move[1]
+    return np.stack([x, y], axis=1)
+
+
+def difference(before: Picture, after: Picture) -> Array:
+    """Pixels of the later picture that differ from the earlier one, bool, shape (H, W); noise is left out."""
+    first = cv2.resize(np.ascontiguousarray(before.rgb), after.size_px, interpolation=cv2.INTER_AREA)
+    gap = np.sqrt(((to_lab(first) - to_lab(np.asarray(after.rgb))) ** 2).sum(axis=-1))
+    return np.asarray(cv2.morphologyEx((gap > CHANGED).astype(np.uint8), cv2.MORPH_OPEN, np.ones((3, 3), np.uint8)) > 0)
+
+
+def came_to(before: Picture, after: Picture) -> Box | None:
+    """Where something stands in the later picture that was not there before [px of the later picture]; None when nothing is."""
+    pair = moved_between(before, after)
+    if pair is not None:
+        return pair[1].box
+    changed = difference(before, after)
+    scene = see(after)
+    shown = cv2.resize(scene.occupied.astype(np.uint8), after.size_px, interpolation=cv2.INTER_NEAREST) > 0
+    new = cv2.morphologyEx((changed & shown).astype(np.uint8), cv2.MORPH_CLOSE, np.ones((9, 9), np.uint8))
+    count, _, stats, _ = cv2.connectedComponentsWithStats(new, connectivity=8)
+    if count <= 1:
+        return None
+    biggest = 1 + int(stats[1:, cv2.CC_STAT_AREA].argmax())
+    x, y, width, height, area = (int(v) for v in stats[biggest])
+    if area < 0.0004 * new.size:
+        return None
+    return Box(x, y, x + width, y + height)

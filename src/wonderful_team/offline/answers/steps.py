@@ -1,0 +1,150 @@
+"""WriteSteps and ReviewSteps."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from wonderful_team.contracts import StepList, WriteSteps, step_list_type
+from wonderful_team.core.actions import SIDES, Side
+from wonderful_team.core.values import Subgoal
+from wonderful_team.errors import NotUnderstoodError, UnsupportedQuestion
+from wonderful_team.offline.answers.eyes import Eyes, eyes_of_task
+from wonderful_team.offline.answers.roles import Task, tasks_of
+from wonderful_team.offline.vision import Thing
+
+SAME_ANGLE_DEG = 0.5
+
+
+def answer_write_steps(question: WriteSteps) -> StepList:
+    """Steps in an order that respects `after`, for the kinds that the robot runs."""
+    eyes = eyes_of_task(question.task)
+    steps: list[dict[str, object]] = []
+    for subgoal in _ordered(question.subgoals):
+        if subgoal.id in question.functions and "follow" in question.step_kinds:
+            steps.append({"kind": "follow", "subgoal": subgoal.id, "function": subgoal.id})
+            continue
+        for task in tasks_of(subgoal, question.targets, eyes):
+            steps += _steps_of(task, subgoal, question.step_kinds, eyes)
+    kinds = ", ".join(dict.fromkeys(str(step["kind"]) for step in steps)) or "no steps"
+    reasoning = f"One task per subgoal in the plan's order, written as {kinds}."
+    if question.doubt:
+        reasoning += " Written anew from the subgoals after the doubt."
+    answer: StepList = step_list_type(question.step_kinds).model_validate({"reasoning": reasoning, "steps": steps})
+    return answer
+
+
+def _ordered(subgoals: Sequence[Subgoal]) -> list[Subgoal]:
+    """In the plan's order, each after those it names."""
+    left, done = list(subgoals), []
+    while left:
+        ready = next((s for s in left if not set(s.after) & {other.id for other in left}), left[0])
+        left.remove(ready)
+        done.append(ready)
+    return done
+
+
+def _steps_of(task: Task, subgoal: Subgoal, kinds: Sequence[str], eyes: Eyes) -> list[dict[str, object]]:
+    if task.thing is None:
+        raise NotUnderstoodError(f"subgoal {subgoal.id} names no target to move: {subgoal.text!r}")
+    pushed = task.aim is not None and task.aim.kind == "push"
+    if (pushed or "pick_place" not in kinds) and "push" in kinds:
+        return _push(task, eyes)
+    if "pick_place" in kinds:
+        return [
+            {
+                "kind": "pick_place",
+                "subgoal": task.subgoal,
+                "pick": task.thing.id,
+                "place": place_of(task, eyes),
+                "rotate_deg": task.rotate_deg,
+            }
+        ]
+    if {"move", "open", "close"} <= set(kinds):
+        return _arm(task, kinds, eyes)
+    raise UnsupportedQuestion(
+        "offline", "WriteSteps", f"it writes pick_place, push, or move with open and close; offered: {', '.join(kinds)}"
+    )
+
+
+def _push(task: Task, eyes: Eyes) -> list[dict[str, object]]:
+    """One push, or one for every stop on the way."""
+    if task.aim is not None and task.aim.kind == "rotate":
+        raise UnsupportedQuestion(
+            "offline", "WriteSteps", "a thing cannot be turned by an exact angle by pushing alone"
+        )
+    ends = [{"target": stop.id, "how": "at", "side": None} for stop in task.stops] + [place_of(task, eyes)]
+    return [{"kind": "push", "subgoal": task.subgoal, "start": _at(task, "thing"), "end": end} for end in ends]
+
+
+def _at(task: Task, part: str) -> dict[str, object]:
+    target = task.thing if part == "thing" else task.place
+    assert target is not None  # checked by the callers
+    return {"target": target.id, "how": "at", "side": None}
+
+
+def place_of(task: Task, eyes: Eyes) -> dict[str, object]:
+    """Where the thing of a task goes, as a PlaceDraft."""
+    assert task.thing is not None  # checked by the callers
+    how = task.aim.how if task.aim is not None else ""
+    if task.place is None:
+        return {"target": task.thing.id, "how": "origin", "side": None}
+    if task.place.kind == "area" and how in ("in", "on"):
+        return {"target": task.place.id, "how": "at", "side": None}
+    if how == "origin":
+        return {"target": task.place.id, "how": "origin", "side": None}
+    if how in SIDES:
+        return {"target": task.place.id, "how": "beside", "side": how}
+    if how == "near" and task.place.kind == "object":
+        to = eyes.thing(task.aim.to.number) if task.aim is not None and task.aim.to is not None else None
+        return {"target": task.place.id, "how": "beside", "side": freest_side(to, eyes)}
+    return {"target": task.place.id, "how": "at", "side": None}
+
+
+def freest_side(thing: Thing | None, eyes: Eyes) -> Side:
+    """The side of a thing with the most room to the next thing or the picture's edge; right when it is not seen."""
+    if thing is None:
+        return "right"
+    width, height = eyes.scene.size_px
+    box = thing.box
+    room = {"right": width - box.x1, "left": box.x0, "below": height - box.y1, "above": box.y0}
+    for other in eyes.scene.objects:
+        if other.number == thing.number:
+            continue
+        if other.box.y0 < box.y1 and other.box.y1 > box.y0:
+            if other.box.centre[0] > box.centre[0]:
+                room["right"] = min(room["right"], other.box.x0 - box.x1)
+            else:
+                room["left"] = min(room["left"], box.x0 - other.box.x1)
+        if other.box.x0 < box.x1 and other.box.x1 > box.x0:
+            if other.box.centre[1] > box.centre[1]:
+                room["below"] = min(room["below"], other.box.y0 - box.y1)
+            else:
+                room["above"] = min(room["above"], box.y0 - other.box.y1)
+    return max(SIDES, key=lambda side: room[side])
+
+
+def _arm(task: Task, kinds: Sequence[str], eyes: Eyes) -> list[dict[str, object]]:
+    """Pick and place with an arm: above, open, down, close, up, turn, over the place, down, open, clear."""
+    subgoal = task.subgoal
+    thing, place = _at(task, "thing"), place_of(task, eyes)
+    turn: list[dict[str, object]] = []
+    if task.rotate_deg:
+        if "rotate_gripper" not in kinds:
+            raise UnsupportedQuestion("offline", "WriteSteps", "turning needs rotate_gripper steps")
+        turn = [{"kind": "rotate_gripper", "subgoal": subgoal, "rotate_deg": task.rotate_deg}]
+
+    def move(to: dict[str, object], height: str) -> dict[str, object]:
+        return {"kind": "move", "subgoal": subgoal, "to": to, "height": height}
+
+    return [
+        {"kind": "open", "subgoal": subgoal},
+        move(thing, "above"),
+        move(thing, "at"),
+        {"kind": "close", "subgoal": subgoal, "tight": False},
+        move(thing, "clear"),
+        *turn,
+        move(place, "above"),
+        move(place, "at"),
+        {"kind": "open", "subgoal": subgoal},
+        move(place, "clear"),
+    ]

@@ -1,0 +1,52 @@
+"""An instruction read with its pictures: definitions first, then what pictures show, then what words alone say.
+
+What a picture is for follows from its kind (one thing, a whole table, a frame of a sequence, before or after) and from the
+words beside it.
+"""
+
+from __future__ import annotations
+
+import re
+
+from wonderful_team.errors import NotUnderstoodError
+from wonderful_team.offline.language.commands import Command, Understood
+from wonderful_team.offline.language.definitions import define_words
+from wonderful_team.offline.language.ordering import in_order
+from wonderful_team.offline.language.pictured import read_pictured, unknown_in_pictured, without_mentions
+from wonderful_team.offline.language.reading import try_describe, understand, unframed
+from wonderful_team.offline.language.shown_turns import define_turns
+from wonderful_team.offline.language.shows import Shows
+from wonderful_team.offline.language.tokens import refusal
+from wonderful_team.offline.language.turns_of_phrase import in_full
+
+
+def read_instruction(text: str, shows: Shows) -> Understood:
+    """What an instruction asks for, its pictures taken into account.
+
+    Raises:
+        NotUnderstoodError: A word is unknown, a new word is not shown clearly, or the words do not make an instruction.
+    """
+    return unframed(text, lambda words: _read(words, shows))
+
+
+def _read(text: str, shows: Shows) -> Understood:
+    plain = without_mentions(define_words(define_turns(in_full(text), shows, try_describe), shows), shows)
+
+    told: list[Understood] = []
+
+    def read(words: str) -> tuple[Command, ...]:
+        told.append(understand(words))
+        return told[-1].commands
+
+    try:
+        commands = read_pictured(in_order(plain), shows, read, try_describe) if shows.names("scene", "frame") else None
+        if commands is None:
+            return understand(plain)
+    except NotUnderstoodError as error:
+        unknown = unknown_in_pictured(plain, shows)
+        if unknown and not any(word in str(error) for word in unknown):
+            raise NotUnderstoodError(refusal([], unknown)) from error
+        raise
+    used = tuple(re.findall(r"\{[^{}]+\}|\w+", text))
+    spared = tuple(thing for part in told for thing in part.spared)
+    return Understood(text, commands, used, any(part.nothing_else for part in told), spared)

@@ -1,0 +1,116 @@
+"""Put a description into words that `describe` reads back to the same description."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from wonderful_team.offline.description import Description, Related
+
+_RELATION_WORDS = {"left_of": "left of", "right_of": "right of", "above": "above", "below": "below", "near": "next to",
+                   "far_from": "far from", "on": "on top of", "inside": "inside", "between": "between",
+                   "same_colour": "with the same colour as", "same_pattern": "with the same texture as",
+                   "same_shape": "with the same shape as"}  # fmt: skip
+_ORDINAL_WORDS = {2: "second", 3: "third", 4: "fourth", 5: "fifth"}
+_FROM = {"leftmost": "left", "rightmost": "right", "topmost": "top", "bottommost": "bottom"}
+
+
+def render(description: Description) -> str:
+    """Plain words for a description, without an article; ends with its relations."""
+    if description.placed is not None:
+        return f"place of the {render(description.placed)}" + (
+            f" in {{{description.like}}}" if description.like else ""
+        )
+    words, tail = _counted(description)
+    words += _looks(description) + _head(description)
+    if _is_corner(description):
+        tail.append(f"in the {_corner(description)} corner")
+    if description.like and description.like_only is None:
+        tail.append(f"shown in {{{description.like}}}")
+    tail += [relation_words(related) for related in description.related]
+    if description.excluded:
+        tail.append("except the " + " and the ".join(render(item) for item in description.excluded))
+    return " ".join([*words, *tail])
+
+
+def _counted(description: Description) -> tuple[list[str], list[str]]:
+    """How many or which of several: words before the noun and after it."""
+    words: list[str] = []
+    if description.quantity in ("each", "all"):
+        words.append(description.quantity)
+    elif description.quantity == "number":
+        words.append(str(description.number))
+    superlative, ordinal = description.superlative, _ORDINAL_WORDS.get(description.ordinal)
+    if ordinal:
+        words.append(ordinal)
+        if superlative in _FROM:
+            return words, [f"from the {_FROM[superlative]}"]
+    if superlative and not _is_corner(description):
+        words.append(superlative)
+    return words, []
+
+
+def _looks(description: Description) -> list[str]:
+    words = ["free"] if description.name == "free" else []
+    if description.dark is not None:
+        words.append("dark" if description.dark else "light")
+    if description.colours:
+        words.append(" and ".join(description.colours))
+    if description.pattern:
+        words.append(description.pattern)
+    if description.material:
+        words.append(description.material)
+    return words
+
+
+def relation_words(related: Related) -> str:
+    """Such as "left of the blue bowl"."""
+    return f"{_RELATION_WORDS[related.relation]} the " + " and the ".join(render(to) for to in related.to)
+
+
+def _head(description: Description) -> list[str]:
+    words: list[str] = []
+    if description.like and description.like_only == "texture":
+        words.append(
+            f"{{{description.like}}} texture" if "texture" not in description.like else f"{{{description.like}}}"
+        )
+    if description.like and description.like_only == "shape":
+        words.append(f"{{{description.like}}} shaped")
+    noun = description.name if description.noun in ("fruit", "container") and description.name else description.noun
+    if description.noun == "letter" and description.name:
+        return [*words, f"letter {description.name}"]
+    if description.shape and description.noun in ("object", "thing"):
+        noun = description.shape if description.shape not in ("long",) else "long object"
+        noun = "L-shaped object" if description.shape == "l-shape" else noun
+    elif description.shape:
+        words.append("L-shaped" if description.shape == "l-shape" else description.shape)
+    if description.name == "free" and description.noun not in ("area",):
+        noun = description.noun
+    if description.name == "table":
+        noun = "table"
+    if description.quantity == "all" or (description.quantity == "number" and description.number > 1):
+        noun = noun if noun.endswith("s") and noun not in ("cross",) else _many(noun)
+    return [*words, noun]
+
+
+def _many(noun: str) -> str:
+    from wonderful_team.offline.language.vocabulary import plural
+
+    return plural(noun)
+
+
+def _is_corner(description: Description) -> bool:
+    return " " in description.name
+
+
+def _corner(description: Description) -> str:
+    names = {"topmost": "top", "bottommost": "bottom", "leftmost": "left", "rightmost": "right"}
+    return " ".join(names[word] for word in description.name.split())
+
+
+def split_colours(thing: Description) -> list[Description]:
+    """The words "the red, green and blue blocks" are three kinds of thing, not one in three colours."""
+    if thing.quantity not in ("all", "each", "number") or len(thing.colours) <= 1 or thing.pattern or thing.material:
+        return [thing]
+    quantity = "one" if thing.quantity == "number" and thing.number == len(thing.colours) else thing.quantity
+    parts = [replace(thing, colours=(colour,), quantity=quantity, number=1) for colour in thing.colours]
+    return [replace(part, text=render(part)) for part in parts]

@@ -1,0 +1,281 @@
+"""resolve(): which things in a scene a description means; nothing at all when nothing fits."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
+
+from wonderful_team.core.pictures import Point
+from wonderful_team.offline.description import Description
+from wonderful_team.offline.vision.examples import alike
+from wonderful_team.offline.vision.kinds import is_kind_here, kind_score, named_score
+from wonderful_team.offline.vision.materials import material_score
+from wonderful_team.offline.vision.relations import pick_in_corner, pick_superlative, relation_score
+from wonderful_team.offline.vision.spots import free_spots
+from wonderful_team.offline.vision.things import Example, Look, Match, NotSeen, Scene, Thing
+
+FITS = 0.4
+"""Score from which a thing is taken to fit a description."""
+
+_SAME_SURFACE = 0.45
+"""Likeness from which two things have the same colour or texture."""
+
+_NEARLY_AS_ALIKE = 0.83
+"""Share of the best likeness of shapes from which another thing has that shape too."""
+
+NEAR_BEST = 0.75
+"""Share of the best score from which things like an example are compared with each other."""
+
+_WEIGHTS = {"colour": 0.7, "pattern": 0.5, "outline": 1.0, "size": 0.35}
+"""How much each aspect of an example counts (exponents of a weighted geometric mean)."""
+
+
+def resolve(scene: Scene, description: Description, examples: Mapping[str, Example]) -> list[Match]:
+    """Everything in a scene that fits a description, best first; [] when it is not here.
+
+    Args:
+        scene: What was seen.
+        description: What is meant.
+        examples: Studied example pictures by slot name.
+
+    Raises:
+        NotSeen: The description is like a picture that is not among the examples.
+    """
+    if description.noun == "area" and not _has_look(description):
+        return _spots(scene, description, examples)
+    matches = _fitting(scene, description, examples)
+    for related in description.related:
+        matches = _related(scene, matches, related.relation, related.to, examples)
+    if description.superlative is not None:
+        if description.like is not None and matches:
+            # "the taller {thing}": only what is really like it is compared.
+            top = max(match.score for match in matches)
+            matches = [match for match in matches if match.score >= NEAR_BEST * top]
+        corner = " " in description.name
+        matches = (
+            pick_in_corner(scene, matches, description.name)
+            if corner
+            else pick_superlative(scene, matches, description.superlative, description.ordinal)
+        )
+    matches.sort(key=lambda match: -match.score)
+    return _with_margins(matches)
+
+
+def suits(
+    thing: Thing, description: Description, examples: Mapping[str, Example], view_scale: float
+) -> tuple[float, dict[str, float]]:
+    """How well one thing by itself fits a description's looks (not its relations): score and parts, each 0 to 1."""
+    parts: dict[str, float] = {}
+    score = 1.0
+    if description.like is not None:
+        if description.like not in examples:
+            raise NotSeen(f"no example picture {description.like!r}; known: {', '.join(examples) or 'none'}")
+        like = alike(examples[description.like], thing, view_scale, description.like_only)
+        score *= example_score(like)
+        parts |= like
+    parts["kind"] = kind_score(thing, description)
+    score *= parts["kind"]
+    if description.name:
+        parts["name"] = named_score(thing, description)
+        score *= parts["name"]
+    if description.colours:
+        parts["words: colour"] = colour_fit(thing.look, description)
+        score *= parts["words: colour"]
+    if description.pattern is not None:
+        parts["words: pattern"] = pattern_fit(thing.look, description.pattern)
+        if not description.colours and description.pattern != "plain":
+            # A pattern named without a colour is black and white where there is a choice.
+            parts["words: pattern"] *= 0.6 + 0.4 * _colourless(thing.look)
+        score *= parts["words: pattern"]
+    if description.material is not None:
+        parts["words: material"] = float(np.clip(material_score(thing.look, description.material) / 0.6, 0, 1))
+        score *= parts["words: material"]
+    if description.shape is not None:
+        parts["words: shape"] = shape_fit(thing.look, description.shape)
+        score *= parts["words: shape"]
+    return float(score), parts
+
+
+def example_score(parts: Mapping[str, float]) -> float:
+    """One score from the aspects of an example: any aspect that is wholly wrong decides."""
+    weights = np.array([_WEIGHTS[name] for name in parts])
+    values = np.array([max(value, 1e-3) for value in parts.values()])
+    mean = float(np.exp((weights * np.log(values)).sum() / weights.sum()))
+    # A wrong colour is not outweighed by all the rest.
+    return float(mean * parts.get("colour", 1.0) ** 0.7)
+
+
+def colour_fit(look: Look, description: Description) -> float:
+    """How well the colours named in words fit what shows, 0 to 1; all must show."""
+    patterned = description.pattern not in (None, "plain") or description.material is not None
+    needed = {1: 0.24 if patterned else 0.45, 2: 0.24}.get(len(description.colours), 0.1)
+    scores, shown = [], 0.0
+    for name in description.colours:
+        share = sum(look.memberships[alias] * weight for alias, weight in _aliases(name, description.dark))
+        score = float(np.clip(share / needed, 0, 1))
+        shown += share
+        if len(description.colours) == 1:
+            score *= 0.75 + 0.25 * min(1.0, share / 0.9)
+            if description.pattern is None and description.material is None:
+                score *= 0.85 + 0.15 * look.patterns["plain"]
+            score *= _shade_fit(look, name, description.dark)
+        scores.append(score)
+    together = float(np.clip(shown / 0.7, 0, 1)) if len(description.colours) > 1 else 1.0
+    return float(min(scores) * together)
+
+
+_CONFUSED = ("swirled", "dotted", "mottled", "checkered")
+"""Patterns of patches that are hard to tell apart where only a little of them shows."""
+
+
+def pattern_fit(look: Look, pattern: str) -> float:
+    """How well a pattern named in words fits, 0 to 1; thin things show too little of a pattern to be sure of it."""
+    own = float(np.clip(look.patterns[pattern] / 0.45, 0, 1))
+    if pattern == "multicoloured":
+        return max(own, _rainbow(look))
+    if pattern not in _CONFUSED:
+        return own
+    thin = look.outline.hole_share > 0.2 or look.outline.solidity < 0.7
+    other = max(look.patterns[name] for name in _CONFUSED)
+    fit = max(own, (0.7 if thin else 0.5) * float(np.clip(other / 0.45, 0, 1)))
+    if pattern == "swirled":
+        return max(fit, _bands(look))
+    if pattern == "checkered" and look.surface.two_way > 0.4:
+        # A stroke of a letter shows one row of checks, which is a row of stripes.
+        fit = max(fit, 0.75 * float(np.clip(look.patterns["striped"] / 0.45, 0, 1)))
+    return fit
+
+
+def _bands(look: Look) -> float:
+    """How far broad bands of one colour run through white, as in a swirl of which a part shows, 0 to 1."""
+    white = float(np.clip((look.memberships["white"] - 0.25) / 0.08, 0, 1))
+    return 0.8 * white * float(np.clip((look.surface.two_tone - 0.88) / 0.06, 0, 1))
+
+
+def _rainbow(look: Look) -> float:
+    """How far a surface runs smoothly through several hues, 0 to 1."""
+    hues = sum(share > 0.08 for name, share in look.memberships.items() if name not in ("white", "grey", "black"))
+    return float(np.clip(hues - 2, 0, 1) * np.clip((14 - look.surface.contrast) / 2, 0, 1))
+
+
+def _colourless(look: Look) -> float:
+    """Share of white, grey and black."""
+    return look.memberships["white"] + look.memberships["grey"] + look.memberships["black"]
+
+
+def _aliases(name: str, dark: bool | None) -> tuple[tuple[str, float], ...]:
+    """Names under which a colour may show: dark orange looks brown, dark yellow olive, …"""
+    near: dict[str, tuple[tuple[str, float], ...]] = {
+        "orange": (("brown", 0.9 if dark else 0.2), ("red", 0.05)),
+        "yellow": (("olive", 0.9 if dark else 0.3), ("brown", 0.4 if dark else 0.0)),
+        "pink": (("purple", 0.7 if dark else 0.15), ("red", 0.4 if dark else 0.1)),
+        "purple": (("pink", 0.15), ("blue", 0.12)),
+        "red": (("brown", 0.5 if dark else 0.15), ("pink", 0.15)),
+        "cyan": (("blue", 0.2), ("green", 0.2)),
+        "blue": (("cyan", 0.2), ("purple", 0.1)),
+        "green": (("olive", 0.35), ("cyan", 0.2)),
+        "olive": (("green", 0.45), ("yellow", 0.4), ("brown", 0.35)),
+        "brown": (("orange", 0.5), ("red", 0.2), ("olive", 0.3)),
+        "grey": (("white", 0.25), ("black", 0.3)),
+        "white": (("grey", 0.35),),
+        "black": (("grey", 0.4),),
+    }
+    return ((name, 1.0), *near.get(name, ()))
+
+
+def _shade_fit(look: Look, name: str, dark: bool | None) -> float:
+    """How well light or dark fits: asked for, or a mild preference for neither when nothing was said."""
+    shares = [colour for colour in look.colours if colour.name == name] or list(look.colours[:1])
+    colour = shares[0]
+    renamed = colour.name != name
+    if dark is None:
+        return 1.0 - 0.15 * colour.dark - 0.05 * colour.light
+    if dark:
+        return 0.3 + 0.7 * max(colour.dark, 0.8 if renamed and colour.name in ("brown", "olive") else 0.0)
+    return 0.35 + 0.65 * max(colour.light, 0.5 * (1 - colour.dark))
+
+
+def shape_fit(look: Look, shape: str) -> float:
+    """How well a shape named in words fits, 0 to 1: its own fit, and not far behind the best shape."""
+    own, best = look.shapes[shape], max(look.shapes.values())
+    if best <= 0:
+        return 0.0
+    return float(np.clip((own - 0.2) / 0.4, 0, 1) * np.clip((own / best - 0.55) / 0.35, 0, 1))
+
+
+def _has_look(description: Description) -> bool:
+    return bool(
+        description.colours or description.pattern or description.material or description.shape or description.like
+    )
+
+
+def _fitting(scene: Scene, description: Description, examples: Mapping[str, Example]) -> list[Match]:
+    out = []
+    for thing in scene.things:
+        score, parts = suits(thing, description, examples, scene.view_scale)
+        if score < FITS or not is_kind_here(thing, description.noun, scene):
+            continue
+        why = f"{thing.look.words}: " + ", ".join(f"{name} {value:.2f}" for name, value in parts.items())
+        out.append(Match(thing, thing.box, _point_on(scene, thing), score, score, why, parts))
+    return out
+
+
+def _point_on(scene: Scene, thing: Thing) -> Point:
+    """A point on a thing; on an area with things on it, the best free place if there is one."""
+    if thing.flat and scene.on(thing):
+        room = free_spots(scene, inside=thing, radius_px=0.2 * thing.radius_px, count=1)
+        if room:
+            return room[0].point
+    return thing.steady_point()
+
+
+def _related(
+    scene: Scene, matches: list[Match], relation: str, to: tuple[Description, ...], examples: Mapping[str, Example]
+) -> list[Match]:
+    """Keep what stands in a relation to the best match of each description in `to`."""
+    anchors = []
+    for description in to:
+        found = [match for match in resolve(scene, description, examples) if match.thing is not None]
+        if not found:
+            return []
+        anchors.append(found)
+    rated: list[tuple[float, Match]] = []
+    for match in matches:
+        assert match.thing is not None
+        others = [next((a for a in found if a.thing is not match.thing), None) for found in anchors]
+        things = [other.thing for other in others if other is not None and other.thing is not None]
+        if len(things) == len(anchors):
+            rated.append((relation_score(relation, match.thing, things, scene), match))
+    least = _SAME_SURFACE if relation in ("same_colour", "same_pattern") else 0.3
+    if relation == "same_shape":
+        least = max(least, _NEARLY_AS_ALIKE * max((fit for fit, _ in rated), default=0.0))
+    return [
+        replace(match, score=match.score * fit, why=f"{match.why}, {relation} {fit:.2f}")
+        for fit, match in rated
+        if fit > least
+    ]
+
+
+def _spots(scene: Scene, description: Description, examples: Mapping[str, Example]) -> list[Match]:
+    """Free table for "an empty area" or "left of …"."""
+    anchors: list[tuple[str, list[Thing]]] = []
+    for related in description.related:
+        things = []
+        for to in related.to:
+            found = [match.thing for match in resolve(scene, to, examples) if match.thing is not None]
+            if not found:
+                return []
+            things.append(found[0])
+        anchors.append((related.relation, things))
+    return free_spots(scene, relations=anchors)
+
+
+def _with_margins(matches: list[Match]) -> list[Match]:
+    """Each match's lead over the best of the others (negative when behind)."""
+    out = []
+    for k, match in enumerate(matches):
+        rival = matches[1] if k == 0 and len(matches) > 1 else matches[0] if k else None
+        out.append(replace(match, margin=match.score - (rival.score if rival is not None else 0.0)))
+    return out

@@ -1,0 +1,213 @@
+"""From what stands out of the table to single things: joining their parts, splitting what touches or overlaps."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+
+from wonderful_team.core.geometry.arrays import Array
+from wonderful_team.offline.vision.outlines import filled
+from wonderful_team.offline.vision.overlaid import part_overlaid
+from wonderful_team.offline.vision.pieces import joined_pieces
+from wonderful_team.offline.vision.splitting import components, kernel, placed, split_by_colour, window
+from wonderful_team.offline.vision.table import Table
+from wonderful_team.offline.vision.things import lab_histogram
+
+LEAST_SHARE = 0.0006
+"""Smallest thing that counts, as a share of the picture's valid area."""
+
+_JUMP_M = 0.010
+"""A step in height that separates two things [m]."""
+
+
+@dataclass(frozen=True, eq=False)
+class Segment:
+    """One thing's pixels: a full working mask (H, W), bool, and whether it lies flat (None: unknown).
+
+    Attributes:
+        shows: Where table shows through its gaps, this is False, shape (H, W), bool; None when that is not known.
+    """
+
+    mask: Array
+    flat: bool | None
+    shows: Array | None = None
+
+
+def find_segments(lab: Array, valid: Array, table: Table) -> list[Segment]:
+    """Split what stands out into things.
+
+    Args:
+        lab: CIELAB, shape (H, W, 3).
+        valid: Pixels that show the view, shape (H, W), bool.
+        table: The table of the same picture.
+    """
+    least = max(24.0, LEAST_SHARE * float(valid.sum()))
+    if table.raised is not None:
+        found = _with_height(lab, table, least)
+    elif table.clean:
+        found = []
+        for patch in joined_pieces(lab, table.stands_out, least):
+            found += [
+                Segment(part, None, table.stands_out)
+                for part in part_overlaid(lab, fill_specks(close_ring(patch)), least)
+            ]
+    else:
+        found = []
+        for patch in _patches(table.stands_out, least):
+            found += [Segment(part, None) for part in split_by_colour(lab, patch, least)]
+    return [segment for segment in found if not _beyond_table(segment.mask, valid)]
+
+
+def _patches(mask: Array, least: float, *, fill: bool = True) -> list[Array]:
+    """Cleaned connected patches, true holes kept; gaps of a texture are filled where nothing measured them."""
+    tidy = cv2.morphologyEx(mask.astype(np.uint8), cv2.MORPH_CLOSE, kernel(3))
+    tidy = cv2.morphologyEx(tidy, cv2.MORPH_OPEN, kernel(3))
+    return [fill_specks(patch) if fill else patch for patch in components(tidy > 0, least)]
+
+
+def fill_specks(mask: Array) -> Array:
+    """Fill gaps inside a mask that belong to its texture: small ones, and many alike ones."""
+    view = window(mask)
+    whole = filled(mask[view])
+    gaps = whole & ~mask[view]
+    count, labels, stats, _ = cv2.connectedComponentsWithStats(gaps.astype(np.uint8), connectivity=4)
+    if count <= 1:
+        return mask
+    area = float(whole.sum())
+    sizes = stats[1:, cv2.CC_STAT_AREA].astype(float)
+    small = sizes < 0.022 * area
+    middling = (sizes >= 0.006 * area) & (sizes < 0.12 * area)
+    if middling.sum() >= 4:
+        small |= middling
+    keep = np.concatenate([[False], small])
+    return placed(mask[view] | keep[labels], view, mask.shape)
+
+
+def close_ring(mask: Array) -> Array:
+    """A frame whose bars do not quite meet, closed; any other mask as it is."""
+    view = window(mask, margin=6)
+    inside = mask[view]
+    closed = cv2.morphologyEx(inside.astype(np.uint8), cv2.MORPH_CLOSE, kernel(5)) > 0
+    if filled(closed).sum() < 1.3 * filled(inside).sum():
+        return mask
+    return placed(closed, view, mask.shape)
+
+
+def _beyond_table(mask: Array, valid: Array) -> bool:
+    """Whether a patch is the room round the table: large and reaching two or more sides of the view."""
+    rows, columns = np.flatnonzero(valid.any(axis=1)), np.flatnonzero(valid.any(axis=0))
+    y0, y1, x0, x1 = rows[0], rows[-1], columns[0], columns[-1]
+    sides = [
+        mask[y0 : y0 + 2].any(),
+        mask[y1 - 1 : y1 + 1].any(),
+        mask[:, x0 : x0 + 2].any(),
+        mask[:, x1 - 1 : x1 + 1].any(),
+    ]
+    share = mask.sum() / valid.sum()
+    return bool((sum(sides) >= 2 and share > 0.12) or (sum(sides) >= 1 and share > 0.35))
+
+
+def _with_height(lab: Array, table: Table, least: float) -> list[Segment]:
+    """Raised things by height, papers by colour; a paper also covers what lies on it."""
+    assert table.raised is not None
+    assert table.height_m is not None
+    rim = cv2.dilate(table.raised.astype(np.uint8), kernel(3)) > 0
+    solid = table.raised | (table.stands_out & rim)
+    raised: list[Array] = []
+    for patch in _patches(solid, least, fill=False):
+        view = window(patch)
+        pieces = _split_by_height(lab[view], patch[view], table.height_m[view], least)
+        raised += [patch] if len(pieces) == 1 else [placed(piece, view, patch.shape) for piece in pieces]
+    wide = cv2.dilate(table.raised.astype(np.uint8), kernel(5)) > 0
+    papers: list[Array] = []
+    wholes = [filled(thing) for thing in raised]
+    for patch in _patches(table.stands_out & ~wide, least):
+        host = next((k for k, whole in enumerate(wholes) if (patch & whole).sum() > 0.8 * patch.sum()), None)
+        if host is not None and not (patch & raised[host]).sum() > 0.5 * patch.sum():
+            # The floor inside walls belongs to the container.
+            joined = cv2.morphologyEx((raised[host] | patch).astype(np.uint8), cv2.MORPH_CLOSE, kernel(7)) > 0
+            raised[host] = fill_specks(joined & filled(raised[host]))
+            continue
+        grown = cv2.dilate(patch.astype(np.uint8), kernel(5)) > 0
+        papers.append(patch | (grown & table.stands_out & ~table.raised))
+    papers = _join_papers(lab, papers, raised)
+    out = [Segment(mask, False) for mask in raised]
+    for paper in papers:
+        for part in split_by_colour(lab, paper, least):
+            out.append(Segment(_under(part, raised), True))
+    return out
+
+
+def _under(paper: Array, raised: list[Array]) -> Array:
+    """A paper with the places that raised things hide filled in, where they lie within its convex outline."""
+    whole = filled(paper)
+    contours, _ = cv2.findContours(paper.astype(np.uint8), cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)
+    hull = np.zeros(paper.shape, np.uint8)
+    cv2.fillConvexPoly(hull, cv2.convexHull(np.concatenate(contours)), 1)
+    for thing in raised:
+        if (thing & (hull > 0)).any():
+            whole |= (cv2.dilate(thing.astype(np.uint8), kernel(5)) > 0) & (hull > 0)
+    return whole
+
+
+def _join_papers(lab: Array, papers: list[Array], raised: list[Array]) -> list[Array]:
+    """Join flat patches of one colour that a thing lying across them has cut apart."""
+    joined: list[Array] = []
+    colours: list[Array] = []
+    for paper in papers:
+        colour = np.median(lab[paper], axis=0)
+        for k, other in enumerate(joined):
+            if np.abs(colours[k] - colour).max() > 9:
+                continue
+            near = cv2.dilate(paper.astype(np.uint8), kernel(5)) > 0
+            far = cv2.dilate(other.astype(np.uint8), kernel(5)) > 0
+            if any((near & thing).any() and (far & thing).any() for thing in raised):
+                joined[k] = other | paper
+                break
+        else:
+            joined.append(paper)
+            colours.append(colour)
+    return joined
+
+
+def _split_by_height(lab: Array, patch: Array, height_m: Array, least: float) -> list[Array]:
+    """Cut a raised patch where its height jumps; every pixel goes to the nearest piece."""
+    height = np.nan_to_num(height_m).astype(np.float32)
+    size = kernel(3)
+    step = cv2.dilate(height, size) - cv2.erode(height, size)
+    core = patch & (step < _JUMP_M)
+    pieces = components(core, max(least * 0.5, 12.0))
+    if len(pieces) < 2:
+        return [patch]
+    pieces = _same_level(lab, pieces, height)
+    if len(pieces) < 2:
+        return [patch]
+    markers = np.zeros(patch.shape, np.int32)
+    for number, piece in enumerate(pieces, start=1):
+        markers[piece] = number
+    _, labels = cv2.distanceTransformWithLabels(
+        (markers == 0).astype(np.uint8), cv2.DIST_L2, 5, labelType=cv2.DIST_LABEL_PIXEL
+    )
+    owner = np.zeros(int(labels.max()) + 1, np.int32)
+    owner[labels[markers > 0]] = markers[markers > 0]
+    nearest = owner[labels]
+    return [patch & (nearest == number) for number in range(1, len(pieces) + 1)]
+
+
+def _same_level(lab: Array, pieces: list[Array], height: Array) -> list[Array]:
+    """Put together pieces of one thing that a narrow neck or a lower floor parts: same height, same colours."""
+    out: list[Array] = []
+    for piece in pieces:
+        level, look = float(np.median(height[piece])), lab_histogram(lab[piece])
+        near = cv2.dilate(piece.astype(np.uint8), kernel(7)) > 0
+        for k, other in enumerate(out):
+            if abs(float(np.median(height[other])) - level) > 0.006 or look @ lab_histogram(lab[other]) < 0.5:
+                continue
+            if (near & other).any() or (filled(piece) & other).sum() > 0.5 * other.sum():
+                out[k] = other | piece
+                break
+        else:
+            out.append(piece)
+    return out

@@ -1,0 +1,193 @@
+"""DraftPlan, RevisePlan, ExtractTargets, WriteSteps, ReviewPlan and ReviewSteps."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from wonderful_team.contracts import (
+    ClarificationDraft,
+    DraftPlan,
+    ExtractTargets,
+    PlanDraft,
+    PlanReview,
+    PlanRevision,
+    ReviewPlan,
+    ReviewSteps,
+    RevisePlan,
+    ShownSlot,
+    ShownTask,
+    StepList,
+    SubgoalTargets,
+    TargetList,
+    WriteSteps,
+    step_list_type,
+)
+from wonderful_team.contracts.review_plan import DoubtDraft
+from wonderful_team.core.actions import Step, places_of
+from wonderful_team.core.values import Subgoal, Target
+from wonderful_team.errors import UnsupportedQuestion
+from wonderful_team.simulated.context import Context
+from wonderful_team.simulated.draft import Written, key_of
+
+BLIND = "one of the pictures of this task shows nothing that was ever there"
+
+
+def answer_draft(context: Context, question: DraftPlan) -> PlanDraft:
+    """The plan that truth asks for, when every picture that shows the task is true."""
+    task = context.task(question.task)
+    if task is None:
+        return blind_plan()
+    return plan_draft(task.plan, question.with_targets)
+
+
+def plan_draft(plan: Written, with_targets: bool) -> PlanDraft:
+    """A written plan as an answer."""
+    subgoals = [item if with_targets else item.model_copy(update={"targets": []}) for item in plan.subgoals]
+    targets = plan.targets if with_targets else []
+    reasoning = (
+        f"{len(subgoals)} moves lead from this table to what is asked." if subgoals else "Nothing is left to do."
+    )
+    return PlanDraft(reasoning=reasoning, subgoals=subgoals, targets=targets, mode="one_step", clarification=None)
+
+
+def blind_plan() -> PlanDraft:
+    """What one says who sees nothing to plan from."""
+    asked = ClarificationDraft(
+        question=f"Which table and which pictures are meant? As they are shown, {BLIND}.", choices=[]
+    )
+    return PlanDraft(reasoning=BLIND, subgoals=[], targets=[], mode="one_step", clarification=asked)
+
+
+def answer_revise(context: Context, question: RevisePlan) -> PlanRevision:
+    """Keep a plan that is right; write another's anew."""
+    task = context.task(question.task)
+    if task is None:
+        said = f"I cannot judge it: {BLIND}."
+        return PlanRevision(reasoning=said, decision="keep", answer=said, plan=None)
+    if task.right.is_plan(question.subgoals):
+        said = "The plan leads to what is asked."
+        return PlanRevision(reasoning=said, decision="keep", answer=said, plan=None)
+    said = "The plan is written anew."
+    draft = plan_draft(task.right, question.with_targets)
+    return PlanRevision(reasoning=said, decision="revise", answer=said, plan=draft)
+
+
+def answer_extract(context: Context, question: ExtractTargets) -> TargetList:
+    """The targets of its own plan.
+
+    Raises:
+        UnsupportedQuestion: The plan is another's, or the pictures do not show the task.
+    """
+    plan = _own(context, question.task, question.subgoals, "ExtractTargets")
+    needs = [
+        SubgoalTargets(subgoal=subgoal.id, targets=draft.targets)
+        for subgoal, draft in zip(question.subgoals, plan.subgoals, strict=True)
+    ]
+    return TargetList(reasoning="What each subgoal moves, and where to.", targets=plan.targets, needs=needs)
+
+
+def answer_write_steps(context: Context, question: WriteSteps) -> StepList:
+    """One step per subgoal of its own plan.
+
+    Raises:
+        UnsupportedQuestion: The plan is another's, or the pictures do not show the task.
+    """
+    plan = _own(context, question.task, question.subgoals, "WriteSteps")
+    steps = _steps(plan, question.subgoals, question.targets)
+    answer: StepList = step_list_type(question.step_kinds).model_validate(
+        {"reasoning": "One step per subgoal, in the plan's order.", "steps": steps}
+    )
+    return answer
+
+
+def _own(context: Context, shown: ShownTask, subgoals: Sequence[Subgoal], contract: str) -> Written:
+    task = context.task(shown)
+    if task is None:
+        raise UnsupportedQuestion(context.name, contract, BLIND)
+    plan = task.plan_of(subgoals)
+    if plan is None:
+        raise UnsupportedQuestion(context.name, contract, "it goes on with plans of its own only")
+    return plan
+
+
+def _steps(plan: Written, subgoals: Sequence[Subgoal], targets: Sequence[Target]) -> list[dict[str, object]]:
+    """The plan's steps with the ids that the question uses."""
+    asked = {key_of(target): target.id for target in targets}
+    ids = {draft.id: asked.get(key_of(draft.to_target()), draft.id) for draft in plan.targets}
+    own = {draft.id: subgoal.id for draft, subgoal in zip(plan.subgoals, subgoals, strict=True)}
+
+    def renamed(value: object) -> object:
+        if isinstance(value, dict):
+            return {**value, "target": ids[value["target"]]}
+        return value
+
+    steps = []
+    for step in plan.steps:
+        named = {key: renamed(value) for key, value in step.items()}
+        named["subgoal"] = own[step["subgoal"]]
+        if "pick" in named:
+            named["pick"] = ids[step["pick"]]
+        steps.append(named)
+    return steps
+
+
+def answer_review(context: Context, question: ReviewPlan) -> PlanReview:
+    """Approve its own plan, and another's that names everything that has to be moved and where to."""
+    task = context.task(question.task)
+    about = question.under_check or (question.subgoals[0].id if question.subgoals else "plan")
+    if task is None:
+        return doubt(about, "ambiguity", f"Which table is this? As it is shown, {BLIND}.")
+    if task.right.is_plan(question.subgoals):
+        return approved("The plan leads to what is asked.")
+    if task.plan.is_plan(question.subgoals):
+        text = "Does this plan really lead to what is asked, and in this order?"
+        known = any(text in line for line in question.checked)
+        if known or (context.luck is not None and context.luck.draws(context.profile.overlooks, "plan")):
+            return approved("Nothing in it looks wrong.")
+        return doubt(about, "missing_prerequisite", text)
+    if not question.targets:
+        return approved("Its targets are not named yet.")
+    examples = question.task.slots
+    named = {context.meaning(target, task.main, _like(examples, target)) for target in question.targets}
+    things = {meaning.thing for meaning in named if meaning is not None}
+    for draft in task.right.targets:
+        thing = task.right.meanings[draft.id].thing
+        if "pick" in draft.use and thing not in things:
+            text = f"Must the {draft.words} not be moved?"
+            if not any(text in line for line in question.checked):
+                return doubt(about, "missing_prerequisite", text)
+    return approved("Everything that has to be moved is named.")
+
+
+def answer_review_steps(context: Context, question: ReviewSteps) -> PlanReview:
+    """Approve steps that move the right things in the right order; doubt the first that differs."""
+    task = context.task(question.task)
+    if task is None or context.see(question.overview) is None:
+        return doubt("1", "ambiguity", f"Where do these steps lead? As it is shown, {BLIND}.")
+    plan = task.plan_of(question.subgoals)
+    if plan is None:
+        return approved("The steps belong to a plan of another's; nothing in them is impossible.")
+    wanted = step_list_type(tuple(dict.fromkeys(step.kind for step in question.steps)) or ("pick_place",))
+    right: tuple[Step, ...] = wanted.model_validate(
+        {"reasoning": "", "steps": _steps(plan, question.subgoals, question.targets)}
+    ).to_steps()
+    for number, (step, own) in enumerate(zip(question.steps, right, strict=False), start=1):
+        text = f"Step {number} does something else than its subgoal asks; is it right?"
+        if step != own and not any(text in line for line in question.checked):
+            return doubt(str(number), "wrong_target" if places_of(step) != places_of(own) else "needless_step", text)
+    return approved("The steps do what the subgoals ask.")
+
+
+def _like(slots: Sequence[ShownSlot], target: Target) -> tuple[ShownSlot, ...]:
+    return tuple(slot for slot in slots if slot.name in target.like)
+
+
+def approved(reasoning: str) -> PlanReview:
+    """An approval."""
+    return PlanReview(reasoning=reasoning, approved=True, doubt=None)
+
+
+def doubt(about: str, kind: str, question: str) -> PlanReview:
+    """One doubt."""
+    raised = DoubtDraft.model_validate({"about": about, "kind": kind, "question": question})
+    return PlanReview(reasoning=question, approved=False, doubt=raised)

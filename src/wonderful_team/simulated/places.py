@@ -1,0 +1,72 @@
+"""Boxes and points of what a target means, in pixels of the picture that is shown, from what shows there."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from wonderful_team.contracts import BoxPx, PointPx
+from wonderful_team.core.geometry import Box
+from wonderful_team.core.pictures import Picture, Point
+from wonderful_team.core.values import PointRole
+from wonderful_team.simulated.draft import Meaning
+from wonderful_team.simulated.seeing import Seen
+
+
+@dataclass(frozen=True)
+class Place:
+    """A target in a picture.
+
+    Attributes:
+        box: Tight round what shows of it, or round an area [picture px].
+        whole: Nothing of it is cut off by the picture's edge.
+    """
+
+    meaning: Meaning
+    box: Box
+    whole: bool = True
+
+
+def place_of(meaning: Meaning, seen: Seen) -> Place | None:
+    """Where a target is; None when it does not show in this picture."""
+    if meaning.thing is not None:
+        box = seen.box(meaning.thing)
+        if box is None:
+            return None
+        whole = seen.sight.masks[meaning.thing].sum() == seen.count(meaning.thing)
+        return Place(meaning, box, bool(whole))
+    if meaning.at_m is None:
+        return None
+    x, y = meaning.at_m
+    half = meaning.size_m / 2
+    corners = [seen.project(np.array([x + dx, y + dy, 0.0])) for dx in (-half, half) for dy in (-half, half)]
+    centre = seen.project(np.array([x, y, 0.0]))
+    if centre is None or not seen.inside(centre):
+        return None
+    box = Box.bounding([corner for corner in corners if corner is not None])
+    shown = box.intersection(seen.picture.frame.valid)
+    return None if shown is None else Place(meaning, shown, shown == box)
+
+
+def point_of(place: Place, role: PointRole, seen: Seen) -> Point:
+    """The action point for a role [picture px]."""
+    meaning = place.meaning
+    if meaning.thing is not None:
+        point = seen.centre(meaning.thing) if role in ("place", "push_end") else seen.grasp(meaning.thing)
+        return point if point is not None and seen.inside(point) else place.box.centre
+    assert meaning.at_m is not None  # place_of gives no place without it
+    point = seen.project(np.array([*meaning.at_m, 0.0]))
+    return place.box.centre if point is None else point
+
+
+def box_px(box: Box, picture: Picture) -> BoxPx:
+    """A box as an answer, cut at the picture's edges."""
+    inside = box.intersection(picture.frame.whole_box) or box
+    return BoxPx(x0=inside.x0, y0=inside.y0, x1=inside.x1, y1=inside.y1)
+
+
+def point_px(point: Point, picture: Picture) -> PointPx:
+    """A point as an answer, kept inside the picture."""
+    width, height = picture.size_px
+    return PointPx(x=min(max(point[0], 0.0), float(width)), y=min(max(point[1], 0.0), float(height)))

@@ -95,7 +95,7 @@ class Scene:
 
     def read(self, text: str) -> Any:
         """A text read with the scene's pictures."""
-        from wonderful_team.offline.answers.instruction import read_task
+        from wonderful_team.offline.goals.instruction import read_task
 
         names = set(re.findall(r"\{([^{}]+)\}", text))
         slots = tuple(slot for slot in self.task.slots if slot.name in names)

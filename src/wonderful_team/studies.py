@@ -17,10 +17,11 @@ from wonderful_team.evals.perturb import IN_PICTURE, read_tier, read_tiers
 from wonderful_team.evals.photos import count_photos
 from wonderful_team.evals.plan import OFFLINE, WHOLE, StudyPlan, of_photos, read_shard, split_names
 from wonderful_team.evals.store import Store
-from wonderful_team.evals.study import Finish, Report, run_study, started_by_spawn
+from wonderful_team.evals.study import Finish, run_study, started_by_spawn
 from wonderful_team.evals.suites import PARTITIONS, Suite, all_suites, read_seeds, resolve
 from wonderful_team.evals.summary import Summary, summarise
 from wonderful_team.evals.trials import Condition, RunSettings, SpendingCaps, TrialResult, TrialSpec
+from wonderful_team.evals.watch import Report
 from wonderful_team.evals.workers import run_safely
 from wonderful_team.loading import is_file_name
 from wonderful_team.models.cache import CacheMode

@@ -10,7 +10,8 @@ from tests.evals import runners
 from tests.evals.runners import toy_plan
 from wonderful_team.evals import on_ray
 from wonderful_team.evals.store import Store
-from wonderful_team.evals.study import Watch, run_study
+from wonderful_team.evals.study import run_study
+from wonderful_team.evals.watch import Watch
 from wonderful_team.evals.workers import Work
 
 ROOT = Path(__file__).parents[2]

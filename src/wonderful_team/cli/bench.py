@@ -17,7 +17,7 @@ from wonderful_team.cli.output import finish
 from wonderful_team.interrupts import as_keyboard, exit_code
 
 if TYPE_CHECKING:
-    from wonderful_team.evals.study import Standing
+    from wonderful_team.evals.watch import Standing
 
 BUDGET = 5
 QUIET_S = 10.0

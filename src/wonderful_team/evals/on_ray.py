@@ -17,7 +17,7 @@ from wonderful_team.evals.trials import RunSettings, TrialResult, TrialRunner, T
 from wonderful_team.evals.workers import POLL_S, Work, run_safely, settle, tighter
 
 if TYPE_CHECKING:
-    from wonderful_team.evals.study import Watch
+    from wonderful_team.evals.watch import Watch
 
 LOCAL = "local"
 MAX_TRIES = 3

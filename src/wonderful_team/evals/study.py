@@ -10,7 +10,7 @@ import socket
 import sys
 import time
 import types
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -20,44 +20,13 @@ from wonderful_team.core.text import counted
 from wonderful_team.errors import ConfigError
 from wonderful_team.evals.limits import ProcessLimiter
 from wonderful_team.evals.plan import StudyPlan
-from wonderful_team.evals.spending import CapReached, Spending
 from wonderful_team.evals.store import Store
 from wonderful_team.evals.trials import RunSettings, SpendingCaps, TrialRunner
+from wonderful_team.evals.watch import Report, Standing, Watch
 from wonderful_team.evals.workers import POLL_S, Work, work_until_done, worker_main
 
 STARTS_THAT_FAIL = 3
 _THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
-
-
-@dataclass(frozen=True)
-class Standing:
-    """Where a study stands.
-
-    Attributes:
-        total, done: Trials asked for and ended.
-        here: Trials that ended since this command began.
-        outcomes: How many ended with each outcome.
-    """
-
-    total: int
-    done: int
-    here: int
-    outcomes: dict[str, int]
-    spent: Spending
-    seconds: float
-
-    @property
-    def seconds_left(self) -> float | None:
-        """At the rate so far; None before anything ended."""
-        return (self.total - self.done) * self.seconds / self.here if self.here else None
-
-    def line(self) -> str:
-        """For a terminal."""
-        rate = f"{self.here / self.seconds:.2g} trials/s" if self.seconds else ""
-        counts = "  ".join(f"{name} {count}" for name, count in sorted(self.outcomes.items(), reverse=True))
-        money = f"{self.spent.usd:.2f} USD" if not self.spent.unpriced else f"{self.spent.usd:.2f} USD + unknown"
-        left = "" if self.seconds_left is None else f"  {_duration(self.seconds_left)} left"
-        return f"{self.done}/{self.total}  {counts}  {counted(self.spent.calls, 'call')}  {money}  {rate}{left}"
 
 
 @dataclass(frozen=True)
@@ -66,10 +35,6 @@ class Finish:
 
     standing: Standing
     why: str = ""
-
-
-Report = Callable[[str, Standing | None], None]
-"""Told a message, or "" with where the study stands."""
 
 
 def run_study(
@@ -139,52 +104,6 @@ def run_study(
                 None,
             )
         return Finish(watch.standing(), watch.why(caps, deadline_s))
-
-
-class Watch:
-    """Looks at a store and tells how far a study is."""
-
-    def __init__(self, store: Store, study: str, report: Report) -> None:
-        self.store, self.study, self.report = store, study, report
-        self._began = time.monotonic()
-        self._total = store.count_all(study)
-        self._before = store.count(study, "done")
-        self._told = self._began
-
-    def standing(self) -> Standing:
-        done = self.store.count(self.study, "done")
-        return Standing(
-            self._total,
-            done,
-            done - self._before,
-            self.store.outcomes(self.study),
-            self.store.spending(self.study),
-            time.monotonic() - self._began,
-        )
-
-    def look(self) -> bool:
-        """Report at most once a second."""
-        if time.monotonic() - self._told >= 1.0:
-            self._told = time.monotonic()
-            self.report("", self.standing())
-        return True
-
-    @property
-    def missing(self) -> int:
-        """Trials that have not ended."""
-        return self._total - self.store.count(self.study, "done")
-
-    def why(self, caps: SpendingCaps, deadline_s: float | None) -> str:
-        """Why trials are missing; "" when none is."""
-        if not self.missing:
-            return ""
-        try:
-            self.store.check_caps(self.study, caps)
-        except CapReached as error:
-            return str(error)
-        if deadline_s is not None and time.time() >= deadline_s:
-            return f"the study's cap of {caps.seconds:g} seconds is reached"
-        return f"not ended yet: {counted(self.missing, 'trial')}; the same command goes on with them"
 
 
 def _run_processes(work: Work, watch: Watch, jobs: int, calls_at_once: int | None, needs_main: bool) -> None:
@@ -273,9 +192,3 @@ def _one_thread_each() -> Iterator[None]:
                 os.environ.pop(name, None)
             else:
                 os.environ[name] = value
-
-
-def _duration(seconds: float) -> str:
-    if seconds < 90:
-        return f"{seconds:.0f} s"
-    return f"{seconds / 60:.0f} min" if seconds < 5400 else f"{seconds / 3600:.1f} h"

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from wonderful_team.errors import ConfigError, UnknownNameError
 from wonderful_team.models.error_profile import QUANTILES, Count, Distribution, ErrorProfile
+from wonderful_team.models.profiles import load_profile, profile_names
 
 SIGMAS_OF_MEDIAN = 0.6745
 """Half of all values of a normal distribution lie within this many standard deviations."""
@@ -69,8 +70,6 @@ def profile_named(name: str) -> Profile:
     """
     if name in PROFILES:
         return PROFILES[name]
-    from wonderful_team.models.profiles import load_profile, profile_names
-
     saved = profile_names()
     if name not in saved:
         raise UnknownNameError("simulated profile", name, [*PROFILES, *saved])

@@ -34,7 +34,7 @@ from wonderful_team.offline.answers.crops import (
     answer_move_box,
     answer_presence,
 )
-from wonderful_team.offline.answers.drafting import answer_draft, answer_extract, answer_revise
+from wonderful_team.offline.answers.drafting import answer_draft, answer_extract
 from wonderful_team.offline.answers.grounding import (
     answer_choose_mark,
     answer_give_box,
@@ -45,6 +45,7 @@ from wonderful_team.offline.answers.outcome import answer_outcome, answer_replan
 from wonderful_team.offline.answers.paths import answer_review_path
 from wonderful_team.offline.answers.remembering import answer_remember
 from wonderful_team.offline.answers.reviewing import answer_review
+from wonderful_team.offline.answers.revising import answer_revise
 from wonderful_team.offline.answers.step_review import answer_review_steps
 from wonderful_team.offline.answers.steps import answer_write_steps
 

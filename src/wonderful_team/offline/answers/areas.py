@@ -11,8 +11,8 @@ from wonderful_team.core.geometry import Box
 from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.pictures import Picture, Point
 from wonderful_team.images.colours import to_lab
-from wonderful_team.offline.answers.eyes import eyes_of
 from wonderful_team.offline.description import Description
+from wonderful_team.offline.eyes import eyes_of
 from wonderful_team.offline.vision import BoxFit, Scene, free_spots, see
 from wonderful_team.offline.vision.scene import shrink, working_zoom
 from wonderful_team.offline.vision.table import find_table

@@ -25,8 +25,8 @@ from wonderful_team.core.geometry import Box
 from wonderful_team.core.pictures import BoxMark, Picture, Point
 from wonderful_team.core.values import Target
 from wonderful_team.offline.answers.areas import judge_area, judge_place, nearest_free
-from wonderful_team.offline.answers.eyes import examples_of, eyes_of, is_free_area, shape_alone, target_description
 from wonderful_team.offline.answers.finding import middle_of, push_goal
+from wonderful_team.offline.eyes import examples_of, eyes_of, is_free_area, shape_alone, target_description
 from wonderful_team.offline.vision import BoxFit, fit_box, see, strip_presence
 
 SAME_SIZE = 0.2

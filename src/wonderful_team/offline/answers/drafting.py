@@ -11,8 +11,6 @@ from wonderful_team.contracts import (
     DraftPlan,
     ExtractTargets,
     PlanDraft,
-    PlanRevision,
-    RevisePlan,
     SubgoalDraft,
     SubgoalTargets,
     TargetDraft,
@@ -21,14 +19,16 @@ from wonderful_team.contracts import (
 from wonderful_team.contracts.shown import ShownTask
 from wonderful_team.core.values import PointRole
 from wonderful_team.errors import NotUnderstoodError
-from wonderful_team.offline.answers.aims import Aim, Aims, derive
-from wonderful_team.offline.answers.eyes import Eyes, eyes_of_task, is_shown_alone, side_words, told_apart
-from wonderful_team.offline.answers.instruction import read_task
-from wonderful_team.offline.answers.sweeping import place_words
-from wonderful_team.offline.answers.sweeps import way_places
 from wonderful_team.offline.description import Description
+from wonderful_team.offline.eyes import Eyes, eyes_of_task, is_shown_alone, side_words, told_apart
+from wonderful_team.offline.goals.aims import Aim, Aims
+from wonderful_team.offline.goals.clearing import cleared
+from wonderful_team.offline.goals.deriving import derive
+from wonderful_team.offline.goals.instruction import read_task
+from wonderful_team.offline.goals.sweeps import way_places
 from wonderful_team.offline.language import describe, render, try_understand, understand
 from wonderful_team.offline.language.wording import relation_words
+from wonderful_team.offline.pushing.sweeping import place_words
 
 _SIDE_WORDS = {"left": "to the left of", "right": "to the right of", "above": "above", "below": "below",
                "near": "next to", "in": "into", "on": "onto"}  # fmt: skip
@@ -167,22 +167,6 @@ def draft(task: ShownTask, with_targets: bool, advice: Sequence[str] = ()) -> tu
     return write_plan(result.aims, task.slot_names, with_targets, reasoning), result
 
 
-def cleared(aims: Sequence[Aim], eyes: Eyes) -> list[Aim]:
-    """The aims, with things that lie on what is to be moved brought away first."""
-    from wonderful_team.offline.answers.clearing import obstacles
-
-    done: list[Aim] = []
-    shift: dict[int, int] = {}
-    for position, aim in enumerate(aims):
-        firsts = []
-        for away in obstacles(aim, [*done, *aims[position + 1 :]], eyes):
-            firsts.append(len(done))
-            done.append(away)
-        shift[position] = len(done)
-        done.append(replace(aim, after=tuple(sorted({shift[index] for index in aim.after} | set(firsts)))))
-    return done
-
-
 def _reasoning(used: Sequence[str], result: Aims, eyes: Eyes) -> str:
     words = ", ".join(word for word in dict.fromkeys(used) if word not in (",", "and", "."))
     text = f"Words used: {words}. "
@@ -196,28 +180,6 @@ def _reasoning(used: Sequence[str], result: Aims, eyes: Eyes) -> str:
 
 def answer_draft(question: DraftPlan) -> PlanDraft:
     return draft(question.task, question.with_targets, question.advice)[0]
-
-
-def answer_revise(question: RevisePlan) -> PlanRevision:
-    """Change the plan where the doubt is right, else say why it stands."""
-    from wonderful_team.offline.answers.reviewing import findings
-
-    found = findings(question.task, question.subgoals, question.targets, question.step_kinds)
-    concerned = [item for item in found if item.about == question.doubt.about] or found
-    if not concerned:
-        return PlanRevision(
-            reasoning=f"Derived again from the instruction and the picture, nothing in {question.doubt.about} is amiss.",
-            decision="keep",
-            answer=f"{question.doubt.about} follows from the instruction and the picture; the plan stands.",
-            plan=None,
-        )
-    plan, _ = draft(question.task, question.with_targets)
-    return PlanRevision(
-        reasoning=f"The doubt is right: {concerned[0].question}",
-        decision="revise",
-        answer=f"You are right: {concerned[0].question} The plan was written anew.",
-        plan=plan,
-    )
 
 
 def answer_extract(question: ExtractTargets) -> TargetList:

@@ -10,8 +10,8 @@ import numpy as np
 from wonderful_team.core.geometry import Box
 from wonderful_team.core.pictures import Picture, Point, PointMark
 from wonderful_team.core.values import PointRole, Target
-from wonderful_team.offline.answers.eyes import Eyes, is_free_area, target_description
 from wonderful_team.offline.description import Description
+from wonderful_team.offline.eyes import Eyes, is_free_area, target_description
 from wonderful_team.offline.language import try_understand
 from wonderful_team.offline.vision import Match, Scene, Thing, free_spots
 

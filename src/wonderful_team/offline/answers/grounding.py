@@ -23,7 +23,6 @@ from wonderful_team.contracts import (
 from wonderful_team.core.geometry import Box
 from wonderful_team.core.pictures import Picture, Point
 from wonderful_team.core.values import PointRole, Target
-from wonderful_team.offline.answers.eyes import Eyes, eyes_of
 from wonderful_team.offline.answers.finding import (
     Found,
     act_at,
@@ -35,6 +34,7 @@ from wonderful_team.offline.answers.finding import (
     untried,
     varied,
 )
+from wonderful_team.offline.eyes import Eyes, eyes_of
 
 YIELDS = 0.75
 """A target gives way to another on the same thing when its next best match scores at least this share."""

@@ -9,16 +9,17 @@ from wonderful_team.core.geometry import Box, Frame
 from wonderful_team.core.pictures import BoxMark, Picture
 from wonderful_team.core.values import Target
 from wonderful_team.errors import NotUnderstoodError
-from wonderful_team.offline.answers.aims import Aim, Named, already, derive
-from wonderful_team.offline.answers.eyes import Eyes, eyes_of, eyes_of_task
-from wonderful_team.offline.answers.instruction import read_task
 from wonderful_team.offline.answers.roles import Task, tasks_of
-from wonderful_team.offline.answers.sweeping import swept
-from wonderful_team.offline.answers.sweeps import sweep_by_numbers
-from wonderful_team.offline.answers.turning import turned_deg
 from wonderful_team.offline.description import Description
+from wonderful_team.offline.eyes import Eyes, eyes_of, eyes_of_task
+from wonderful_team.offline.goals.aims import Aim, Named
+from wonderful_team.offline.goals.deriving import already, derive
+from wonderful_team.offline.goals.instruction import read_task
+from wonderful_team.offline.goals.sweeps import sweep_by_numbers
+from wonderful_team.offline.pushing.sweeping import swept
 from wonderful_team.offline.vision import Thing, strip_presence
 from wonderful_team.offline.vision.things import covers
+from wonderful_team.offline.vision.turning import turned_deg
 
 ALIKE = 0.55
 """Likeness of colours from which a thing after may be the thing before (0 to 1)."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from wonderful_team.contracts import PathReview, ReviewPath
 from wonderful_team.core.geometry import Box
 from wonderful_team.core.pictures import BoxMark, PathMark, Point
-from wonderful_team.offline.answers.eyes import eyes_of
+from wonderful_team.offline.eyes import eyes_of
 from wonderful_team.offline.language import try_understand
 
 NEAR = 1.6

@@ -13,10 +13,12 @@ from wonderful_team.contracts import DoubtDraft, PlanReview, ReviewPlan
 from wonderful_team.contracts.shown import ShownTask
 from wonderful_team.core.values import Subgoal, Target
 from wonderful_team.errors import NotUnderstoodError
-from wonderful_team.offline.answers.aims import Aim, Aims, Named, derive
-from wonderful_team.offline.answers.drafting import aim_text, cleared
-from wonderful_team.offline.answers.eyes import Eyes, eyes_of_task, target_description
-from wonderful_team.offline.answers.instruction import read_task
+from wonderful_team.offline.answers.drafting import aim_text
+from wonderful_team.offline.eyes import Eyes, eyes_of_task, target_description
+from wonderful_team.offline.goals.aims import Aim, Aims, Named
+from wonderful_team.offline.goals.clearing import cleared
+from wonderful_team.offline.goals.deriving import derive
+from wonderful_team.offline.goals.instruction import read_task
 from wonderful_team.offline.language import try_understand
 
 

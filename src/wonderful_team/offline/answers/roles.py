@@ -7,9 +7,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from wonderful_team.core.values import Subgoal, Target
-from wonderful_team.offline.answers.aims import Aim, Named, derive
-from wonderful_team.offline.answers.eyes import Eyes
 from wonderful_team.offline.answers.reviewing import named
+from wonderful_team.offline.eyes import Eyes
+from wonderful_team.offline.goals.aims import Aim, Named
+from wonderful_team.offline.goals.deriving import derive
 from wonderful_team.offline.language import try_understand
 
 TO_MOVE = frozenset(("pick", "grasp", "push_start"))

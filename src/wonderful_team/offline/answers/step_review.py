@@ -22,10 +22,10 @@ from wonderful_team.core.actions import (
 from wonderful_team.core.geometry import Box
 from wonderful_team.core.pictures import BoxMark, PathMark, Picture
 from wonderful_team.core.values import Subgoal
-from wonderful_team.offline.answers.eyes import Eyes, eyes_of, eyes_of_task
 from wonderful_team.offline.answers.reviewing import named
 from wonderful_team.offline.answers.roles import Task, tasks_of
 from wonderful_team.offline.answers.steps import place_of
+from wonderful_team.offline.eyes import Eyes, eyes_of, eyes_of_task
 
 SAME_ANGLE_DEG = 0.5
 """Turns closer than this are the same [degrees]."""

@@ -8,8 +8,8 @@ from wonderful_team.contracts import StepList, WriteSteps, step_list_type
 from wonderful_team.core.actions import SIDES, Side
 from wonderful_team.core.values import Subgoal
 from wonderful_team.errors import NotUnderstoodError, UnsupportedQuestion
-from wonderful_team.offline.answers.eyes import Eyes, eyes_of_task
 from wonderful_team.offline.answers.roles import Task, tasks_of
+from wonderful_team.offline.eyes import Eyes, eyes_of_task
 from wonderful_team.offline.vision import Thing
 
 SAME_ANGLE_DEG = 0.5

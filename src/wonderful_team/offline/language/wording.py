@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from wonderful_team.offline.description import Description, Related
+from wonderful_team.offline.language.vocabulary import plural
 
 _RELATION_WORDS = {"left_of": "left of", "right_of": "right of", "above": "above", "below": "below", "near": "next to",
                    "far_from": "far from", "on": "on top of", "inside": "inside", "between": "between",
@@ -93,8 +94,6 @@ def _head(description: Description) -> list[str]:
 
 
 def _many(noun: str) -> str:
-    from wonderful_team.offline.language.vocabulary import plural
-
     return plural(noun)
 
 

@@ -11,9 +11,9 @@ from typing import Any, TypeVar
 import numpy as np
 
 from wonderful_team.core.geometry.arrays import Array
-from wonderful_team.sims.tabletop.drawing import Drawn
 from wonderful_team.sims.tabletop.engine import find_context, mj
 from wonderful_team.sims.tabletop.model import FLOOR_GROUP, TABLE_GROUP, THING_GROUP, WHITE_GROUP, BuiltModel
+from wonderful_team.sims.tabletop.renderer import Drawn
 
 T = TypeVar("T")
 

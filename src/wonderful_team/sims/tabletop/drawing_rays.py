@@ -10,7 +10,6 @@ import numpy as np
 from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.sims.tabletop import textures
 from wonderful_team.sims.tabletop.cameras import Lens
-from wonderful_team.sims.tabletop.drawing import Drawn
 from wonderful_team.sims.tabletop.engine import mj
 from wonderful_team.sims.tabletop.model import (
     FLOOR_GROUP,
@@ -20,6 +19,7 @@ from wonderful_team.sims.tabletop.model import (
     THING_GROUP,
     BuiltModel,
 )
+from wonderful_team.sims.tabletop.renderer import Drawn
 
 FAR_M = 1000.0
 """Rays start this far away: from there they are as good as parallel (0.03 px over the whole table) [m]."""

@@ -14,7 +14,7 @@ from wonderful_team.core.geometry import Pose
 from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.values import Instruction
 from wonderful_team.errors import ConfigError
-from wonderful_team.sims.tabletop.drawing import Drawn, Renderer, open_renderer
+from wonderful_team.sims.tabletop.drawing import open_renderer
 from wonderful_team.sims.tabletop.engine import mj
 from wonderful_team.sims.tabletop.goals import Poses
 from wonderful_team.sims.tabletop.judging import Happened
@@ -23,6 +23,7 @@ from wonderful_team.sims.tabletop.model import Thing, ToolName, build
 from wonderful_team.sims.tabletop.moving import put_body, settle
 from wonderful_team.sims.tabletop.options import Tiers
 from wonderful_team.sims.tabletop.registering import TabletopTask, filled
+from wonderful_team.sims.tabletop.renderer import Drawn, Renderer
 from wonderful_team.sims.tabletop.rules import Rules
 from wonderful_team.sims.tabletop.showing import Studio
 from wonderful_team.sims.tabletop.spatula import Spatula

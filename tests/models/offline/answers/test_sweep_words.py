@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from wonderful_team.offline.answers.sweeping import place_words, read_place
 from wonderful_team.offline.description import Way
 from wonderful_team.offline.language import describe, try_understand
+from wonderful_team.offline.pushing.sweeping import place_words, read_place
 
 
 @pytest.mark.parametrize("thing", ["leftmost blue object", "blue checkered object", "second red object from the left"])

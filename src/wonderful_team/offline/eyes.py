@@ -11,6 +11,7 @@ from wonderful_team.core.values import Target
 from wonderful_team.images.colours import COLOURS
 from wonderful_team.offline.description import SHAPES, Description, Way
 from wonderful_team.offline.language import describe, render, try_describe
+from wonderful_team.offline.pushing.sweeping import find_place, read_place
 from wonderful_team.offline.vision import (
     Example,
     Match,
@@ -24,6 +25,7 @@ from wonderful_team.offline.vision import (
     study_example,
     with_heights,
 )
+from wonderful_team.offline.vision.changes import came_to
 from wonderful_team.offline.vision.relations import is_at, shares_from
 
 NEARLY_EQUAL = 0.06
@@ -62,8 +64,6 @@ class Eyes:
     def find(self, description: Description) -> list[Match]:
         """What fits, best first; empty when nothing does or it cannot be judged by eye."""
         if description.placed is not None:
-            from wonderful_team.offline.answers.showing import place_shown
-
             return place_shown(description, self)
         if description.way is not None:
             return self.on_the_way(description.way, ())
@@ -89,8 +89,6 @@ class Eyes:
 
     def on_the_way(self, place: Way, plan: Sequence[str]) -> list[Match]:
         """Where a pushed thing comes to rest, by the plan's lines."""
-        from wonderful_team.offline.answers.sweeping import find_place
-
         return find_place(place, self.scene, self.number, plan)
 
     def _spots_at(self, description: Description) -> list[Match]:
@@ -198,8 +196,6 @@ def target_description(target: Target) -> Description:
         NotUnderstoodError: The words hold something unknown and no picture shows it.
     """
     words = target.words
-    from wonderful_team.offline.answers.sweeping import read_place
-
     on_the_way = read_place(words, target.where)
     if on_the_way is not None:
         return on_the_way
@@ -316,3 +312,21 @@ def place_words(thing: Thing, size_px: tuple[int, int]) -> str:
     if row == "middle":
         return column
     return row if column == "centre" else f"{row} {column}"
+
+
+def place_shown(description: Description, eyes: Eyes) -> list[Match]:
+    """The place where one of the instruction's pictures shows a thing, in the picture looked at; [] when it does not."""
+    shown = eyes.pictures.get(description.like or "")
+    if shown is None or description.placed is None or eyes.looked_at is None:
+        return []
+    if description.since is not None and description.since in eyes.pictures:
+        arrived = came_to(eyes.pictures[description.since], shown)
+        box = None if arrived is None else arrived
+    else:
+        found = Eyes(see(shown), {}).best(replace(description.placed, noun="thing"))
+        box = found.thing.box if found is not None and found.thing is not None else None
+    if box is None:
+        return []
+    there = eyes.looked_at.frame.box_to_picture(shown.frame.box_to_view(box))
+    why = f"picture {{{description.like}}} shows the {description.placed.text} there"
+    return [Match(None, there, there.centre, 1.0, 1.0, why)]

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 from wonderful_team.contracts import ShownSlot
 from wonderful_team.contracts.shown import ShownTask
-from wonderful_team.offline.answers.defining import compared, turn_shown_deg
 from wonderful_team.offline.language import Understood
 from wonderful_team.offline.language.instruction import read_instruction
+from wonderful_team.offline.vision.defining import compared, turn_shown_deg
 
 
 @dataclass(frozen=True, eq=False)

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
-from wonderful_team.offline.answers.aims import Aim, Named
-from wonderful_team.offline.answers.eyes import Eyes, unique_words
 from wonderful_team.offline.description import Description
+from wonderful_team.offline.eyes import Eyes, unique_words
+from wonderful_team.offline.goals.aims import Aim, Named
 from wonderful_team.offline.vision import Thing
 
 LOWER_M = 0.002
@@ -48,3 +49,17 @@ def obstacles(aim: Aim, others: Sequence[Aim], eyes: Eyes) -> list[Aim]:
             )
         )
     return away
+
+
+def cleared(aims: Sequence[Aim], eyes: Eyes) -> list[Aim]:
+    """The aims, with things that lie on what is to be moved brought away first."""
+    done: list[Aim] = []
+    shift: dict[int, int] = {}
+    for position, aim in enumerate(aims):
+        firsts = []
+        for away in obstacles(aim, [*done, *aims[position + 1 :]], eyes):
+            firsts.append(len(done))
+            done.append(away)
+        shift[position] = len(done)
+        done.append(replace(aim, after=tuple(sorted({shift[index] for index in aim.after} | set(firsts)))))
+    return done

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from wonderful_team.offline.answers.aims import Aim, Aims, Named
-from wonderful_team.offline.answers.eyes import Eyes, one_of, unique_words
-from wonderful_team.offline.answers.sweeping import Sweep, choose, is_walled, swept
 from wonderful_team.offline.description import Description, Way
+from wonderful_team.offline.eyes import Eyes, one_of, unique_words
+from wonderful_team.offline.goals.aims import Aim, Aims, Named
 from wonderful_team.offline.language import Command, render
+from wonderful_team.offline.pushing.sweeping import Sweep, choose, is_walled, swept
 
 
 def swept_aims(command: Command, what: Description, things: list[Named], eyes: Eyes, result: Aims) -> list[Aim] | None:

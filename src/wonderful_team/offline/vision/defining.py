@@ -6,8 +6,8 @@ import numpy as np
 
 from wonderful_team.contracts import ShownSlot
 from wonderful_team.errors import NotUnderstoodError
-from wonderful_team.offline.answers.turning import common_turn_deg
 from wonderful_team.offline.vision import Example, NotSeen, see, study_example
+from wonderful_team.offline.vision.turning import common_turn_deg
 
 _OPPOSITE = {"tallest": "shortest", "shortest": "tallest", "darkest": "lightest", "lightest": "darkest", "largest": "smallest",
              "smallest": "largest"}  # fmt: skip

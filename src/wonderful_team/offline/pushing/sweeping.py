@@ -14,10 +14,10 @@ from typing import TypeAlias
 from wonderful_team.core.geometry import Box
 from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.pictures import Point
-from wonderful_team.offline.answers.pushing import Field, Way, best_way, inside, study_field
 from wonderful_team.offline.description import Description
 from wonderful_team.offline.description import Way as Place
 from wonderful_team.offline.language import describe, render, try_understand
+from wonderful_team.offline.pushing.pushes import Field, Way, best_way, inside, study_field
 from wonderful_team.offline.vision import Match, Scene
 
 Number: TypeAlias = Callable[[Description], int | None]

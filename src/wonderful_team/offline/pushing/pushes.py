@@ -13,7 +13,7 @@ import numpy as np
 
 from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.pictures import Point
-from wonderful_team.offline.answers.room import Room, study_room
+from wonderful_team.offline.pushing.enclosure import Room, study_room
 from wonderful_team.offline.vision import Scene, Thing
 from wonderful_team.offline.vision.outlines import filled
 from wonderful_team.offline.vision.things import whole_mask

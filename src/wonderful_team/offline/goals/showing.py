@@ -10,29 +10,20 @@ from dataclasses import dataclass, replace
 import cv2
 import numpy as np
 
-from wonderful_team.core.geometry import Box
 from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.pictures import Picture, Point
 from wonderful_team.errors import NotUnderstoodError
-from wonderful_team.images.colours import to_lab
-from wonderful_team.offline.answers.aims import Aim, Aims, Named
-from wonderful_team.offline.answers.eyes import Eyes, unique_words
 from wonderful_team.offline.description import Description
+from wonderful_team.offline.eyes import Eyes, unique_words
+from wonderful_team.offline.goals.aims import Aim, Aims, Named
 from wonderful_team.offline.language import Command, render
-from wonderful_team.offline.vision import Match, Thing, likeness, see
+from wonderful_team.offline.vision import Thing, likeness, see
+from wonderful_team.offline.vision.changes import LEFT, STAYED, came_to, difference, gap_px, moved_between
 
 ALIKE = 0.35
 """Least likeness of looks at which two pictures may show the same thing (0 to 1)."""
-SURE = 0.55
-"""Likeness from which two pictures show the same thing beyond doubt (0 to 1)."""
-STAYED = 0.35
-"""A thing that lies nearer to its place than this many of its radii is there."""
 IN_THE_WAY = 0.8
 """Two things whose centres are nearer than this share of their radii together cannot both lie there."""
-CHANGED = 9.0
-"""CIELAB distance from which a pixel differs between two pictures of one camera."""
-LEFT = 0.5
-"""Share of a thing's former place that must show table once it has left."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,24 +35,6 @@ class Shift:
     placed: Description
     like: str
     since: str | None = None
-
-
-def place_shown(description: Description, eyes: Eyes) -> list[Match]:
-    """The place where one of the instruction's pictures shows a thing, in the picture looked at; [] when it does not."""
-    shown = eyes.pictures.get(description.like or "")
-    if shown is None or description.placed is None or eyes.looked_at is None:
-        return []
-    if description.since is not None and description.since in eyes.pictures:
-        arrived = came_to(eyes.pictures[description.since], shown)
-        box = None if arrived is None else arrived
-    else:
-        found = Eyes(see(shown), {}).best(replace(description.placed, noun="thing"))
-        box = found.thing.box if found is not None and found.thing is not None else None
-    if box is None:
-        return []
-    there = eyes.looked_at.frame.box_to_picture(shown.frame.box_to_view(box))
-    why = f"picture {{{description.like}}} shows the {description.placed.text} there"
-    return [Match(None, there, there.centre, 1.0, 1.0, why)]
 
 
 def shown_aims(command: Command, eyes: Eyes, result: Aims) -> list[Aim]:
@@ -212,42 +185,16 @@ def _under(to: Point, mover: Thing, eyes: Eyes, where: dict[int, Point], aims: l
         number = aim.thing.number
         if number is not None and number != mover.number and number in where:
             thing = eyes.thing(number)
-            if thing is not None and _gap(where[number], to) < 0.6 * thing.radius_px:
+            if thing is not None and gap_px(where[number], to) < 0.6 * thing.radius_px:
                 return aim.thing
     for thing in eyes.scene.things:
         if (
             thing.number != mover.number
             and thing.number not in where
-            and _gap(thing.centre, to) < 0.6 * thing.radius_px
+            and gap_px(thing.centre, to) < 0.6 * thing.radius_px
         ):
             return Named(unique_words(eyes, thing, "object"), thing.number)
     return None
-
-
-def _gap(one: Point, other: Point) -> float:
-    return float(np.hypot(one[0] - other[0], one[1] - other[1]))
-
-
-def moved_between(before: Picture, after: Picture) -> tuple[Thing, Thing] | None:
-    """The thing that both pictures show, in two places, as each of them shows it; None when no one thing stands out.
-
-    What only came to light, since something was taken from above it, was nowhere to be seen before.
-    """
-    first, second = see(before).things, see(after).things
-
-    def apart(was: Thing, now: Thing) -> float:
-        there = before.frame.point_to_view(was.centre)
-        here = after.frame.point_to_view(now.centre)
-        return _gap(there, here) * after.frame.scale / now.radius_px
-
-    rated = [(likeness(was, now), apart(was, now), was, now) for was in first for now in second]
-    stayed = {now.number for alike, far, _, now in rated if far < STAYED and alike > SURE}
-    moved = [(alike, was, now) for alike, far, was, now in rated if far >= STAYED and now.number not in stayed]
-    remain = {was.number for alike, far, was, _ in rated if far < STAYED and alike > SURE}
-    moved = sorted((item for item in moved if item[1].number not in remain), key=lambda item: -item[0])
-    if not moved or moved[0][0] < SURE:
-        return None
-    return moved[0][1], moved[0][2]
 
 
 def _mover(before: Picture, after: Picture, eyes: Eyes, where: dict[int, Point], named: Thing | None) -> Thing | None:
@@ -259,7 +206,7 @@ def _mover(before: Picture, after: Picture, eyes: Eyes, where: dict[int, Point],
     place = eyes.looked_at.frame.point_to_picture(before.frame.point_to_view(pair[0].centre))
 
     def fits(thing: Thing) -> float:
-        away = _gap(where.get(thing.number, thing.centre), place) / thing.radius_px
+        away = gap_px(where.get(thing.number, thing.centre), place) / thing.radius_px
         bonus = 0.1 if named is not None and thing.number == named.number else 0.0
         return likeness(thing, pair[1]) * float(np.exp(-0.5 * away**2)) + bonus
 
@@ -300,29 +247,3 @@ def _points(thing: Thing, move: Point) -> Array:
     x = (columns + 0.5 + thing.offset[0]) * thing.zoom + move[0]
     y = (rows + 0.5 + thing.offset[1]) * thing.zoom + move[1]
     return np.stack([x, y], axis=1)
-
-
-def difference(before: Picture, after: Picture) -> Array:
-    """Pixels of the later picture that differ from the earlier one, bool, shape (H, W); noise is left out."""
-    first = cv2.resize(np.ascontiguousarray(before.rgb), after.size_px, interpolation=cv2.INTER_AREA)
-    gap = np.sqrt(((to_lab(first) - to_lab(np.asarray(after.rgb))) ** 2).sum(axis=-1))
-    return np.asarray(cv2.morphologyEx((gap > CHANGED).astype(np.uint8), cv2.MORPH_OPEN, np.ones((3, 3), np.uint8)) > 0)
-
-
-def came_to(before: Picture, after: Picture) -> Box | None:
-    """Where something stands in the later picture that was not there before [px of the later picture]; None when nothing is."""
-    pair = moved_between(before, after)
-    if pair is not None:
-        return pair[1].box
-    changed = difference(before, after)
-    scene = see(after)
-    shown = cv2.resize(scene.occupied.astype(np.uint8), after.size_px, interpolation=cv2.INTER_NEAREST) > 0
-    new = cv2.morphologyEx((changed & shown).astype(np.uint8), cv2.MORPH_CLOSE, np.ones((9, 9), np.uint8))
-    count, _, stats, _ = cv2.connectedComponentsWithStats(new, connectivity=8)
-    if count <= 1:
-        return None
-    biggest = 1 + int(stats[1:, cv2.CC_STAT_AREA].argmax())
-    x, y, width, height, area = (int(v) for v in stats[biggest])
-    if area < 0.0004 * new.size:
-        return None
-    return Box(x, y, x + width, y + height)

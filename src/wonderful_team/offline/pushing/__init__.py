@@ -1,0 +1,1 @@
+"""Straight pushes over a table: from where, past what, into what."""

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from wonderful_team.models.cache_store import FILE_VARIABLE
-from wonderful_team.runs import OUT_VARIABLE
+from wonderful_team.record.run_folders import OUT_VARIABLE
 
 SECRET_ENDINGS = ("_KEY", "_TOKEN", "_SECRET")
 
@@ -49,8 +49,8 @@ def runs_folder(monkeypatch: pytest.MonkeyPatch, tmp_path_factory: pytest.TempPa
 @pytest.fixture(autouse=True)
 def _records_fit_their_schema(monkeypatch: pytest.MonkeyPatch) -> None:
     """Every record that any test writes is what the published schema says."""
-    from wonderful_team.runtime.record_schema import read_record
-    from wonderful_team.runtime.recorder import Recorder
+    from wonderful_team.record.record_schema import read_record
+    from wonderful_team.record.recorder import Recorder
 
     close = Recorder.close
 

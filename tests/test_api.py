@@ -12,7 +12,7 @@ import pytest
 import wonderful_team as wt
 from wonderful_team.core.protocols import Event
 from wonderful_team.errors import ConfigError, UnknownNameError
-from wonderful_team.runs import all_runs, find_run
+from wonderful_team.record.run_folders import all_runs, find_run
 
 WANTED = "put the red square to the left of the blue square"
 

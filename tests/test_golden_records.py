@@ -10,9 +10,9 @@ import pytest
 from tests.desk import read_record
 from wonderful_team.cli.app import run
 from wonderful_team.core.text import picture_names, spoken
+from wonderful_team.pages import write_page
+from wonderful_team.record import read_plan
 from wonderful_team.replays import replay
-from wonderful_team.runtime import read_plan
-from wonderful_team.runtime.page import write_page
 
 GOLDEN = Path(__file__).parent / "golden" / "records"
 
@@ -22,7 +22,7 @@ def _golden():
 
 
 def test_there_is_a_golden_record_of_every_schema_version():
-    from wonderful_team.runtime.record_schema import RECORD_SCHEMA_VERSION
+    from wonderful_team.record.record_schema import RECORD_SCHEMA_VERSION
 
     kept = {read_record(folder)["schema_version"] for folder in _golden()}
     assert kept == set(range(1, RECORD_SCHEMA_VERSION + 1))

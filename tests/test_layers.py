@@ -28,7 +28,6 @@ TOP = {
     "registry",
     "replays",
     "role_models",
-    "runs",
     "simulated_models",
     "studies",
     "trial_runs",

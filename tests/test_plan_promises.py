@@ -17,7 +17,7 @@ import wonderful_team as wt
 from tests.desk import WORDS, draw_desk, read_record
 from wonderful_team.cli.app import run
 from wonderful_team.errors import ConfigError
-from wonderful_team.runtime import read_run_plan
+from wonderful_team.record import read_run_plan
 
 TASK = "tabletop/everyday/tidy_up"
 

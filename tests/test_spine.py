@@ -9,7 +9,8 @@ import pytest
 from wonderful_team.core.values import Instruction
 from wonderful_team.offline import OfflineModel
 from wonderful_team.planning import Team, TeamConfig
-from wonderful_team.runtime import Recorder, rollout
+from wonderful_team.record import Recorder
+from wonderful_team.runtime import rollout
 from wonderful_team.sims.tabletop import make_world
 
 

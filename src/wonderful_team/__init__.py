@@ -33,9 +33,9 @@ if TYPE_CHECKING:
     from wonderful_team.observe import Observation
     from wonderful_team.photos import instruction_with_pictures
     from wonderful_team.probing import probe_model
+    from wonderful_team.record.stored_run import StoredRun
     from wonderful_team.registry import make_model
     from wonderful_team.runtime import Approval
-    from wonderful_team.runtime.stored_run import StoredRun
     from wonderful_team.sims.tabletop import Scene
     from wonderful_team.studies import Study
 
@@ -73,7 +73,7 @@ _HOMES: dict[str, str] = {
     "Score": "core.protocols",
     "Situation": "core.protocols",
     "StepReport": "core.values",
-    "StoredRun": "runtime.stored_run",
+    "StoredRun": "record.stored_run",
     "Study": "studies",
     "Team": "api",
     "Trial": "core.values",

@@ -33,16 +33,17 @@ from wonderful_team.interrupts import ends_on_signal, held
 from wonderful_team.made import MadePlan, RecordedTrial
 from wonderful_team.methods import Method
 from wonderful_team.observe import Seen, seen
+from wonderful_team.pages import write_page
 from wonderful_team.planning import Team as Planner
 from wonderful_team.planning import Until
-from wonderful_team.runs import find_run, new_run_folder
-from wonderful_team.runtime import Approval, Approver, check_gate, read_run_plan
+from wonderful_team.record import read_run_plan
+from wonderful_team.record.recorder import Recorder
+from wonderful_team.record.run_folders import find_run, new_run_folder
+from wonderful_team.record.setup import setup_entry
+from wonderful_team.record.stored_run import StoredRun, load_stored_run
+from wonderful_team.runtime import Approval, Approver, check_gate
 from wonderful_team.runtime import rollout as roll_out
 from wonderful_team.runtime.loop import Caller
-from wonderful_team.runtime.page import write_page
-from wonderful_team.runtime.recorder import Recorder
-from wonderful_team.runtime.setup import setup_entry
-from wonderful_team.runtime.stored_run import StoredRun, load_stored_run
 from wonderful_team.runtime.user_code import GuardedWorld, close_world
 
 

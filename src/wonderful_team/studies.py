@@ -26,8 +26,8 @@ from wonderful_team.evals.workers import run_safely
 from wonderful_team.loading import is_file_name
 from wonderful_team.models.cache import CacheMode
 from wonderful_team.models.providers import PriceChoice
+from wonderful_team.record.run_folders import runs_folder
 from wonderful_team.role_models import choice_of, read_choices, text_of
-from wonderful_team.runs import runs_folder
 from wonderful_team.trial_runs import check_isolation, check_names, code_of_names, run_trial
 
 ALL_CONTROLS = (*CONTROLS, OFFLINE)

@@ -33,9 +33,9 @@ from wonderful_team.evals.trials import Condition, Limiter, RunSettings, TrialRe
 from wonderful_team.loading import check_names_no_code, is_file_name
 from wonderful_team.methods import Method, role_names
 from wonderful_team.models.providers import model_options
+from wonderful_team.record.versions import versions
 from wonderful_team.role_models import REST, choice_of
 from wonderful_team.runtime import rollout as roll_out
-from wonderful_team.runtime.versions import versions
 
 SUCCESS_EVERY = 10
 """With pages of failures, successes of these seeds (1000, 1010, ...) keep theirs too: a reader wants to see both."""

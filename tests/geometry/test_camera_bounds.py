@@ -8,7 +8,7 @@ import pytest
 from wonderful_team.core.geometry import Box, PinholeCamera, PlanarCamera, Pose
 from wonderful_team.core.values import KeepOut
 from wonderful_team.errors import ConfigError
-from wonderful_team.runtime.keep_out import region_m
+from wonderful_team.images.keep_out import region_m
 
 K = np.array([[500.0, 0, 320], [0, 500, 240], [0, 0, 1]])
 # A table that narrows towards the back: its horizon lies at about y = -80 px, or at 60 px for the lower picture.

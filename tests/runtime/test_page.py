@@ -12,7 +12,9 @@ from runtime_fake_run import TalkingPolicy, world_with_pictures
 from runtime_fakes import MovesPolicy, SquaresTruth, SquaresWorld
 
 from wonderful_team.errors import ConfigError
-from wonderful_team.runtime import Recorder, rollout, write_page
+from wonderful_team.pages import write_page
+from wonderful_team.record import Recorder
+from wonderful_team.runtime import rollout
 
 VOID = {"meta", "br", "img", "link", "input", "hr"}
 

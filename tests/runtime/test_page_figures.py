@@ -5,10 +5,10 @@ from __future__ import annotations
 import math
 import re
 
-from wonderful_team.runtime.page.figures import arrow_layer
-from wonderful_team.runtime.page.planted import sentence
-from wonderful_team.runtime.page.strips import overviews
-from wonderful_team.runtime.page.words import step_words
+from wonderful_team.pages.figures import arrow_layer
+from wonderful_team.pages.planted import sentence
+from wonderful_team.pages.strips import overviews
+from wonderful_team.pages.words import step_words
 
 NUMBER = r"-?\d+(?:\.\d+)?"
 SCENE = {"hash": "s", "size_px": [200, 100], "main": "top", "views": {"top": "gone"}}

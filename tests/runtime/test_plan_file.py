@@ -14,7 +14,7 @@ from wonderful_team.core.actions import Beside, FollowStep, MoveStep, MoveTo, Or
 from wonderful_team.core.geometry import Box, Pose
 from wonderful_team.core.values import Doubt, KeepOut, PlannedAction
 from wonderful_team.errors import ConfigError
-from wonderful_team.runtime import plan_from_json, plan_to_json, read_plan, write_plan
+from wonderful_team.record import plan_from_json, plan_to_json, read_plan, write_plan
 
 
 def rich_plan():

@@ -14,7 +14,7 @@ from test_plan_file import rich_plan
 from wonderful_team.core.geometry import Box
 from wonderful_team.core.values import Doubt, Instruction, Subgoal, Target, content_hash
 from wonderful_team.errors import ConfigError
-from wonderful_team.runtime import plan_from_json, plan_to_json
+from wonderful_team.record import plan_from_json, plan_to_json
 
 NOT_IN_THE_ID = {"provenance"}
 """Who answered: the same plan out of a cache or a replay is the same plan."""

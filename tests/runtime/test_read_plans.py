@@ -14,8 +14,9 @@ from wonderful_team.core.geometry import AffineCamera
 from wonderful_team.core.protocols import Event
 from wonderful_team.core.values import Instruction, Observation, ReadPlan, Slot
 from wonderful_team.errors import ConfigError
-from wonderful_team.runtime import read_run_plan, rollout
-from wonderful_team.runtime.recorder import Recorder
+from wonderful_team.record import read_run_plan
+from wonderful_team.record.recorder import Recorder
+from wonderful_team.runtime import rollout
 
 RED, BLUE = (60.0, 60.0), (160.0, 90.0)
 UP, MIDDLE = (200.0, 30.0), (120.0, 60.0)

@@ -8,13 +8,13 @@ from pathlib import Path
 import pytest
 
 from wonderful_team.errors import ConfigError
-from wonderful_team.runtime.record_schema import SCHEMA_FILE, read_record, record_schema
+from wonderful_team.record.record_schema import SCHEMA_FILE, read_record, record_schema
 
 GOLDEN = Path(__file__).parents[1] / "golden" / "records" / "v1" / "trial"
 
 
 def test_the_schema_file_is_what_the_code_says():
-    """Written with: python -m wonderful_team.runtime.record_schema."""
+    """Written with: python -m wonderful_team.record.record_schema."""
     assert json.loads(SCHEMA_FILE.read_text(encoding="utf-8")) == record_schema()
 
 

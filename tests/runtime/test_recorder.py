@@ -13,7 +13,8 @@ from runtime_fake_run import TalkingPolicy, world_with_pictures
 from runtime_fakes import Listener, MovesPolicy, SquaresTruth, SquaresWorld
 
 from wonderful_team.images import draw, load_picture
-from wonderful_team.runtime import Recorder, read_plan, read_plan_scene, rollout
+from wonderful_team.record import Recorder, read_plan, read_plan_scene
+from wonderful_team.runtime import rollout
 
 GOALS = {"red": (200.0, 30.0), "blue": (60.0, 60.0)}
 
@@ -91,7 +92,8 @@ import os, sys
 sys.path.insert(0, {str(Path(__file__).parent)!r})
 from pathlib import Path
 from runtime_fakes import MovesPolicy, SquaresWorld
-from wonderful_team.runtime import Recorder, rollout
+from wonderful_team.record import Recorder
+from wonderful_team.runtime import rollout
 class Dies(SquaresWorld):
     def execute(self, action):
         if self.ran == 1:

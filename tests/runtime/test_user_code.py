@@ -9,7 +9,8 @@ import pytest
 import wonderful_team as wt
 from tests.runtime.runtime_fakes import MovesPolicy, SquaresWorld
 from wonderful_team.errors import ConfigError, RobotFaultError, code_of, own_trace, raised
-from wonderful_team.runtime import Recorder, rollout
+from wonderful_team.record import Recorder
+from wonderful_team.runtime import rollout
 from wonderful_team.runtime.user_code import close_world
 
 MOVE = [((60.0, 60.0), (200.0, 30.0))]

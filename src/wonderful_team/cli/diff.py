@@ -105,7 +105,7 @@ def _ends(one: tuple[Path, Mapping[str, Any]], two: tuple[Path, Mapping[str, Any
 
 
 def _plans(folder: Path, record: Mapping[str, Any]) -> list[Plan]:
-    from wonderful_team.runtime.stored import stored_plan
+    from wonderful_team.record.stored import stored_plan
 
     return [stored_plan(folder, record, number) for number in range(len(record["planner"]["plans"]))]
 

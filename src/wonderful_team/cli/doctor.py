@@ -73,7 +73,7 @@ def _guarded(check: Callable[[], Finding]) -> Finding:
 
 
 def _versions() -> Finding:
-    from wonderful_team.runtime.versions import versions
+    from wonderful_team.record.versions import versions
 
     found = versions()
     missing = [name for name, version in found.items() if version is None and name != "commit"]
@@ -145,7 +145,7 @@ def _sandbox() -> Finding:
 
 
 def _disk(out: Path | None) -> Finding:
-    from wonderful_team.runs import runs_folder
+    from wonderful_team.record.run_folders import runs_folder
 
     root = runs_folder(out)
     try:

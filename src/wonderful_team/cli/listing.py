@@ -49,8 +49,8 @@ def command(kind: str, out: Path | None, html: Path | None, open_page: bool, as_
 
 def _write_table(path: Path, out: Path | None, open_page: bool) -> str:
     from wonderful_team.cli.report import shown_path
-    from wonderful_team.runs import all_runs
-    from wonderful_team.runtime.page.runs import write_runs_table
+    from wonderful_team.pages.runs import write_runs_table
+    from wonderful_team.record.run_folders import all_runs
 
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -133,8 +133,8 @@ def _words(out: Path | None) -> dict[str, str]:
 
 
 def _runs(out: Path | None) -> dict[str, str]:
-    from wonderful_team.runs import all_runs
-    from wonderful_team.runtime.record_schema import read_record
+    from wonderful_team.record.record_schema import read_record
+    from wonderful_team.record.run_folders import all_runs
 
     found = {}
     for folder in all_runs(out):

@@ -8,7 +8,7 @@ import click
 
 from wonderful_team.cli.options import PATH, Common, common
 from wonderful_team.core.text import counted
-from wonderful_team.runs import find_run
+from wonderful_team.record.run_folders import find_run
 
 LOOKS = 16
 """More pushes than any sweep of the suite may take."""
@@ -75,8 +75,8 @@ def command(
     from wonderful_team.errors import reading
     from wonderful_team.methods import Method
     from wonderful_team.photos import read_keep_out
+    from wonderful_team.record import read_run_plan
     from wonderful_team.registry import scene_name, team_way
-    from wonderful_team.runtime import read_run_plan
     from wonderful_team.runtime.user_code import close_world
 
     if video is not None:

@@ -48,7 +48,7 @@ def command(
 
     Or run it again (--replay, --from), or compare it with another (--diff).
     """
-    from wonderful_team.runs import find_run
+    from wonderful_team.record.run_folders import find_run
 
     chosen = [name for name, value in (("--role", role), ("--from", stage), ("--diff", diff)) if value is not None]
     chosen += ["--replay"] if replay else []
@@ -70,8 +70,8 @@ def command(
 
 def _show(folder: Path, role: str | None, open_page: bool, as_json: bool) -> int:
     """The story, or one role's questions and answers."""
-    from wonderful_team.runtime.page import write_page
-    from wonderful_team.runtime.record_schema import read_record
+    from wonderful_team.pages import write_page
+    from wonderful_team.record.record_schema import read_record
 
     record = read_record(folder)
     page = write_page(folder)
@@ -152,7 +152,7 @@ def _branch(folder: Path, stage: str, words: Sequence[str], out: Path | None, as
 def _diff(one: Path, two: Path, as_json: bool) -> int:
     """Two runs side by side; the exit code says nothing of the difference."""
     from wonderful_team.cli.diff import compare
-    from wonderful_team.runtime.record_schema import read_record
+    from wonderful_team.record.record_schema import read_record
 
     with reading(f"{one}, {two}: the records"):
         found = compare((one, read_record(one)), (two, read_record(two)))

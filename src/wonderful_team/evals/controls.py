@@ -25,7 +25,7 @@ from wonderful_team.core.protocols import Act, Decision, Done, Policy, Privilege
 from wonderful_team.core.values import Limits, PlannedAction
 from wonderful_team.errors import ConfigError
 from wonderful_team.evals.names import CONTROLS, NO_MODEL, NO_OP, ORACLE, RANDOM
-from wonderful_team.runtime.keep_out import table_height_m
+from wonderful_team.images.keep_out import table_height_m
 from wonderful_team.runtime.relief import Relief
 
 

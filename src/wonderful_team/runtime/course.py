@@ -23,7 +23,7 @@ from wonderful_team.core.actions import (
 from wonderful_team.core.geometry import Box
 from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.values import GroundedTarget, Limits, Plan, PlannedAction, View
-from wonderful_team.runtime.keep_out import table_height_m
+from wonderful_team.images.keep_out import table_height_m
 from wonderful_team.runtime.relief import RAISED_M, Relief, covered, outline
 from wonderful_team.runtime.sweep import sweep_of
 

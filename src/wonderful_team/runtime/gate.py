@@ -18,11 +18,11 @@ from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.jsonable import to_jsonable
 from wonderful_team.core.text import counted
 from wonderful_team.core.values import GateCheck, GateReport, KeepOut, Limits, Observation, Plan, PlannedAction
+from wonderful_team.images.keep_out import table_height_m
 from wonderful_team.runtime.agreement import agreement_checks, class_checks, form_checks
 from wonderful_team.runtime.approval import Approval, Declined, approval_checks, approved_id
 from wonderful_team.runtime.course import Course, Stage
 from wonderful_team.runtime.freshness import MAX_AGE_S, freshness_checks, watched
-from wonderful_team.runtime.keep_out import table_height_m
 from wonderful_team.runtime.keep_out_checks import keep_out_checks, keep_out_px_checks
 from wonderful_team.runtime.seen_checks import height_checks, place_checks, way_checks
 from wonderful_team.runtime.sweep import Sweep, carry_height_m, sweep_of, swept_path_px

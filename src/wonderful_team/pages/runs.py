@@ -19,10 +19,10 @@ from PIL import Image
 
 from wonderful_team.core.text import counted, visible
 from wonderful_team.errors import ConfigError
-from wonderful_team.runtime.page.sections import summary
-from wonderful_team.runtime.page.words import brief, money, seconds
-from wonderful_team.runtime.page.write import PAGE_NAME
-from wonderful_team.runtime.record_schema import read_record
+from wonderful_team.pages.sections import summary
+from wonderful_team.pages.words import brief, money, seconds
+from wonderful_team.pages.write import PAGE_NAME
+from wonderful_team.record.record_schema import read_record
 
 _HERE = Path(__file__).parent
 THUMBNAIL_PX = 320

@@ -13,7 +13,7 @@ from typing import Any
 
 from wonderful_team.core.values import Plan
 from wonderful_team.errors import ConfigError
-from wonderful_team.runtime.values_file import decode, encode
+from wonderful_team.record.values_file import decode, encode
 
 PLAN_SCHEMA_VERSION = 2
 _SHORT_IDS = 1

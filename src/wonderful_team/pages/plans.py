@@ -7,8 +7,8 @@ from typing import Any
 
 from markupsafe import Markup, escape
 
-from wonderful_team.runtime.page.look_up import chapters, target_words
-from wonderful_team.runtime.page.words import step_words, word_diff
+from wonderful_team.pages.look_up import chapters, target_words
+from wonderful_team.pages.words import step_words, word_diff
 
 
 def plans(record: dict[str, Any]) -> list[dict[str, Any]]:

@@ -6,11 +6,11 @@ from collections.abc import Sequence
 from typing import Any
 
 from wonderful_team.core.text import counted
-from wonderful_team.runtime.page.look_up import chapters
-from wonderful_team.runtime.page.pictures import Album
-from wonderful_team.runtime.page.plans import diff_rows
-from wonderful_team.runtime.page.requests import Asked
-from wonderful_team.runtime.page.strips import history_frames
+from wonderful_team.pages.look_up import chapters
+from wonderful_team.pages.pictures import Album
+from wonderful_team.pages.plans import diff_rows
+from wonderful_team.pages.requests import Asked
+from wonderful_team.pages.strips import history_frames
 
 _PLANS = frozenset({"DraftPlan", "RevisePlan", "ExtractTargets"})
 

@@ -18,14 +18,14 @@ from wonderful_team.core.text import counted, picture_names, spoken, visible
 from wonderful_team.core.values import GateCheck, GateReport, Instruction, Limits, Observation, Plan, Request, Trial
 from wonderful_team.errors import ActionRefusedError, WonderfulTeamError
 from wonderful_team.images import Ticks, action_arrows, overview, to_png
+from wonderful_team.images.keep_out import outlines
 from wonderful_team.interrupts import held
-from wonderful_team.runtime import entries
-from wonderful_team.runtime.keep_out import outlines
-from wonderful_team.runtime.picture_store import PictureStore
-from wonderful_team.runtime.plan_file import plan_to_json
-from wonderful_team.runtime.record_schema import RECORD_SCHEMA_VERSION
-from wonderful_team.runtime.redact import redact, redact_all, secrets_of_environment
-from wonderful_team.runtime.versions import versions
+from wonderful_team.record import entries
+from wonderful_team.record.picture_store import PictureStore
+from wonderful_team.record.plan_file import plan_to_json
+from wonderful_team.record.record_schema import RECORD_SCHEMA_VERSION
+from wonderful_team.record.redact import redact, redact_all, secrets_of_environment
+from wonderful_team.record.versions import versions
 
 _REWRITE_EVERY_S = 0.3
 """Least time between two rewrites of record.json; important events are written at once."""

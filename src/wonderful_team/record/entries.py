@@ -20,9 +20,9 @@ from wonderful_team.core.values import (
     Usage,
 )
 from wonderful_team.errors import WonderfulTeamError
-from wonderful_team.runtime.picture_store import PictureStore
-from wonderful_team.runtime.stored import view_entry
-from wonderful_team.runtime.values_file import encode
+from wonderful_team.record.picture_store import PictureStore
+from wonderful_team.record.stored import view_entry
+from wonderful_team.record.values_file import encode
 
 
 def request_key(request: Request) -> str:

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 from markupsafe import Markup
 
-from wonderful_team.runtime.page.pictures import text_in_svg
-from wonderful_team.runtime.page.requests import Asked
-from wonderful_team.runtime.page.words import seconds
+from wonderful_team.pages.pictures import text_in_svg
+from wonderful_team.pages.requests import Asked
+from wonderful_team.pages.words import seconds
 
 ROLES = ("supervisor", "verification", "manager", "checker", "mover", "memory", "replanner")
 """Order of colours; other roles of other methods share the last colour."""

@@ -10,10 +10,10 @@ from markupsafe import Markup
 
 from wonderful_team.core.text import counted, visible
 from wonderful_team.errors import reading
-from wonderful_team.runtime.page import cost, planted, requests, sections
-from wonderful_team.runtime.page.pictures import Album, pictured
-from wonderful_team.runtime.page.words import clock_time, money, pretty, pretty_name, seconds
-from wonderful_team.runtime.record_schema import read_record
+from wonderful_team.pages import cost, planted, requests, sections
+from wonderful_team.pages.pictures import Album, pictured
+from wonderful_team.pages.words import clock_time, money, pretty, pretty_name, seconds
+from wonderful_team.record.record_schema import read_record
 
 PAGE_NAME = "page.html"
 _HERE = Path(__file__).parent

@@ -7,7 +7,7 @@ from typing import Any
 
 from markupsafe import Markup
 
-from wonderful_team.runtime.page.pictures import Album
+from wonderful_team.pages.pictures import Album
 
 
 @dataclass(frozen=True, eq=False)

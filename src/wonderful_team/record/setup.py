@@ -9,7 +9,7 @@ from typing import Any, Literal
 from wonderful_team.core.actions import Vocabulary
 from wonderful_team.core.values import NO_WORKSPACE, KeepOut, Limits, Target
 from wonderful_team.errors import ConfigError
-from wonderful_team.runtime.values_file import decode, encode
+from wonderful_team.record.values_file import decode, encode
 
 LATER: Mapping[str, Any] = {"looks": 0}
 """Fields that records of earlier releases lack, and what those runs did."""

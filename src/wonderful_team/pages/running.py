@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
-from wonderful_team.runtime.page.look_up import chapters, target_words
-from wonderful_team.runtime.page.pictures import Album
-from wonderful_team.runtime.page.words import step_words
+from wonderful_team.pages.look_up import chapters, target_words
+from wonderful_team.pages.pictures import Album
+from wonderful_team.pages.words import step_words
 
 
 def actions(record: dict[str, Any]) -> list[dict[str, Any]]:

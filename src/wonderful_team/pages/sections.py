@@ -9,14 +9,14 @@ from typing import Any
 from markupsafe import Markup, escape
 
 from wonderful_team.core.text import counted, picture_names, spoken
-from wonderful_team.runtime.page import cost
-from wonderful_team.runtime.page.look_up import grounded_plan, last_plan, main_key, scene_of
-from wonderful_team.runtime.page.pictures import Album
-from wonderful_team.runtime.page.plans import plans, replans
-from wonderful_team.runtime.page.requests import Asked
-from wonderful_team.runtime.page.running import actions, execution
-from wonderful_team.runtime.page.strips import overviews, targets
-from wonderful_team.runtime.page.words import brief, money, pretty_name, seconds
+from wonderful_team.pages import cost
+from wonderful_team.pages.look_up import grounded_plan, last_plan, main_key, scene_of
+from wonderful_team.pages.pictures import Album
+from wonderful_team.pages.plans import plans, replans
+from wonderful_team.pages.requests import Asked
+from wonderful_team.pages.running import actions, execution
+from wonderful_team.pages.strips import overviews, targets
+from wonderful_team.pages.words import brief, money, pretty_name, seconds
 
 __all__ = [
     "actions",

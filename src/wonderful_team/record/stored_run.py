@@ -10,8 +10,8 @@ from typing import Any
 
 from wonderful_team.core.values import Instruction, Observation, Plan
 from wonderful_team.errors import reading
-from wonderful_team.runtime.record_schema import read_record
-from wonderful_team.runtime.stored import stored_instruction, stored_observation, stored_plan
+from wonderful_team.record.record_schema import read_record
+from wonderful_team.record.stored import stored_instruction, stored_observation, stored_plan
 
 
 @dataclass(frozen=True, eq=False)

@@ -10,8 +10,8 @@ from wonderful_team.core.actions import Vocabulary
 from wonderful_team.core.protocols import Situation
 from wonderful_team.core.values import GateCheck, GateReport, Observation, Plan, StepReport, SubgoalRun
 from wonderful_team.errors import ConfigError
-from wonderful_team.runtime.setup import Setup, same_limits
-from wonderful_team.runtime.stored import stored_instruction, stored_observation, stored_plan
+from wonderful_team.record.setup import Setup, same_limits
+from wonderful_team.record.stored import stored_instruction, stored_observation, stored_plan
 
 Record = Mapping[str, Any]
 _NOTHING = {"gates": 0, "executions": 0, "subgoals": 0}

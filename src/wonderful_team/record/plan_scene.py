@@ -9,8 +9,8 @@ from typing import Any
 from wonderful_team.core.values import Observation, Plan, ReadPlan, View
 from wonderful_team.errors import ConfigError
 from wonderful_team.images import load_picture
-from wonderful_team.runtime.plan_file import read_plan
-from wonderful_team.runtime.stored import stored_observation
+from wonderful_team.record.plan_file import read_plan
+from wonderful_team.record.stored import stored_observation
 
 
 def read_run_plan(folder: Path) -> ReadPlan:

@@ -8,7 +8,7 @@ from typing import Any
 from markupsafe import Markup
 
 from wonderful_team.core.text import counted
-from wonderful_team.runtime.page.figures import (
+from wonderful_team.pages.figures import (
     arrow_layer,
     box_layer,
     crop_drawing,
@@ -21,9 +21,9 @@ from wonderful_team.runtime.page.figures import (
     view_drawing,
     window_round,
 )
-from wonderful_team.runtime.page.look_up import chapters, main_key, scene_of
-from wonderful_team.runtime.page.pictures import Album
-from wonderful_team.runtime.page.requests import Asked
+from wonderful_team.pages.look_up import chapters, main_key, scene_of
+from wonderful_team.pages.pictures import Album
+from wonderful_team.pages.requests import Asked
 
 _GOES_THERE = ("place", "push_end")
 

@@ -15,9 +15,9 @@ from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.pictures import picture_hash
 from wonderful_team.core.values import Instruction, Observation, Plan, RobotState, Slot, View
 from wonderful_team.errors import ConfigError
-from wonderful_team.runtime.picture_store import PictureStore
-from wonderful_team.runtime.plan_file import plan_from_json
-from wonderful_team.runtime.values_file import decode, encode
+from wonderful_team.record.picture_store import PictureStore
+from wonderful_team.record.plan_file import plan_from_json
+from wonderful_team.record.values_file import decode, encode
 
 _CAMERAS = (PinholeCamera, AffineCamera, PlanarCamera)
 

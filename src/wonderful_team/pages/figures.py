@@ -8,7 +8,7 @@ from typing import Any
 
 from markupsafe import Markup
 
-from wonderful_team.runtime.page.pictures import Album, text_in_svg
+from wonderful_team.pages.pictures import Album, text_in_svg
 
 Corner = Sequence[float]
 _SHADES = 6

@@ -11,13 +11,13 @@ from tests.servers.brains import Desk, Tapped, offline_brain
 from tests.servers.server import KEY, Rules, WireServer
 from tests.servers.wiring import WIRES
 from wonderful_team.cli import main
-from wonderful_team.cli.options import read_roles
 from wonderful_team.errors import ConfigError, UnknownNameError
 from wonderful_team.models.prices import GivenPrice
 from wonderful_team.models.profiles import CONFIG_VARIABLE, Profile, save_profile
 from wonderful_team.models.providers import VENDORS
 from wonderful_team.models.providers.options import model_options
-from wonderful_team.registry import make_models
+from wonderful_team.registry.models import make_models
+from wonderful_team.registry.role_models import read_roles
 
 SERVER = "http://127.0.0.1:9/v1#mine"
 ROLES = ("supervisor", "manager", "checker")

@@ -17,8 +17,8 @@ from wonderful_team.cli.app import run
 from wonderful_team.core.protocols import Filmed, Privileged, SceneTruth, offers, privileged
 from wonderful_team.errors import ConfigError, UnknownNameError
 from wonderful_team.offline import OfflineModel
+from wonderful_team.registry.simulated import scene_truth
 from wonderful_team.runtime.optional import Accounting, ChunkPolicy, Configured, Horizon, NamedModel, Sourced
-from wonderful_team.simulated_models import scene_truth
 
 DESK = Path(__file__).parents[1] / "examples" / "desk.png"
 WORDS = "put the red block into the blue bowl"

@@ -18,7 +18,7 @@ from tests.servers.speech import Speech, longest_side
 from wonderful_team.cli.app import run
 from wonderful_team.lab.marks import marked_scene
 from wonderful_team.models.profiles import load_profile, profiles_folder
-from wonderful_team.registry import make_model
+from wonderful_team.registry.models import make_model
 
 ODD_SPEECH = Speech("yx", None, longest_side(720), offset=(9.0, -7.0), digits=1)
 """y first, pixels after its own resize, with a constant offset: every habit at once."""

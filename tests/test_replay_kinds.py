@@ -186,7 +186,7 @@ KINDS = (
 def test_every_kind_of_run_replays(make, tmp_path, monkeypatch):
     folder = make(tmp_path).folder
     record = read_record(folder)
-    monkeypatch.setattr("wonderful_team.registry.make_world", lambda *_, **__: pytest.fail("a world was made"))
+    monkeypatch.setattr("wonderful_team.registry.worlds.make_world", lambda *_, **__: pytest.fail("a world was made"))
     monkeypatch.setattr(OfflineModel, "answer", lambda *_: pytest.fail("a model was asked"))
     found = replay(folder)
     assert found.now == found.then

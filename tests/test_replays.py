@@ -85,7 +85,7 @@ def test_no_model_and_no_world_is_asked_and_no_folder_is_left(trials, monkeypatc
     trial = trials["team"]
     before = sorted(trial.folder.parent.iterdir())
     latest = (trial.folder.parent / "latest").resolve()
-    monkeypatch.setattr("wonderful_team.registry.make_world", lambda *_: pytest.fail("a world was made"))
+    monkeypatch.setattr("wonderful_team.registry.worlds.make_world", lambda *_: pytest.fail("a world was made"))
     monkeypatch.setattr(OfflineModel, "answer", lambda *_: pytest.fail("a model was asked"))
     assert replay(trial.folder).same
     assert sorted(trial.folder.parent.iterdir()) == before

@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from wonderful_team.photos import instruction_with_pictures
     from wonderful_team.probing import probe_model
     from wonderful_team.record.stored_run import StoredRun
-    from wonderful_team.registry import make_model
+    from wonderful_team.registry.models import make_model
     from wonderful_team.runtime import Approval
     from wonderful_team.sims.tabletop import Scene
     from wonderful_team.studies import Study
@@ -82,7 +82,7 @@ _HOMES: dict[str, str] = {
     "WonderfulTeamError": "errors",
     "World": "core.protocols",
     "instruction_with_pictures": "photos",
-    "make_model": "registry",
+    "make_model": "registry.models",
     "probe_model": "probing",
     "load_run": "api",
     "make_world": "api",

@@ -16,8 +16,8 @@ from wonderful_team.evals.checking import SEEDS, Findings, check_controls, check
 from wonderful_team.evals.controls import CONTROLS, NO_MODEL
 from wonderful_team.evals.trials import Condition, RunSettings, TrialResult, TrialSpec
 from wonderful_team.evals.workers import run_safely
-from wonderful_team.loading import load_from_file
 from wonderful_team.methods import Method
+from wonderful_team.registry.files import load_from_file
 from wonderful_team.trial_runs import run_trial
 
 TRIED_IN = "tabletop/rotate"

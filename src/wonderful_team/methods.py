@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any, Self
 
 from wonderful_team import registry
+from wonderful_team.agents.prompts import role_names
 from wonderful_team.core.caps import Caps
 from wonderful_team.core.protocols import Model, Policy, Subscriber, World
 from wonderful_team.errors import ConfigError
@@ -18,7 +19,7 @@ from wonderful_team.models.door import Door
 from wonderful_team.models.providers import PriceChoice, check_prices, model_options
 from wonderful_team.planning import Team as Planner
 from wonderful_team.planning import TeamConfig
-from wonderful_team.simulated_models import waiting
+from wonderful_team.registry.simulated import waiting
 
 ModelChoice = str | Model | Mapping[str, str | Model]
 POINTING_ROLES = ("manager", "supervisor")
@@ -190,10 +191,3 @@ def _known_names(model: ModelChoice, made: Mapping[str, Model]) -> ModelChoice:
 
 def _known_name(named: str | Model, made: Model | None) -> str | Model:
     return named if made is None or not isinstance(named, str) else str(getattr(made, "name", named))
-
-
-def role_names() -> tuple[str, ...]:
-    """All roles of the team."""
-    from wonderful_team.agents import ROLES
-
-    return tuple(ROLES)

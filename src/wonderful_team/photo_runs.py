@@ -17,7 +17,7 @@ from wonderful_team.methods import Method, team_config
 from wonderful_team.models.door import Door
 from wonderful_team.observe import Observation
 from wonderful_team.planning import TeamConfig
-from wonderful_team.role_models import choice_of
+from wonderful_team.registry.role_models import choice_of
 from wonderful_team.runtime.loop import Caller
 from wonderful_team.trial_runs import Counting, fingerprint, prepared
 

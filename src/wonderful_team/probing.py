@@ -12,9 +12,9 @@ from wonderful_team.errors import ConfigError
 from wonderful_team.lab.measure import LabScene, LabTarget
 from wonderful_team.lab.probe import Options, Probed, Subject, Tell, probe
 from wonderful_team.lab.server_facts import context_length
-from wonderful_team.loading import check_names_no_code, is_file_name
 from wonderful_team.models.families import guess_family
 from wonderful_team.models.profiles import Profile, check_name, load_profile, profile_names
+from wonderful_team.registry.files import check_names_no_code, is_file_name
 from wonderful_team.runtime.loop import Caller
 
 if TYPE_CHECKING:

@@ -20,7 +20,6 @@ from wonderful_team.core.actions import Vocabulary
 from wonderful_team.core.protocols import Event, Model, Subscriber
 from wonderful_team.core.values import Observation, Plan
 from wonderful_team.errors import ConfigError, WonderfulTeamError, reading
-from wonderful_team.loading import check_names_no_code
 from wonderful_team.made import MadePlan, RecordedTrial
 from wonderful_team.models.replay import Branching, ReplayModel
 from wonderful_team.record.plan_file import has_short_id
@@ -28,6 +27,7 @@ from wonderful_team.record.record_schema import read_record
 from wonderful_team.record.setup import Setup, read_setup, same_limits
 from wonderful_team.record.stored import stored_instruction, stored_observation
 from wonderful_team.record.story import recorded_plan, situations
+from wonderful_team.registry.files import check_names_no_code
 from wonderful_team.runtime.loop import Caller
 
 

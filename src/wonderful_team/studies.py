@@ -23,11 +23,11 @@ from wonderful_team.evals.summary import Summary, summarise
 from wonderful_team.evals.trials import Condition, RunSettings, SpendingCaps, TrialResult, TrialSpec
 from wonderful_team.evals.watch import Report
 from wonderful_team.evals.workers import run_safely
-from wonderful_team.loading import is_file_name
 from wonderful_team.models.cache import CacheMode
 from wonderful_team.models.providers import PriceChoice
 from wonderful_team.record.run_folders import runs_folder
-from wonderful_team.role_models import choice_of, read_choices, text_of
+from wonderful_team.registry.files import is_file_name
+from wonderful_team.registry.role_models import choice_of, read_choices, read_roles, text_of
 from wonderful_team.trial_runs import check_isolation, check_names, code_of_names, run_trial
 
 ALL_CONTROLS = (*CONTROLS, OFFLINE)
@@ -133,8 +133,6 @@ class Study:
     @classmethod
     def from_options(cls, **options: Any) -> Study:
         """A study from the options of `bench`."""
-        from wonderful_team.cli.options import read_roles
-
         refused = split_names(options["refused"])
         wrong = [name for name in refused if name not in (*ALL_CONTROLS, "all")]
         if wrong:

@@ -21,6 +21,7 @@ from typing import Any
 import numpy as np
 
 from wonderful_team import registry
+from wonderful_team.agents.prompts import role_names
 from wonderful_team.api import rollout
 from wonderful_team.core.actions import Action
 from wonderful_team.core.jsonable import to_jsonable
@@ -30,11 +31,11 @@ from wonderful_team.core.values import Instruction, Observation, Request, StepRe
 from wonderful_team.errors import ConfigError
 from wonderful_team.evals.controls import CONTROLS, make_control
 from wonderful_team.evals.trials import Condition, Limiter, RunSettings, TrialResult, TrialSpec
-from wonderful_team.loading import check_names_no_code, is_file_name
-from wonderful_team.methods import Method, role_names
+from wonderful_team.methods import Method
 from wonderful_team.models.providers import model_options
 from wonderful_team.record.versions import versions
-from wonderful_team.role_models import REST, choice_of
+from wonderful_team.registry.files import check_names_no_code, is_file_name
+from wonderful_team.registry.role_models import REST, choice_of
 from wonderful_team.runtime import rollout as roll_out
 
 SUCCESS_EVERY = 10

@@ -17,7 +17,7 @@ from wonderful_team.evals.photos import Located, overlap, read_photos, score_pho
 from wonderful_team.evals.plan import StudyPlan, read_shard
 from wonderful_team.evals.suites import VIMA_TASKS, all_suites, default_seeds, read_seeds, resolve
 from wonderful_team.evals.trials import Condition, Row, SpendingCaps, TrialResult, TrialSpec
-from wonderful_team.role_models import choice_of, read_choices, text_of
+from wonderful_team.registry.role_models import choice_of, read_choices, text_of
 
 KNOWN = [
     "tabletop/rotate",

@@ -100,3 +100,8 @@ def _read(path: Path) -> str:
     if not text:
         raise ConfigError(f"prompt file {path.name!r} is empty; remove it to use the built-in words")
     return text
+
+
+def role_names() -> tuple[str, ...]:
+    """All roles of the team."""
+    return tuple(ROLES)

@@ -42,7 +42,8 @@ def command(seed: int, out: Path | None, as_json: bool, open_page: bool) -> int:
     from wonderful_team.api import Team, make_world, rollout
     from wonderful_team.cli.progress import Progress
     from wonderful_team.models.wrappers import Injecting
-    from wonderful_team.registry import make_model, scene_name
+    from wonderful_team.registry.models import make_model
+    from wonderful_team.registry.worlds import scene_name
 
     progress = Progress(live=not as_json)
     injections = planted_mistakes()

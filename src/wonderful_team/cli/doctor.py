@@ -93,7 +93,7 @@ def _extras() -> Finding:
 
 
 def _rendering() -> Finding:
-    from wonderful_team.registry import make_world
+    from wonderful_team.registry.worlds import make_world
 
     started = time.monotonic()
     world = make_world("tabletop/visual_manipulation", seed=1)
@@ -181,7 +181,7 @@ def _cache() -> Finding:
 
 def _vimabench() -> Finding:
     """Optional: only a copy that is named and does not work is a fault."""
-    from wonderful_team.registry import make_world
+    from wonderful_team.registry.worlds import make_world
     from wonderful_team.sims.vimabench.finding import PATH_VARIABLE, PYTHON_VARIABLE, find_installation
 
     named = any(os.environ.get(name) for name in (PYTHON_VARIABLE, PATH_VARIABLE))

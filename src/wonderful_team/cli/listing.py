@@ -64,14 +64,14 @@ def _write_table(path: Path, out: Path | None, open_page: bool) -> str:
 
 def _models(out: Path | None) -> dict[str, str]:
     from wonderful_team.models.profiles import saved_profiles
-    from wonderful_team.registry import MODEL_FORMS, MODELS
+    from wonderful_team.registry.models import MODEL_FORMS, MODELS
 
     saved = {name: held if isinstance(held, str) else held.line for name, held in saved_profiles().items()}
     return {**MODELS, **saved, **MODEL_FORMS}
 
 
 def _worlds(out: Path | None) -> dict[str, str]:
-    from wonderful_team.registry import WORLDS
+    from wonderful_team.registry.worlds import WORLDS
 
     return {
         **WORLDS,
@@ -80,7 +80,7 @@ def _worlds(out: Path | None) -> dict[str, str]:
 
 
 def _tasks(out: Path | None) -> dict[str, str]:
-    from wonderful_team.registry import task_names
+    from wonderful_team.registry.worlds import task_names
 
     return task_names()
 
@@ -96,7 +96,7 @@ def _suites(out: Path | None) -> dict[str, str]:
 
 def _methods(out: Path | None) -> dict[str, str]:
     from wonderful_team.planning.config import SETTINGS
-    from wonderful_team.registry import METHODS
+    from wonderful_team.registry.methods import METHODS
 
     def words(name: str, text: str) -> str:
         setting = SETTINGS.get(name.rpartition(":")[2])

@@ -11,6 +11,7 @@ from typing import Any, TypeVar
 import click
 
 from wonderful_team.errors import ConfigError
+from wonderful_team.registry.role_models import read_roles
 
 Command = TypeVar("Command", bound=Callable[..., Any])
 
@@ -178,26 +179,6 @@ def read_models(words: Sequence[str]) -> str | dict[str, str]:
         chosen[role] = name
     chosen.setdefault("*", "offline")
     return chosen["*"] if len(chosen) == 1 else chosen
-
-
-def read_roles(words: Sequence[str], option: str, valid: str) -> dict[str, str]:
-    """Values by role ("*" for the rest), from repeated "VALUE" and "ROLE=VALUE".
-
-    Raises:
-        ConfigError: One role has two values, or a word is empty.
-    """
-    chosen: dict[str, str] = {}
-    for word in words:
-        role, separator, value = word.rpartition("=")
-        role = role if separator else "*"
-        if not (role and value):
-            raise ConfigError(f"{option} {word!r}: valid is {option} {valid} or {option} ROLE={valid}")
-        if role in chosen:
-            raise ConfigError(
-                f"{option}: two values for {'all roles' if role == '*' else role}: {chosen[role]}, {value}"
-            )
-        chosen[role] = value
-    return chosen
 
 
 def read_pairs(words: Sequence[str], option: str) -> dict[str, str]:

@@ -76,7 +76,8 @@ def command(
     from wonderful_team.methods import Method
     from wonderful_team.photos import read_keep_out
     from wonderful_team.record import read_run_plan
-    from wonderful_team.registry import scene_name, team_way
+    from wonderful_team.registry.methods import team_way
+    from wonderful_team.registry.worlds import scene_name
     from wonderful_team.runtime.user_code import close_world
 
     if video is not None:

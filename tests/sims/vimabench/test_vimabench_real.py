@@ -10,7 +10,7 @@ import pytest
 from wonderful_team.cli.app import run
 from wonderful_team.core.actions import PickPlace, Push
 from wonderful_team.errors import WorldUnavailableError
-from wonderful_team.registry import make_world
+from wonderful_team.registry.worlds import make_world
 from wonderful_team.sims.vimabench import VimaWorld
 from wonderful_team.sims.vimabench.tasks import TASKS, partitions
 

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 
 from wonderful_team.core.protocols import Model, SceneTruth, World, offers
 from wonderful_team.errors import ConfigError
+from wonderful_team.registry.worlds import WORLDS
 
 SIMULATED = "simulated:"
 
@@ -32,7 +33,6 @@ def scene_truth(world: World, model: str) -> SceneTruth:
         ConfigError: The world has none, or its instruction was replaced: its truth knows what is right for its own only.
     """
     from wonderful_team.core.protocols import privileged
-    from wonderful_team.registry import WORLDS
 
     truth = privileged(world)
     if offers(truth, SceneTruth):

@@ -8,8 +8,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from wonderful_team import registry
+from wonderful_team.agents.prompts import role_names
 from wonderful_team.errors import ConfigError, UnknownNameError
-from wonderful_team.methods import role_names
 
 REST = registry.DEFAULT_ROLE
 _BETWEEN = ", "
@@ -88,3 +88,23 @@ def _add(to: dict[str, str], more: Mapping[str, str], word: str) -> None:
         if to.get(role, name) != name:
             raise ConfigError(f"--model {word!r}: two models for {role}: {to[role]}, {name}")
         to[role] = name
+
+
+def read_roles(words: Sequence[str], option: str, valid: str) -> dict[str, str]:
+    """Values by role ("*" for the rest), from repeated "VALUE" and "ROLE=VALUE".
+
+    Raises:
+        ConfigError: One role has two values, or a word is empty.
+    """
+    chosen: dict[str, str] = {}
+    for word in words:
+        role, separator, value = word.rpartition("=")
+        role = role if separator else "*"
+        if not (role and value):
+            raise ConfigError(f"{option} {word!r}: valid is {option} {valid} or {option} ROLE={valid}")
+        if role in chosen:
+            raise ConfigError(
+                f"{option}: two values for {'all roles' if role == '*' else role}: {chosen[role]}, {value}"
+            )
+        chosen[role] = value
+    return chosen

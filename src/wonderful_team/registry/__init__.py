@@ -1,0 +1,38 @@
+"""Names to things: models, methods, worlds and tasks. The only place where a string picks an implementation."""
+
+from wonderful_team.registry.methods import METHODS, SETTINGS, TeamWay, load_method, team_way
+from wonderful_team.registry.models import DEFAULT_ROLE, MODEL_FORMS, MODELS, make_model, make_models, model_label
+from wonderful_team.registry.worlds import (
+    WORLDS,
+    check_ready,
+    made_in_main,
+    make_world,
+    own_tiers,
+    scene_name,
+    task_made_of,
+    task_names,
+    task_partitions,
+)
+
+__all__ = [
+    "DEFAULT_ROLE",
+    "METHODS",
+    "MODELS",
+    "MODEL_FORMS",
+    "SETTINGS",
+    "TeamWay",
+    "WORLDS",
+    "check_ready",
+    "load_method",
+    "made_in_main",
+    "make_model",
+    "make_models",
+    "make_world",
+    "model_label",
+    "own_tiers",
+    "scene_name",
+    "task_made_of",
+    "task_names",
+    "task_partitions",
+    "team_way",
+]

@@ -18,11 +18,11 @@ from dataclasses import dataclass
 from typing import Any
 
 from wonderful_team import registry
+from wonderful_team.api.trial import model_of
 from wonderful_team.evals.suites import VIMA_TASKS
 from wonderful_team.models.reshown import CHANGES, Reshown
 from wonderful_team.planning import SETTINGS, Team, TeamConfig
 from wonderful_team.runtime import rollout
-from wonderful_team.trial_runs import model_of
 
 Z_95 = 1.959964
 

@@ -17,11 +17,11 @@ import tempfile
 import time
 from pathlib import Path
 
+from wonderful_team.api.study import Study
 from wonderful_team.evals.plan import StudyPlan
 from wonderful_team.evals.study import run_study
 from wonderful_team.evals.suites import Protocol, Suite
 from wonderful_team.evals.trials import RunSettings, TrialResult, TrialSpec
-from wonderful_team.studies import Study
 
 
 def nothing(spec: TrialSpec, settings: RunSettings) -> TrialResult:

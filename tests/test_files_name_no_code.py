@@ -9,12 +9,12 @@ import pytest
 
 import wonderful_team as wt
 from tests.desk import read_record
+from wonderful_team.api.probe import probe_model
+from wonderful_team.api.trial import run_trial
 from wonderful_team.cli.app import run
 from wonderful_team.errors import ConfigError
 from wonderful_team.evals.trials import Condition, RunSettings, TrialSpec
 from wonderful_team.models.profiles import profile_to_json, profiles_folder
-from wonderful_team.probing import probe_model
-from wonderful_team.trial_runs import run_trial
 
 
 @pytest.fixture

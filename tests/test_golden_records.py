@@ -8,11 +8,11 @@ from pathlib import Path
 import pytest
 
 from tests.desk import read_record
+from wonderful_team.api.replay import replay
 from wonderful_team.cli.app import run
 from wonderful_team.core.text import picture_names, spoken
 from wonderful_team.pages import write_page
 from wonderful_team.record import read_plan
-from wonderful_team.replays import replay
 
 GOLDEN = Path(__file__).parent / "golden" / "records"
 

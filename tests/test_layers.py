@@ -9,25 +9,7 @@ import pytest
 
 ROOT = Path(__file__).parents[1] / "src" / "wonderful_team"
 BASE = {"_version", "core", "errors"}
-TOP = {
-    "__init__",
-    "__main__",
-    "api",
-    "checks",
-    "cli",
-    "finding",
-    "interrupts",
-    "made",
-    "methods",
-    "observe",
-    "photo_runs",
-    "photos",
-    "probing",
-    "registry",
-    "replays",
-    "studies",
-    "trial_runs",
-}
+TOP = {"__init__", "__main__", "api", "cli", "interrupts", "registry"}
 ARROWS: dict[str, set[str]] = {
     **dict.fromkeys(BASE, BASE),
     "contracts": BASE,

@@ -12,10 +12,10 @@ import numpy as np
 import pytest
 
 import wonderful_team as wt
+from wonderful_team.api.photos import corners_camera, instruction_with_pictures, load_camera, load_depth, read_keep_out
 from wonderful_team.core.geometry import Pose
 from wonderful_team.core.values import NO_WORKSPACE
 from wonderful_team.errors import BadPictureError, ConfigError
-from wonderful_team.photos import corners_camera, instruction_with_pictures, load_camera, load_depth, read_keep_out
 
 SIZE_PX = (400, 300)
 K = [[500.0, 0.0, 200.0], [0.0, 500.0, 150.0], [0.0, 0.0, 1.0]]

@@ -10,9 +10,9 @@ import pytest
 
 import wonderful_team as wt
 from tests.desk import WORDS, draw_desk, read_record
+from wonderful_team.api.replay import replay
 from wonderful_team.errors import ModelCodeError, ModelServerError
 from wonderful_team.offline import OfflineModel
-from wonderful_team.replays import replay
 
 TASK = "tabletop/visual_manipulation"
 DESK = Path(__file__).parents[1] / "examples"

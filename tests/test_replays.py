@@ -12,11 +12,11 @@ import pytest
 
 import wonderful_team as wt
 from tests.desk import WORDS, draw_desk, read_record
+from wonderful_team.api.replay import branch, replay
 from wonderful_team.cli.app import run
 from wonderful_team.errors import ConfigError, NotUnderstoodError, ReplayError, UnknownNameError
 from wonderful_team.offline import OfflineModel
 from wonderful_team.record.stored import stored_instruction, stored_observation
-from wonderful_team.replays import branch, replay
 
 
 @pytest.fixture(scope="module")

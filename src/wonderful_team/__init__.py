@@ -11,7 +11,14 @@ from typing import TYPE_CHECKING, Any
 from wonderful_team._version import __version__
 
 if TYPE_CHECKING:
-    from wonderful_team.api import Team, load_run, make_world, rollout, task
+    from wonderful_team.api.method import Method
+    from wonderful_team.api.observation import Observation
+    from wonderful_team.api.photos import instruction_with_pictures
+    from wonderful_team.api.probe import probe_model
+    from wonderful_team.api.results import FoundTarget, MadePlan, RecordedTrial
+    from wonderful_team.api.rollout import make_world, rollout, task
+    from wonderful_team.api.study import Study
+    from wonderful_team.api.team import Team, load_run
     from wonderful_team.core.actions import ARM, PICK_PLACE, At, Beside, PickPlace, PickPlaceStep, Vocabulary
     from wonderful_team.core.geometry import AffineCamera, Box, PinholeCamera, PlanarCamera, Pose
     from wonderful_team.core.protocols import Act, Done, GaveUp, Model, Policy, Score, Situation, World
@@ -28,16 +35,10 @@ if TYPE_CHECKING:
         View,
     )
     from wonderful_team.errors import WonderfulTeamError
-    from wonderful_team.made import FoundTarget, MadePlan, RecordedTrial
-    from wonderful_team.methods import Method
-    from wonderful_team.observe import Observation
-    from wonderful_team.photos import instruction_with_pictures
-    from wonderful_team.probing import probe_model
     from wonderful_team.record.stored_run import StoredRun
     from wonderful_team.registry.models import make_model
     from wonderful_team.runtime import Approval
     from wonderful_team.sims.tabletop import Scene
-    from wonderful_team.studies import Study
 
 _HOMES: dict[str, str] = {
     "ARM": "core.actions",
@@ -49,15 +50,15 @@ _HOMES: dict[str, str] = {
     "Beside": "core.actions",
     "Box": "core.geometry",
     "Done": "core.protocols",
-    "FoundTarget": "made",
+    "FoundTarget": "api.results",
     "GaveUp": "core.protocols",
     "Instruction": "core.values",
     "KeepOut": "core.values",
     "Limits": "core.values",
-    "MadePlan": "made",
-    "Method": "methods",
+    "MadePlan": "api.results",
+    "Method": "api.method",
     "Model": "core.protocols",
-    "Observation": "observe",
+    "Observation": "api.observation",
     "PICK_PLACE": "core.actions",
     "PickPlace": "core.actions",
     "PickPlaceStep": "core.actions",
@@ -67,27 +68,27 @@ _HOMES: dict[str, str] = {
     "PlannedAction": "core.values",
     "Policy": "core.protocols",
     "Pose": "core.geometry",
-    "RecordedTrial": "made",
+    "RecordedTrial": "api.results",
     "Request": "core.values",
     "Scene": "sims.tabletop",
     "Score": "core.protocols",
     "Situation": "core.protocols",
     "StepReport": "core.values",
     "StoredRun": "record.stored_run",
-    "Study": "studies",
-    "Team": "api",
+    "Study": "api.study",
+    "Team": "api.team",
     "Trial": "core.values",
     "View": "core.values",
     "Vocabulary": "core.actions",
     "WonderfulTeamError": "errors",
     "World": "core.protocols",
-    "instruction_with_pictures": "photos",
+    "instruction_with_pictures": "api.photos",
     "make_model": "registry.models",
-    "probe_model": "probing",
-    "load_run": "api",
-    "make_world": "api",
-    "rollout": "api",
-    "task": "api",
+    "probe_model": "api.probe",
+    "load_run": "api.team",
+    "make_world": "api.rollout",
+    "rollout": "api.rollout",
+    "task": "api.rollout",
 }
 """Public name to the module that defines it."""
 

@@ -13,6 +13,9 @@ import pytest
 
 import wonderful_team as wt
 from wonderful_team import registry
+from wonderful_team.api.study import known_suites
+from wonderful_team.api.trial import make_scene, model_of, run_trial
+from wonderful_team.api.trial_setup import reproduce
 from wonderful_team.cli.app import run
 from wonderful_team.core.protocols import World
 from wonderful_team.errors import ConfigError
@@ -21,8 +24,6 @@ from wonderful_team.evals.store import Store
 from wonderful_team.evals.trials import Condition, RunSettings, SpendingCaps, TrialSpec
 from wonderful_team.evals.workers import run_safely
 from wonderful_team.images import to_png
-from wonderful_team.studies import known_suites
-from wonderful_team.trial_runs import make_scene, model_of, reproduce, run_trial
 
 METHOD = """
 import wonderful_team as wt

@@ -33,7 +33,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "cache": ("cache", "Show or clear the kept answers of models."),
     "probe": ("probe", "Measure a model: its coordinates, its limits, its errors; save a profile."),
     "bench": ("bench", "Compare methods and models on suites, with controls, in a durable store."),
-    "report": ("study_report", "Turn stores into one page, tables and plots."),
+    "report": ("report", "Turn stores into one page, tables and plots."),
     "new": ("new", "Write a world, method, task or model of your own that runs, with a test."),
     "check": ("check", "Check a world, method, task or model of your own."),
 }

@@ -9,7 +9,7 @@ import re
 import click
 
 from wonderful_team.cli.output import say
-from wonderful_team.cli.report import shown_path
+from wonderful_team.cli.run_summary import shown_path
 from wonderful_team.cli.wording import numbers_line
 from wonderful_team.core.text import counted
 from wonderful_team.runtime import Approval, Approver, Declined, Proposal

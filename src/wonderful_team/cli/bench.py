@@ -107,7 +107,7 @@ QUIET_S = 10.0
 @click.option("--open", "open_page", is_flag=True, help="Write the report beside the store and open it when done.")
 def command(**options: Any) -> int:
     """Run methods and models over suites with controls; what ended stays in the store, and the same command resumes."""
-    from wonderful_team.studies import PILOT, Study
+    from wonderful_team.api.study import PILOT, Study
 
     words = shlex.join(["wonderful-team", *(click.get_current_context().obj or ())])
     study = Study.from_options(**options, command=words)

@@ -25,7 +25,7 @@ def command(name: str, seeds: int | None, sheet: Path | None, as_json: bool) -> 
     A world or task: shapes and units, the same scene for the same seed, the oracle succeeds, doing nothing and random
     actions do not, a contact sheet. A method or model: it loads, runs without an error, and the gate admits its actions.
     """
-    from wonderful_team.checks import check
+    from wonderful_team.api.check import check
 
     file, _, attribute = name.rpartition(":")
     beside = (

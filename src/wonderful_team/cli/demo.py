@@ -9,13 +9,13 @@ import click
 
 from wonderful_team.cli.options import PATH
 from wonderful_team.cli.output import finish
-from wonderful_team.cli.report import program, shown_path, trial_json
+from wonderful_team.cli.run_summary import program, shown_path, trial_json
 from wonderful_team.cli.wording import action_line, said_of, trial_exit_code, trial_lines, words_of
 
 if TYPE_CHECKING:
+    from wonderful_team.api.results import RecordedTrial
     from wonderful_team.contracts import BoxAnswer, PlanDraft
     from wonderful_team.core.values import Request
-    from wonderful_team.made import RecordedTrial
     from wonderful_team.models.wrappers import Injection
 
 WORLD = "tabletop/everyday/tidy_up"
@@ -39,7 +39,8 @@ def command(seed: int, out: Path | None, as_json: bool, open_page: bool) -> int:
     Two mistakes are planted and labelled INJECTED: a plan that fills the wrong bowl, and a first box beside its object.
     Verification and the Checker have to catch them.
     """
-    from wonderful_team.api import Team, make_world, rollout
+    from wonderful_team.api.rollout import make_world, rollout
+    from wonderful_team.api.team import Team
     from wonderful_team.cli.progress import Progress
     from wonderful_team.models.wrappers import Injecting
     from wonderful_team.registry.models import make_model

@@ -14,7 +14,7 @@ import click
 
 from wonderful_team.cli.options import PATH
 from wonderful_team.cli.output import finish
-from wonderful_team.cli.report import program
+from wonderful_team.cli.run_summary import program
 from wonderful_team.errors import ConfigError, WonderfulTeamError, extra_command
 
 KEYS = ("ANTHROPIC_API_KEY", "GEMINI_API_KEY", "GOOGLE_API_KEY", "OPENAI_API_KEY", "OPENROUTER_API_KEY")

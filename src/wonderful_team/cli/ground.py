@@ -26,10 +26,10 @@ def command(
     """Find each described thing: a box and points, or that it is not there."""
     if not (descriptions or area):
         raise click.UsageError("say what to look for: at least one DESCRIPTION or --area DESCRIPTION")
-    from wonderful_team.api import Team
+    from wonderful_team.api.observation import Observation
+    from wonderful_team.api.team import Team
     from wonderful_team.cli.progress import Progress
-    from wonderful_team.cli.report import report_plan
-    from wonderful_team.observe import Observation
+    from wonderful_team.cli.run_summary import report_plan
 
     observation = Observation.from_files(image)
     progress = Progress(live=not common.as_json)

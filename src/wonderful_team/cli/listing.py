@@ -48,7 +48,7 @@ def command(kind: str, out: Path | None, html: Path | None, open_page: bool, as_
 
 
 def _write_table(path: Path, out: Path | None, open_page: bool) -> str:
-    from wonderful_team.cli.report import shown_path
+    from wonderful_team.cli.run_summary import shown_path
     from wonderful_team.pages.runs import write_runs_table
     from wonderful_team.record.run_folders import all_runs
 
@@ -86,7 +86,7 @@ def _tasks(out: Path | None) -> dict[str, str]:
 
 
 def _suites(out: Path | None) -> dict[str, str]:
-    from wonderful_team.studies import known_suites
+    from wonderful_team.api.study import known_suites
 
     return {
         name: f"{counted(len(suite.tasks), 'task')}; {suite.help or suite.protocol.name}{'; ' + suite.note if suite.note else ''}"

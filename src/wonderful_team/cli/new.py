@@ -11,7 +11,7 @@ import click
 
 from wonderful_team.cli.options import PATH
 from wonderful_team.cli.output import finish
-from wonderful_team.cli.report import program
+from wonderful_team.cli.run_summary import program
 from wonderful_team.errors import ConfigError
 
 KINDS = ("world", "method", "task", "model")

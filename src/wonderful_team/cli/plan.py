@@ -63,12 +63,12 @@ def command(
     """
     if len(words) < 2:
         raise click.UsageError("at least one IMAGE and then the INSTRUCTION are needed")
-    from wonderful_team.api import Team
+    from wonderful_team.api.observation import Observation
+    from wonderful_team.api.photos import instruction_with_pictures, read_keep_out
+    from wonderful_team.api.team import Team
     from wonderful_team.cli.progress import Progress
-    from wonderful_team.cli.report import report_plan
+    from wonderful_team.cli.run_summary import report_plan
     from wonderful_team.errors import reading
-    from wonderful_team.observe import Observation
-    from wonderful_team.photos import instruction_with_pictures, read_keep_out
 
     *files, text = words
     observation = Observation.from_files(*files, depth=depth, camera=camera, corners=corners)

@@ -47,9 +47,9 @@ def command(model: str, save: str | None, as_json: bool, **options: Any) -> int:
     pictures a request may hold, whether schemas are enforced and thinking can be switched off, context, latency, price.
     Where nothing fits, the profile says so, and planning draws labelled axes instead of trusting native coordinates.
     """
+    from wonderful_team.api.probe import probe_model
     from wonderful_team.cli.progress import cost_line
     from wonderful_team.models.profiles import profile_to_dict, save_profile
-    from wonderful_team.probing import probe_model
 
     started = time.monotonic()
     probed = probe_model(model, save=save, tell=lambda line: click.echo(line, err=True), **options)

@@ -1,72 +1,59 @@
-"""The end of a command that planned or ran: result, cost, page."""
+"""`report`: stores of `bench` become one page, Markdown, CSV and LaTeX."""
 
 from __future__ import annotations
 
-import shutil
-import sys
-from collections.abc import Mapping
+import shlex
 from pathlib import Path
-from typing import Any
 
 import click
 
-from wonderful_team.cli.options import Common
+from wonderful_team.cli.options import PATH
 from wonderful_team.cli.output import finish
-from wonderful_team.cli.progress import Progress
-from wonderful_team.cli.wording import plan_exit_code, plan_lines, trial_exit_code, trial_lines
-from wonderful_team.core.jsonable import to_jsonable
-from wonderful_team.made import MadePlan, RecordedTrial, cost_json
 
 
-def report_plan(command: str, made: MadePlan, common: Common, progress: Progress) -> int:
-    """Print a plan; returns the exit code."""
-    progress.end(made.usage)
-    return end(command, plan_lines(made), made.to_json(), common, plan_exit_code(made), made.page)
-
-
-def report_trial(
-    command: str, trial: RecordedTrial, common: Common, progress: Progress, more: Mapping[str, Any]
+@click.command(
+    short_help="Turn stores into one page, tables and plots.",
+    epilog="\b\nwonderful-team report study.db --open\nwonderful-team report study.*.db --baseline direct --latex tables",
+)
+@click.argument("stores", nargs=-1, required=True, type=PATH, metavar="STORE...")
+@click.option("--baseline", metavar="METHOD", help="Compare every method with this one only.")
+@click.option("--out", type=PATH, metavar="FILE", help="The page. [default: the first store's name with .html]")
+@click.option("--csv", type=PATH, metavar="FILE", help="Where the table of trials goes. [default: beside the page]")
+@click.option("--latex", type=PATH, metavar="DIR", help="Write LaTeX tables there.")
+@click.option("--json", "as_json", is_flag=True, help="Print one JSON document instead of text.")
+@click.option("--open", "open_page", is_flag=True, help="Open the page when done.")
+@click.pass_context
+def command(
+    context: click.Context,
+    stores: tuple[Path, ...],
+    baseline: str | None,
+    out: Path | None,
+    csv: Path | None,
+    latex: Path | None,
+    as_json: bool,
+    open_page: bool,
 ) -> int:
-    """Print a trial; returns the exit code."""
-    progress.end(trial.usage)
-    return end(command, trial_lines(trial), {**trial_json(trial), **more}, common, trial_exit_code(trial), trial.page)
+    """Merge STOREs (shards, or several studies) and write what they show."""
+    from wonderful_team.cli.run_summary import shown_path
+    from wonderful_team.evals.report.page import write_all
+    from wonderful_team.evals.report.tables import condition_json, to_markdown
 
-
-def trial_json(trial: RecordedTrial) -> dict[str, Any]:
-    """A trial as JSON: the whole of it stands in record.json."""
-    return {
-        "scene": trial.scene,
-        "seed": trial.seed,
-        "method": trial.method,
-        "model": trial.model,
-        "outcome": trial.outcome,
-        "stage": trial.stage,
-        "reason": trial.reason,
-        "plan_ids": [plan.id for plan in trial.plans],
-        "refusals": [reason for gate in trial.gates for reason in gate.reasons],
-        "executed": sum(report.executed for report in trial.reports),
-        "verdicts": to_jsonable(trial.verdicts),
-        "warnings": list(trial.warnings),
-        **cost_json(trial.usage, trial.usage_by_role, trial.folder),
+    words = shlex.join(["wonderful-team", *(context.obj or ())])
+    page = out or stores[0].with_suffix(".html")
+    made = write_all(stores, page, baseline=baseline, csv=csv, latex=latex, command=words)
+    if open_page:
+        click.launch(made.page.resolve().as_uri())
+    summary = made.summary
+    result = {
+        "conditions": [condition_json(summary.cell(one)) for one in (*summary.compared, *summary.bounds)],
+        "answer": summary.headline(baseline),
+        "warnings": list(made.warnings),
+        "page": str(made.page),
+        "csv": str(made.csv),
+        "markdown": str(made.markdown),
+        "latex": [str(path) for path in made.latex],
     }
-
-
-def end(command: str, lines: list[str], result: Mapping[str, Any], common: Common, code: int, page: Path | None) -> int:
-    """Result on stdout, the page on the last line, and the page in a browser when asked for."""
-    last = "" if page is None else f"page: {shown_path(page)}"
-    if page is not None and common.open_page:
-        click.launch(page.resolve().as_uri())
-    return finish(command, text="\n".join(lines), result=result, as_json=common.as_json, code=code, last_line=last)
-
-
-def program() -> str:
-    """How a person calls this program here: by its name, or by its path where the name is not found."""
-    return "wonderful-team" if shutil.which("wonderful-team") else shown_path(Path(sys.argv[0]))
-
-
-def shown_path(path: Path) -> str:
-    """A path as a person types it: relative to the working directory where that is shorter."""
-    try:
-        return str(path.absolute().relative_to(Path.cwd()))
-    except ValueError:
-        return str(path)
+    text = to_markdown(summary, baseline).rstrip()
+    return finish(
+        "report", text=text, result=result, as_json=as_json, code=0, last_line=f"page: {shown_path(made.page)}"
+    )

@@ -66,15 +66,16 @@ def command(
 
     An INSTRUCTION takes the place of the task's own; the task's scorer is then left out.
     """
-    from wonderful_team.api import Team, make_world, rollout
+    from wonderful_team.api.method import Method
+    from wonderful_team.api.photos import read_keep_out
+    from wonderful_team.api.rollout import make_world, rollout
+    from wonderful_team.api.team import Team
     from wonderful_team.cli.asking import ask_person
     from wonderful_team.cli.progress import Progress
-    from wonderful_team.cli.report import report_trial
+    from wonderful_team.cli.run_summary import report_trial
     from wonderful_team.cli.video import FRAME_S, Film, check_video_name
     from wonderful_team.core.protocols import Filmed, offers
     from wonderful_team.errors import reading
-    from wonderful_team.methods import Method
-    from wonderful_team.photos import read_keep_out
     from wonderful_team.record import read_run_plan
     from wonderful_team.registry.methods import team_way
     from wonderful_team.registry.worlds import scene_name

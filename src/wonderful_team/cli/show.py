@@ -12,7 +12,7 @@ import click
 
 from wonderful_team.cli.options import PATH, read_models
 from wonderful_team.cli.output import finish
-from wonderful_team.cli.report import shown_path
+from wonderful_team.cli.run_summary import shown_path
 from wonderful_team.core.text import counted, picture_names, spoken, visible
 from wonderful_team.errors import UnknownNameError, reading
 
@@ -93,7 +93,7 @@ def _show(folder: Path, role: str | None, open_page: bool, as_json: bool) -> int
 
 def _replay(folder: Path, tolerant: bool, as_json: bool) -> int:
     """Exit code 0 when the same plans come out, 1 when not."""
-    from wonderful_team.replays import replay
+    from wonderful_team.api.replay import replay
 
     found = replay(folder, tolerant=tolerant)
     how = "SAME" if found.same else "DIFFERENT"
@@ -115,11 +115,11 @@ def _replay(folder: Path, tolerant: bool, as_json: bool) -> int:
 
 def _branch(folder: Path, stage: str, words: Sequence[str], out: Path | None, as_json: bool, open_page: bool) -> int:
     """A new run that branches off this one."""
+    from wonderful_team.api.replay import branch
+    from wonderful_team.api.results import MadePlan
     from wonderful_team.cli.progress import Progress
-    from wonderful_team.cli.report import trial_json
+    from wonderful_team.cli.run_summary import trial_json
     from wonderful_team.cli.wording import plan_exit_code, plan_lines, trial_exit_code, trial_lines
-    from wonderful_team.made import MadePlan
-    from wonderful_team.replays import branch
 
     progress = Progress(live=not as_json)
     # "latest" points at the new run once there is one.

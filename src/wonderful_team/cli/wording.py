@@ -8,11 +8,11 @@ from typing import Any
 
 import numpy as np
 
+from wonderful_team.api.results import FoundTarget, MadePlan, RecordedTrial
 from wonderful_team.core.actions import Action, MoveTo, Navigate, PickPlace, Place, Push, Step, Trajectory, places_of
 from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.text import counted, picture_names, spoken, visible
 from wonderful_team.core.values import Instruction, Plan, PlannedAction
-from wonderful_team.made import FoundTarget, MadePlan, RecordedTrial
 
 EXIT_OF_STATUS: dict[str, int] = {
     "planned": 0,

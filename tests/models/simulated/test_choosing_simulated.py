@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import wonderful_team as wt
+from wonderful_team.api.trial import check_isolation, model_of
 from wonderful_team.errors import ConfigError, UnknownNameError
 from wonderful_team.models.error_profile import (
     Boxes,
@@ -23,7 +24,6 @@ from wonderful_team.models.error_profile import (
 )
 from wonderful_team.simulated import profile_named
 from wonderful_team.simulated.profiles import from_measured
-from wonderful_team.trial_runs import check_isolation, model_of
 
 
 @pytest.fixture

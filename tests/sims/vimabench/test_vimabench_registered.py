@@ -5,12 +5,12 @@ from __future__ import annotations
 import pytest
 
 from wonderful_team import registry
+from wonderful_team.api.study import Study, known_suites
 from wonderful_team.core.protocols import privileged
 from wonderful_team.errors import ConfigError, UnknownNameError
 from wonderful_team.evals.suites import VIMA_TASKS
 from wonderful_team.sims.vimabench.finding import PATH_VARIABLE, PYTHON_VARIABLE
 from wonderful_team.sims.vimabench.tasks import TASKS, partitions
-from wonderful_team.studies import Study, known_suites
 
 
 @pytest.fixture

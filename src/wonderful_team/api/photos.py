@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Literal, TypeAlias
+from typing import Literal
 
 from wonderful_team.core.geometry import Box, Camera
 from wonderful_team.core.values import Instruction, KeepOut, Slot, SlotKind, View
@@ -13,6 +13,7 @@ from wonderful_team.images.calibration import (
     CAMERA_FILE_FORM,
     Calibration,
     CameraFile,
+    PathLike,
     corners_camera,
     load_camera,
     load_depth,
@@ -23,7 +24,6 @@ __all__ = [
     "Calibration",
     "CameraFile",
     "SLOT_KINDS",
-    "PathLike",
     "corners_camera",
     "instruction_with_pictures",
     "load_camera",
@@ -32,7 +32,6 @@ __all__ = [
     "read_keep_out",
 ]
 
-PathLike: TypeAlias = str | Path
 SLOT_KINDS: tuple[SlotKind, ...] = ("object", "scene", "frame", "before", "after")
 
 

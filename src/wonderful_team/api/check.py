@@ -8,6 +8,8 @@ from pathlib import Path
 from typing import Any
 
 from wonderful_team import registry
+from wonderful_team.api.method import Method
+from wonderful_team.api.trial import run_trial
 from wonderful_team.core.intervals import Rate
 from wonderful_team.core.protocols import privileged
 from wonderful_team.core.text import counted
@@ -16,9 +18,7 @@ from wonderful_team.evals.checking import SEEDS, Findings, check_controls, check
 from wonderful_team.evals.controls import CONTROLS, NO_MODEL
 from wonderful_team.evals.trials import Condition, RunSettings, TrialResult, TrialSpec
 from wonderful_team.evals.workers import run_safely
-from wonderful_team.methods import Method
 from wonderful_team.registry.files import load_from_file
-from wonderful_team.trial_runs import run_trial
 
 TRIED_IN = "tabletop/rotate"
 """Where methods and models are tried."""

@@ -15,12 +15,13 @@ from typing import Any
 
 from wonderful_team import registry
 from wonderful_team.agents import Prompts
-from wonderful_team.api import Team, rollout
+from wonderful_team.api.results import MadePlan, RecordedTrial
+from wonderful_team.api.rollout import rollout
+from wonderful_team.api.team import Team
 from wonderful_team.core.actions import Vocabulary
 from wonderful_team.core.protocols import Event, Model, Subscriber
 from wonderful_team.core.values import Observation, Plan
 from wonderful_team.errors import ConfigError, WonderfulTeamError, reading
-from wonderful_team.made import MadePlan, RecordedTrial
 from wonderful_team.models.replay import Branching, ReplayModel
 from wonderful_team.record.plan_file import has_short_id
 from wonderful_team.record.record_schema import read_record

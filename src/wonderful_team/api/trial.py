@@ -5,93 +5,40 @@
 
 from __future__ import annotations
 
-import asyncio
 import contextlib
 import hashlib
-import inspect
-import shlex
 import shutil
 import time
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
-from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from wonderful_team import registry
-from wonderful_team.agents.prompts import role_names
-from wonderful_team.api import rollout
+from wonderful_team.api.method import Method
+from wonderful_team.api.photo_trial import run_photo
+from wonderful_team.api.rollout import rollout
+from wonderful_team.api.trial_setup import Counting, fingerprint, prepared
 from wonderful_team.core.actions import Action
 from wonderful_team.core.jsonable import to_jsonable
-from wonderful_team.core.protocols import Event, Model, Policy, World, privileged
-from wonderful_team.core.text import user_path
-from wonderful_team.core.values import Instruction, Observation, Request, StepReport, Trial, Usage, View
+from wonderful_team.core.protocols import Policy, World, privileged
+from wonderful_team.core.values import Instruction, Observation, StepReport, Trial, Usage, View
 from wonderful_team.errors import ConfigError
 from wonderful_team.evals.controls import CONTROLS, make_control
-from wonderful_team.evals.trials import Condition, Limiter, RunSettings, TrialResult, TrialSpec
-from wonderful_team.methods import Method
-from wonderful_team.models.providers import model_options
-from wonderful_team.record.versions import versions
+from wonderful_team.evals.trials import Condition, RunSettings, TrialResult, TrialSpec
 from wonderful_team.registry.files import check_names_no_code, is_file_name
 from wonderful_team.registry.role_models import REST, choice_of
 from wonderful_team.runtime import rollout as roll_out
 
 SUCCESS_EVERY = 10
 """With pages of failures, successes of these seeds (1000, 1010, ...) keep theirs too: a reader wants to see both."""
-BESIDE = frozenset({"memory"})
-"""Roles whose requests run beside the main line and make no waiting round."""
-
-
-@dataclass
-class Counting:
-    """Counts what a trial asks: calls, pictures, cost by role, and waiting rounds."""
-
-    rounds: int = 0
-    by_role: dict[str, Usage] = field(default_factory=dict)
-    provenance: set[str] = field(default_factory=set)
-    _round_of: dict[str, int] = field(default_factory=dict)
-
-    def on_event(self, event: Event) -> None:
-        """Keep what is counted; a request sent after an answer of round n belongs to round n + 1."""
-        if event.kind == "request" and event.content.role not in BESIDE:
-            self._round_of[event.content.id] = self.rounds + 1
-        elif event.kind == "answer":
-            request, answer = event.content
-            self.rounds = max(self.rounds, self._round_of.get(request.id, 0))
-            self.by_role[request.role] = self.by_role.get(request.role, Usage()) + answer.usage
-            self.provenance.add(answer.provenance)
-
-
-class Limited:
-    """A model whose calls wait for a place among those of all workers."""
-
-    def __init__(self, model: Model, limiter: Limiter) -> None:
-        self.model, self.limiter = model, limiter
-        self.name = registry.model_label(model)
-
-    def __getattr__(self, name: str) -> Any:
-        return getattr(self.model, name)
-
-    async def answer(self, request: Request) -> Any:
-        """The model's answer."""
-        await self.limiter.acquire()
-        try:
-            if inspect.iscoroutinefunction(self.model.answer):
-                return await self.model.answer(request)
-            result = await asyncio.to_thread(self.model.answer, request)
-            return await result if inspect.isawaitable(result) else result
-        finally:
-            await self.limiter.release()
 
 
 def run_trial(spec: TrialSpec, settings: RunSettings) -> TrialResult:
     """Run one trial of a study in this process; a `TrialRunner`."""
     check_code(spec, settings)
     if spec.task.endswith(".json"):
-        from wonderful_team.photo_runs import run_photo
-
         return run_photo(spec, settings)
     started = time.monotonic()
     world = make_scene(spec)
@@ -228,31 +175,6 @@ def models_of(condition: Condition, world: World) -> Any:
     return {**model_of(chosen[REST], condition.isolate, world), **own}
 
 
-def prepared(spec: TrialSpec, settings: RunSettings, model: Any, world: World | None = None) -> Method:
-    """The method of a trial with its model, capped, and limited together with all other workers."""
-    caps, asked = settings.caps, dict(settings.extra)
-    if settings.limiter is not None:
-        options = model_options(asked.get("thinking"), asked.get("price"), bool(asked.get("local_only")), role_names())
-        made = registry.make_models(model, role_names(), options, world)
-        behind = {id(one): Limited(one, settings.limiter) for one in made.values()}
-        model = {role: behind[id(one)] for role, one in made.items()}
-    return Method(
-        **asked,
-        model=model,
-        method=spec.condition.method,
-        max_calls=caps.calls,
-        max_tokens=caps.tokens,
-        max_seconds=caps.seconds,
-        max_usd=caps.usd,
-        concurrency=settings.concurrency,
-        repeat=spec.repeat,
-        prompts=settings.prompts,
-        out=settings.out,
-        command=reproduce(spec, asked),
-        world=world,
-    )
-
-
 GROUNDING_ROLES = ("manager", "checker", "mover")
 TRUTH_MODEL = "simulated:perfect"
 
@@ -279,53 +201,6 @@ def check_isolation(isolate: str) -> None:
     """
     if isolate not in ("planning", "grounding"):
         raise ConfigError(f"--isolate {isolate!r}: valid are planning (truth grounds), grounding (truth plans)")
-
-
-def reproduce(spec: TrialSpec, asked: Mapping[str, Any] | None = None) -> str:
-    """The command that runs this trial again by itself; `asked` holds the options of its models."""
-    condition = spec.condition
-    chosen = choice_of(condition.model)
-    named = {REST: chosen} if isinstance(chosen, str) else chosen
-    by_role = [_of_role(role, name) for role, name in named.items()]
-    levels = (asked or {}).get("thinking") or {}
-    levels = {REST: levels} if isinstance(levels, str) else levels
-    thinking = [word for role, level in levels.items() for word in ("--thinking", _of_role(role, level))]
-    if condition.method in CONTROLS or condition.isolate or condition.perturb:
-        words = ["bench", spec.task, "--seeds", str(spec.seed), "--no-control", "all", "--pages", "all"]
-        words += ["--isolate", condition.isolate] if condition.isolate else []
-        words += ["--perturb", condition.perturb] if condition.perturb else []
-        models = [] if condition.method in CONTROLS else ["--model", ",".join(by_role), *thinking]
-    else:
-        words = ["run", spec.task, "--seed", str(spec.seed)]
-        models = [*(word for name in by_role for word in ("--model", name)), *thinking]
-    replans = ["--replans", str(condition.replans), *(["--looks", str(condition.looks)] if condition.looks else [])]
-    return shlex.join(["wonderful-team", *words, *replans, "--method", condition.method, *models])
-
-
-def _of_role(role: str, value: str) -> str:
-    return value if role == REST else f"{role}={value}"
-
-
-def fingerprint(spec: TrialSpec) -> dict[str, str]:
-    """What produced a result: package, commit, and hashes of the user's own files."""
-    chosen = choice_of(spec.condition.model)
-    models = [chosen] if isinstance(chosen, str) else list(chosen.values())
-    own = [name for name in (spec.task, spec.condition.method, *models) if is_file_name(name)]
-    return {**_versions(), **{name: _file_hash(name) for name in own}}
-
-
-@lru_cache
-def _versions() -> dict[str, str]:
-    from wonderful_team._version import __version__
-
-    found = {name: str(value) for name, value in versions().items() if value is not None}
-    return {"wonderful-team": __version__, **{k: v for k, v in found.items() if "commit" in k}}
-
-
-@lru_cache
-def _file_hash(name: str) -> str:
-    path = user_path(name.rpartition(":")[0] or name)
-    return hashlib.sha256(path.read_bytes()).hexdigest()[:12] if path.is_file() else "missing"
 
 
 def check_names(

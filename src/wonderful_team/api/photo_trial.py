@@ -7,19 +7,19 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Any
 
+from wonderful_team.api.method import Method, team_config
+from wonderful_team.api.observation import Observation
+from wonderful_team.api.trial_setup import Counting, fingerprint, prepared
 from wonderful_team.core.geometry import Box
 from wonderful_team.core.values import GroundedTarget, Instruction, Target, Usage
 from wonderful_team.errors import BudgetReached, ConfigError, ModelUnavailableError, WonderfulTeamError
 from wonderful_team.evals.photos import Located, PhotoScene, read_photos, score_photo
 from wonderful_team.evals.trials import RunSettings, TrialResult, TrialSpec
-from wonderful_team.finding import find
-from wonderful_team.methods import Method, team_config
 from wonderful_team.models.door import Door
-from wonderful_team.observe import Observation
 from wonderful_team.planning import TeamConfig
+from wonderful_team.planning.ground_only import find
 from wonderful_team.registry.role_models import choice_of
 from wonderful_team.runtime.loop import Caller
-from wonderful_team.trial_runs import Counting, fingerprint, prepared
 
 
 def run_photo(spec: TrialSpec, settings: RunSettings) -> TrialResult:

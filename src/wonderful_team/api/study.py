@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any, Literal
 
 from wonderful_team import registry
+from wonderful_team.api.trial import check_isolation, check_names, code_of_names, run_trial
 from wonderful_team.errors import ConfigError, UnknownNameError
 from wonderful_team.evals.controls import CONTROLS
 from wonderful_team.evals.estimate import Estimate, estimate
@@ -28,7 +29,6 @@ from wonderful_team.models.providers import PriceChoice
 from wonderful_team.record.run_folders import runs_folder
 from wonderful_team.registry.files import is_file_name
 from wonderful_team.registry.role_models import choice_of, read_choices, read_roles, text_of
-from wonderful_team.trial_runs import check_isolation, check_names, code_of_names, run_trial
 
 ALL_CONTROLS = (*CONTROLS, OFFLINE)
 PILOT = 6

@@ -9,10 +9,11 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
+from wonderful_team.api.photos import corners_camera, load_camera, load_depth, load_view
 from wonderful_team.core.values import Limits, View
 from wonderful_team.core.values import Observation as BaseObservation
 from wonderful_team.errors import ConfigError, reading
-from wonderful_team.photos import PathLike, corners_camera, load_camera, load_depth, load_view
+from wonderful_team.images.calibration import PathLike
 
 if TYPE_CHECKING:
     from PIL.Image import Image
@@ -45,7 +46,7 @@ class Observation(BaseObservation):
         Args:
             *pictures: Image files; the first is the main view.
             depth: Depth of the first: a .npy file in metres, or a 16-bit PNG in millimetres.
-            camera: A camera file (JSON) for the first; `wonderful_team.photos.CameraFile` says what it holds.
+            camera: A camera file (JSON) for the first; `wonderful_team.api.photos.CameraFile` says what it holds.
             corners: Instead of it, the table's four corners in the first: "x,y x,y x,y x,y=WxH".
 
         Raises:

@@ -1,0 +1,186 @@
+"""Worlds by name, tasks of the user's own, and a method at work in a world, recorded."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable, Sequence
+from dataclasses import fields
+from pathlib import Path
+from typing import Any
+
+from wonderful_team import registry
+from wonderful_team.api.method import Method
+from wonderful_team.api.recording import tell, write_page_or_warn
+from wonderful_team.api.results import MadePlan, RecordedTrial
+from wonderful_team.api.team import _failing, _recording
+from wonderful_team.core.protocols import Policy, Privileged, Subscriber, World, privileged
+from wonderful_team.core.values import Instruction, KeepOut, Plan, ReadPlan
+from wonderful_team.errors import ConfigError
+from wonderful_team.record import read_run_plan
+from wonderful_team.record.run_folders import find_run
+from wonderful_team.record.setup import setup_entry
+from wonderful_team.runtime import Approval, Approver
+from wonderful_team.runtime import rollout as roll_out
+from wonderful_team.runtime.user_code import GuardedWorld, close_world
+
+
+def make_world(
+    name: str | Any,
+    seed: int = 0,
+    instruction: str | Instruction | None = None,
+    keep_out: Sequence[KeepOut] = (),
+    **arguments: Any,
+) -> World:
+    """A world with one scene set up in it, such as `make_world("tabletop/rotate", seed=3)`.
+
+    Args:
+        name: WORLD/TASK, FILE.py:NAME, or an object of your own that is to be used as a world.
+        seed: Of the scene.
+        instruction: Instead of the world's own; its scorer is then dropped.
+        keep_out: Regions nothing may enter, beside the world's own.
+        **arguments: For the constructor of a world of FILE.py:NAME, such as a robot's address:
+            `make_world("arm.py:Arm", address="10.0.0.5")`; in a name they stand as "arm.py:Arm?address=10.0.0.5".
+
+    Raises:
+        ConfigError: An unknown name, or a world without an instruction.
+        WorldUnavailableError: The world's own code raised.
+    """
+    return registry.make_world(name, seed, instruction, keep_out, **arguments)
+
+
+def rollout(
+    method: Method | Policy,
+    world: World | str,
+    *,
+    plan: MadePlan | ReadPlan | Plan | str | Path | None = None,
+    replans: int = 0,
+    looks: int = 0,
+    approval: Approval | Approver | None = None,
+    seed: int | None = None,
+    scene: str = "",
+    scored: bool = True,
+    out: str | Path | None = None,
+    subscribers: Sequence[Subscriber] = (),
+) -> RecordedTrial:
+    """Run a method in a world, recorded.
+
+    Args:
+        method: A Team, a Method, or anything with the Policy interface.
+        world: Where it acts: a world, or its name as `make_world` takes it, with `seed`; it is then closed at the end.
+        plan: A plan that was read beforehand: what `team.plan` returned, or the folder of the run that made it. Exactly
+            that plan runs, in its own instruction and scene, or nothing moves; after it ran, replans go on as asked.
+            A bare `Plan` comes without its picture: then the scene must be the same pixel for pixel.
+        replans: How often the method may plan again after its first attempt.
+        looks: How often it may run only the first push of a plan, look, and plan the rest anew; that is no replan.
+        approval: Consent to one plan (`plan.approve("Ada")`), or a function that takes a `Proposal` and returns
+            `proposal.approve(…)` or `proposal.decline(…)`. A no ends the trial; a no with a reason is advice for one
+            new plan, which is asked about again.
+        seed: What the record says of the scene's seed.
+        scene: What the record calls the scene.
+        scored: Let the world's scorer, where it has one, judge the outcome afterwards.
+        out: Where the run folder goes; default the team's, else $WONDERFUL_TEAM_RUNS or `runs`.
+        subscribers: Told of every event as it happens.
+
+    Raises:
+        ConfigError: Wrong use, before anything moved.
+        KeyboardInterrupt: Ctrl-C. The world was stopped and the record is whole.
+        SystemExit: SIGTERM or SIGHUP, likewise; its code is 128 + the signal's number.
+    """
+    if isinstance(world, str):
+        made_here = make_world(world, seed or 0)
+        try:
+            return rollout(
+                method,
+                made_here,
+                plan=plan,
+                replans=replans,
+                looks=looks,
+                approval=approval,
+                seed=seed or 0,
+                scene=scene or registry.scene_name(world, seed or 0),
+                scored=scored,
+                out=out,
+                subscribers=subscribers,
+            )
+        finally:
+            close_world(made_here, lambda text: warnings.warn(text, stacklevel=2))
+    if not isinstance(method, Method) and not callable(getattr(method, "decide", None)):
+        raise ConfigError(
+            f"a {type(method).__name__} is no method; valid: a wt.Team, a wt.Method, or an object with decide(situation)"
+        )
+    read = _read(plan)
+    if isinstance(method, Method):
+        method = method.in_world(world)
+    named = method if isinstance(method, Method) else None
+    # Read as the rollout reads it: what a user's world raises or holds is named as the world's.
+    guarded = GuardedWorld(world)
+    scorer: Privileged | None = privileged(world) if scored else None
+    setup = setup_entry(
+        "run",
+        guarded.vocabulary,
+        guarded.limits,
+        keep_out=guarded.limits.keep_out,
+        scene=scene,
+        seed=seed,
+        replans=replans,
+        looks=looks,
+        plan=None if read is None else read.plan.id,
+        scored=scorer is not None,
+    )
+    place, command = (out or named.out, named.command) if named else (out, None)
+    with _recording(guarded.instruction.plain_text, place, command) as recorder:
+        everyone = (recorder, *subscribers, *(named.subscribers if named else ()))
+        for text in named.warnings if named else ():
+            tell(everyone, "warning", "setup", text)
+        with _failing(recorder, everyone):
+            trial = roll_out(
+                method.policy(recorder, *subscribers) if isinstance(method, Method) else method,
+                world,
+                plan=read,
+                replans=replans,
+                looks=looks,
+                scorer=scorer,
+                subscribers=everyone,
+                approval=approval,
+                seed=seed,
+                scene=scene,
+                configuration={
+                    **(named.configuration() if named else {}),
+                    "task": guarded.instruction,
+                    "limits": guarded.limits,
+                    "setup": setup,
+                    "words": named.words() if named else {},
+                },
+                page=lambda: write_page_or_warn(recorder.folder),
+                strict=named.strict if named else False,
+            )
+    happened = {item.name: getattr(trial, item.name) for item in fields(trial)}
+    return RecordedTrial(**happened, folder=recorder.folder, warnings=recorder.warnings)
+
+
+def task(name: str, *, instruction: str, horizon: int = 1, **more: Any) -> Callable[[Callable[..., Any]], Any]:
+    """Make a tabletop task of a function `(scene, rng)` that sets the table; see docs/own-task.md."""
+    from wonderful_team.sims.tabletop import task as tabletop_task
+
+    return tabletop_task(name, instruction=instruction, horizon=horizon, **more)
+
+
+def _read(plan: MadePlan | ReadPlan | Plan | str | Path | None) -> ReadPlan | None:
+    """A plan that is handed in, with its picture and its page where those are at hand.
+
+    Raises:
+        ConfigError: It is no plan, or its folder holds none.
+    """
+    match plan:
+        case None | ReadPlan():
+            return plan
+        case MadePlan():
+            photo = getattr(plan.observation, "photo", False)
+            return ReadPlan(plan.plan, plan.observation, plan.page, same_clock=not photo)
+        case Plan():
+            return ReadPlan(plan)
+        case str() | Path():
+            return read_run_plan(find_run(str(plan)))
+    raise ConfigError(
+        f"plan: a {type(plan).__name__} is no plan; valid: what team.plan returned, or the folder of the run that made it"
+    )

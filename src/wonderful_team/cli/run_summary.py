@@ -1,0 +1,72 @@
+"""The end of a command that planned or ran: result, cost, page."""
+
+from __future__ import annotations
+
+import shutil
+import sys
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import click
+
+from wonderful_team.api.results import MadePlan, RecordedTrial, cost_json
+from wonderful_team.cli.options import Common
+from wonderful_team.cli.output import finish
+from wonderful_team.cli.progress import Progress
+from wonderful_team.cli.wording import plan_exit_code, plan_lines, trial_exit_code, trial_lines
+from wonderful_team.core.jsonable import to_jsonable
+
+
+def report_plan(command: str, made: MadePlan, common: Common, progress: Progress) -> int:
+    """Print a plan; returns the exit code."""
+    progress.end(made.usage)
+    return end(command, plan_lines(made), made.to_json(), common, plan_exit_code(made), made.page)
+
+
+def report_trial(
+    command: str, trial: RecordedTrial, common: Common, progress: Progress, more: Mapping[str, Any]
+) -> int:
+    """Print a trial; returns the exit code."""
+    progress.end(trial.usage)
+    return end(command, trial_lines(trial), {**trial_json(trial), **more}, common, trial_exit_code(trial), trial.page)
+
+
+def trial_json(trial: RecordedTrial) -> dict[str, Any]:
+    """A trial as JSON: the whole of it stands in record.json."""
+    return {
+        "scene": trial.scene,
+        "seed": trial.seed,
+        "method": trial.method,
+        "model": trial.model,
+        "outcome": trial.outcome,
+        "stage": trial.stage,
+        "reason": trial.reason,
+        "plan_ids": [plan.id for plan in trial.plans],
+        "refusals": [reason for gate in trial.gates for reason in gate.reasons],
+        "executed": sum(report.executed for report in trial.reports),
+        "verdicts": to_jsonable(trial.verdicts),
+        "warnings": list(trial.warnings),
+        **cost_json(trial.usage, trial.usage_by_role, trial.folder),
+    }
+
+
+def end(command: str, lines: list[str], result: Mapping[str, Any], common: Common, code: int, page: Path | None) -> int:
+    """Result on stdout, the page on the last line, and the page in a browser when asked for."""
+    last = "" if page is None else f"page: {shown_path(page)}"
+    if page is not None and common.open_page:
+        click.launch(page.resolve().as_uri())
+    return finish(command, text="\n".join(lines), result=result, as_json=common.as_json, code=code, last_line=last)
+
+
+def program() -> str:
+    """How a person calls this program here: by its name, or by its path where the name is not found."""
+    return "wonderful-team" if shutil.which("wonderful-team") else shown_path(Path(sys.argv[0]))
+
+
+def shown_path(path: Path) -> str:
+    """A path as a person types it: relative to the working directory where that is shorter."""
+    try:
+        return str(path.absolute().relative_to(Path.cwd()))
+    except ValueError:
+        return str(path)

@@ -11,9 +11,9 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from gate_cases import CAMERA, CLEARANCE_M, HIGH, LOW, SIZE_PX, Block, Case, corners_of
 from shapely import LineString, MultiPoint, Point, Polygon, affinity, box
 
+from tests.runtime.gate_cases import CAMERA, CLEARANCE_M, HIGH, LOW, SIZE_PX, Block, Case, corners_of
 from wonderful_team.core.actions import At, PickPlace, PickPlaceStep, Push, PushStep
 from wonderful_team.core.values import PlannedAction
 

@@ -6,8 +6,7 @@ import time
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from runtime_fakes import HALF_PX, SquaresWorld, make_plan
-
+from tests.runtime.runtime_fakes import HALF_PX, SquaresWorld, make_plan
 from wonderful_team.contracts import BoxVerdict, DraftPlan, JudgeBox, LocatePoints, PlanDraft, ReadScene, ShownTask
 from wonderful_team.core.geometry import Box
 from wonderful_team.core.pictures import Axes, BoxMark, Candidates

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import replace
 
 import pytest
-from runtime_fakes import MovesPolicy, SquaresTruth, SquaresWorld, make_plan
 
+from tests.runtime.runtime_fakes import MovesPolicy, SquaresTruth, SquaresWorld, make_plan
 from wonderful_team.core.values import ReadPlan
 from wonderful_team.errors import ConfigError
 from wonderful_team.runtime import Proposal, rollout

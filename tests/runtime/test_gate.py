@@ -7,8 +7,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from runtime_fakes import SquaresWorld, camera, make_plan, planned, to_m
 
+from tests.runtime.runtime_fakes import SquaresWorld, camera, make_plan, planned, to_m
 from wonderful_team.core.actions import (
     ARM,
     PICK_PLACE,

@@ -8,8 +8,8 @@ from typing import Any, ClassVar
 
 import numpy as np
 import pytest
-from runtime_fakes import HALF_PX, SquaresWorld, camera, make_plan, planned, to_m
 
+from tests.runtime.runtime_fakes import HALF_PX, SquaresWorld, camera, make_plan, planned, to_m
 from wonderful_team.core.actions import (
     ARM,
     At,

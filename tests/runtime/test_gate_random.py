@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from gate_cases import Case, edited, judged, random_case
-from gate_oracle import broken_rules
 from hypothesis import given, settings
 from hypothesis import strategies as st
+
+from tests.runtime.gate_cases import Case, edited, judged, random_case
+from tests.runtime.gate_oracle import broken_rules
 
 WITH_DEPTH, WITHOUT_DEPTH, EDITED = 100, 1500, 300
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 import pytest
-from runtime_fakes import Listener, SquaresTruth, SquaresWorld, make_plan
 
+from tests.runtime.runtime_fakes import Listener, SquaresTruth, SquaresWorld, make_plan
 from wonderful_team.core.protocols import Act, Done, Situation
 from wonderful_team.errors import ConfigError
 from wonderful_team.runtime import Approval, rollout

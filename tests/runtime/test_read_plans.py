@@ -8,8 +8,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from PIL import Image
-from runtime_fakes import COLOURS, Listener, MovesPolicy, SquaresTruth, SquaresWorld, camera, make_plan
 
+from tests.runtime.runtime_fakes import COLOURS, Listener, MovesPolicy, SquaresTruth, SquaresWorld, camera, make_plan
 from wonderful_team.core.geometry import AffineCamera
 from wonderful_team.core.protocols import Event
 from wonderful_team.core.values import Instruction, Observation, ReadPlan, Slot

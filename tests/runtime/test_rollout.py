@@ -6,8 +6,8 @@ import asyncio
 from dataclasses import replace
 
 import pytest
-from runtime_fakes import Listener, MovesPolicy, SquaresTruth, SquaresWorld, make_plan
 
+from tests.runtime.runtime_fakes import Listener, MovesPolicy, SquaresTruth, SquaresWorld, make_plan
 from wonderful_team.core.protocols import Act, GaveUp, Score
 from wonderful_team.core.values import GateReport, Usage
 from wonderful_team.errors import (

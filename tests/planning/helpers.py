@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 from typing import Any
 
-from benchmarks.waiting_rounds import photo
+from tests.planning.rounds import photo
 from wonderful_team.core.actions import PICK_PLACE, Vocabulary
 from wonderful_team.core.caps import Caps
 from wonderful_team.core.protocols import Event

@@ -7,8 +7,8 @@ import random
 
 import pytest
 
-from benchmarks.waiting_rounds import photo
 from tests.planning.helpers import Tape, asked, doubt, plan_with, scripted
+from tests.planning.rounds import photo
 from wonderful_team.core.actions import ARM, PICK_PLACE
 from wonderful_team.core.caps import Caps
 from wonderful_team.core.values import Instruction, Usage, Words

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from benchmarks.waiting_rounds import measure
+from tests.planning.rounds import measure
 from wonderful_team.planning import SETTINGS, TeamConfig
 
 

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
 
-from benchmarks.wordings import MOST_SEEDS, Wording
+from tests.offline.language.wordings import MOST_SEEDS, Wording
 from wonderful_team.core.values import SlotKind
 from wonderful_team.offline.language import Understood
 from wonderful_team.offline.language.instruction import read_instruction

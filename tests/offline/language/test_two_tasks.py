@@ -6,9 +6,9 @@ import re
 
 import pytest
 
-from benchmarks.combined import OTHER_WORDS
-from benchmarks.wordings import Wording, filled, gist
+from tests.offline.language.combined import OTHER_WORDS
 from tests.offline.language.scenes import StandIn, told
+from tests.offline.language.wordings import Wording, filled, gist
 from wonderful_team.core.values import SlotKind
 from wonderful_team.errors import NotUnderstoodError
 from wonderful_team.offline.language import Command, describe, understand

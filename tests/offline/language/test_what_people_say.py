@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from benchmarks.wordings import gist
 from tests.offline.language.scenes import told
+from tests.offline.language.wordings import gist
 from wonderful_team.errors import NotUnderstoodError
 from wonderful_team.evals.perturb import PHRASES
 from wonderful_team.offline.language import understand

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from benchmarks.wordings import Wording, filled, gist, read_wordings
 from tests.offline.language.scenes import told_for
+from tests.offline.language.wordings import Wording, filled, gist, read_wordings
 from wonderful_team.errors import NotUnderstoodError
 from wonderful_team.sims.tabletop import task_names
 

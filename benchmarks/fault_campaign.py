@@ -20,7 +20,7 @@ from multiprocessing import get_context
 from typing import Any
 
 from tests.models.providers.asking import small_scene
-from tests.servers.brains import Brain, Desk, Tapped, Unmatched, typed_brain
+from tests.servers.brains import AgentSession, Brain, Tapped, Unmatched, typed_brain
 from tests.servers.faults import ANSWER, LINE, SERVER, Fault
 from tests.servers.heard import Heard, Reply
 from tests.servers.server import Rules, WireServer
@@ -30,9 +30,9 @@ from wonderful_team.core.actions import PICK_PLACE
 from wonderful_team.core.protocols import Event
 from wonderful_team.core.values import NO_WORKSPACE, Instruction, Observation, Plan
 from wonderful_team.errors import WonderfulTeamError
-from wonderful_team.models.agreeable import agreeable_model, agreeable_script
-from wonderful_team.planning import Team, TeamConfig
-from wonderful_team.planning.config import Way
+from wonderful_team.models.stub_model import stub_model, stub_script
+from wonderful_team.planning import TeamConfig, TeamPolicy
+from wonderful_team.planning.config import Mode
 
 SECRET = "wt-campaign-secret-3f9a"
 STALLS = ("hang", "drip")
@@ -40,7 +40,7 @@ DEADLINE_S, STALL_DEADLINE_S, LONGEST_PLAN_S = 30.0, 4.0, 90.0
 MOST_REQUESTS = 400
 PLANS_PER_PROVIDER = 8
 TRIES = 3
-WAYS: tuple[Way, ...] = ("lean", "paper")
+WAYS: tuple[Mode, ...] = ("lean", "paper")
 FINAL_CODES = {
     "refusal": 1, "filtered": 1, "cut_off": 1, "cut_empty": 1, "quota": 3, "unauthorized": 2, "forbidden": 2,
     "not_found": 2, "context_too_long": 2, "bad_request": 2, "too_many_pictures": 2,
@@ -70,7 +70,7 @@ class Blow:
     names: tuple[str, ...]
     lasting: str | None
     start: int
-    desk: Desk
+    session: AgentSession
     requests: int = 0
     struck: list[tuple[str, str]] = field(default_factory=list)
 
@@ -91,7 +91,7 @@ class Blow:
         if name is None:
             return None
         try:
-            contract = self.desk.find(heard).contract
+            contract = self.session.find(heard).contract
         except Unmatched:
             contract = "cancelled"
         self.struck.append((name, contract))
@@ -140,7 +140,7 @@ class Ears:
             self.texts.append(event.content[1].raw + repr(event.content[1].repairs))
 
 
-def draw_blow(rng: random.Random, desk: Desk) -> Blow:
+def draw_blow(rng: random.Random, session: AgentSession) -> Blow:
     """Few or many passing faults, or one that lasts; stalls only in some plans, for they cost time."""
     passing = (
         *HARMLESS,
@@ -151,12 +151,12 @@ def draw_blow(rng: random.Random, desk: Desk) -> Blow:
     everything = tuple(name for name in (*ANSWER, *SERVER, *LINE) if name not in STALLS)
     dice = rng.random()
     if dice < 0.25:
-        return Blow(rng, 0.0, (), rng.choice(everything), rng.randrange(8), desk)
+        return Blow(rng, 0.0, (), rng.choice(everything), rng.randrange(8), session)
     if dice < 0.30:
-        return Blow(rng, 0.15, (*passing, *STALLS, *STALLS), None, 0, desk)
+        return Blow(rng, 0.15, (*passing, *STALLS, *STALLS), None, 0, session)
     if dice < 0.65:
-        return Blow(rng, rng.choice((0.2, 0.5)), passing, None, 0, desk)
-    return Blow(rng, rng.choice((0.1, 0.3, 0.6)), everything, None, 0, desk)
+        return Blow(rng, rng.choice((0.2, 0.5)), passing, None, 0, session)
+    return Blow(rng, rng.choice((0.1, 0.3, 0.6)), everything, None, 0, session)
 
 
 def allowed_codes(blow: Blow) -> set[int]:
@@ -190,8 +190,8 @@ async def one_plan(
 ) -> None:
     """Make one plan under blows and judge how it ended."""
     ears = Ears()
-    way: Way = "paper" if rng.random() < 0.15 else "lean"
-    team = Team(Tapped(provider, blow.desk), TeamConfig(way=way), subscribers=(ears,))
+    mode: Mode = "paper" if rng.random() < 0.15 else "lean"
+    team = TeamPolicy(Tapped(provider, blow.session), TeamConfig(mode=mode), subscribers=(ears,))
     work = team.make_plan(*scene())
     texts, code, plan = ears.texts, -1, None
     try:
@@ -204,10 +204,10 @@ async def one_plan(
         texts.append(f"{error!r} {error.__cause__!r} {error.__context__!r}")
     except TimeoutError:
         ending = "hang"
-        tally.blame("hangs", f"{label}: {wire} {way} after {blow.struck}")
+        tally.blame("hangs", f"{label}: {wire} {mode} after {blow.struck}")
     except Exception as error:  # noqa: BLE001  a crash is what is looked for
         ending = f"crash {type(error).__name__}"
-        tally.blame("crashes", f"{label}: {wire} {way}: {error!r} after {blow.struck}")
+        tally.blame("crashes", f"{label}: {wire} {mode}: {error!r} after {blow.struck}")
     tally.plans += 1
     tally.faults += len(blow.struck)
     tally.requests += blow.requests
@@ -221,15 +221,15 @@ async def one_plan(
         tally.blame("endless loops", f"{label}: {wire} {blow.requests} requests after {blow.struck[:5]}")
     if code >= 0 and code not in allowed_codes(blow):
         tally.blame(
-            "wrong exit codes", f"{label}: {wire} {way} {ending} ({texts[-1][:160]}) = {code} after {blow.struck}"
+            "wrong exit codes", f"{label}: {wire} {mode} {ending} ({texts[-1][:160]}) = {code} after {blow.struck}"
         )
     if (
         plan is not None
         and code == 0
-        and not is_right(plan, right[way])
+        and not is_right(plan, right[mode])
         and not any(n == "absent" for n, _ in blow.struck)
     ):
-        tally.blame("wrong plans", f"{label}: {wire} {way} after {blow.struck}")
+        tally.blame("wrong plans", f"{label}: {wire} {mode} after {blow.struck}")
 
 
 def scene() -> tuple[Observation, Instruction, Any, Any]:
@@ -272,7 +272,7 @@ async def worker(
             for stalls in (False, True)
         }  # fmt: skip
         for turn in range(PLANS_PER_PROVIDER):
-            blow = draw_blow(rng, Desk())
+            blow = draw_blow(rng, AgentSession())
             blows[secret] = blow
             provider = providers[blow.stalls]
             await one_plan(
@@ -287,7 +287,7 @@ async def worker(
 async def warm_up(servers: dict[str, WireServer], blows: dict[str, Blow], right: dict[str, Plan], tally: Tally) -> None:
     """One plan through each format without any fault; the clients are imported here, before anything is timed."""
     for name, wire in WIRES.items():
-        blow = Blow(random.Random(0), 0.0, (), None, 0, Desk())
+        blow = Blow(random.Random(0), 0.0, (), None, 0, AgentSession())
         blows[SECRET] = blow
         provider = wire.provider(servers[name], api_key=SECRET, deadline_s=60.0)
         await one_plan(name, provider, blow, right, tally, "warm-up", random.Random(0))
@@ -296,11 +296,11 @@ async def warm_up(servers: dict[str, WireServer], blows: dict[str, Blow], right:
 
 def brain_of(blows: dict[str, Blow], wire: str) -> Brain:
     """Answers for the plan that a request belongs to: every provider has a key of its own."""
-    script = agreeable_script()
+    script = stub_script()
 
     def brain(heard: Heard) -> Reply | str:
-        desk = blows[heard.secret].desk
-        return typed_brain(desk, lambda request: script[request.contract](request), WIRES[wire].speech)(heard)
+        session = blows[heard.secret].session
+        return typed_brain(session, lambda request: script[request.contract](request), WIRES[wire].speech)(heard)
 
     return brain
 
@@ -308,7 +308,7 @@ def brain_of(blows: dict[str, Blow], wire: str) -> Brain:
 async def campaign(wanted: int, seed: int, at_once: int, quiet: bool = False) -> Tally:
     """Strike `wanted` faults."""
     tally, blows = Tally(), dict[str, Blow]()
-    right = {way: await Team(agreeable_model(), TeamConfig(way=way)).make_plan(*scene()) for way in WAYS}
+    right = {mode: await TeamPolicy(stub_model(), TeamConfig(mode=mode)).make_plan(*scene()) for mode in WAYS}
     servers = {
         name: WireServer(
             brain_of(blows, name),

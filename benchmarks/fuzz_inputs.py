@@ -21,7 +21,7 @@ from pathlib import Path
 from hypothesis import HealthCheck, Phase, given, seed, settings
 from hypothesis import strategies as st
 
-from tests.fuzzing import KINDS, Desk, Kind, attempt
+from tests.fuzzing import KINDS, AgentSession, Kind, attempt
 
 ROUND = 20
 LONGEST_S = 60.0
@@ -32,7 +32,7 @@ LONGEST_S = 60.0
 class Tally:
     """What was tried, until when."""
 
-    desk: Desk
+    session: AgentSession
     ends: float
     tried: Counter[str] = field(default_factory=Counter)
     slowest: dict[str, tuple[float, str]] = field(default_factory=dict)
@@ -53,7 +53,7 @@ class Tally:
         def tries(data: st.DataObject) -> None:
             started = time.monotonic()
             faulthandler.dump_traceback_later(LONGEST_S)
-            argv, said = attempt(self.desk, kind, data.draw)
+            argv, said = attempt(self.session, kind, data.draw)
             faulthandler.cancel_dump_traceback_later()
             took = time.monotonic() - started
             if took > LONGEST_S and not said:
@@ -76,7 +76,7 @@ def main() -> int:
     asked = parser.parse_args()
     kinds = [kind for kind in KINDS if kind.__name__ in asked.kinds.split(",")]
     with tempfile.TemporaryDirectory() as folder:
-        tally = Tally(Desk(Path(folder)), time.monotonic() + asked.minutes * 60)
+        tally = Tally(AgentSession(Path(folder)), time.monotonic() + asked.minutes * 60)
         number = asked.seed
         while time.monotonic() < tally.ends:
             for kind in kinds:

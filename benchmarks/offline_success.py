@@ -44,11 +44,11 @@ class Job:
 
     task: str
     seed: int
-    way: str = "lean"
-    setting: str = "full"
+    mode: str = "lean"
+    ablation: str = "full"
     recolour: int | None = None
     instruction: str | None = None
-    looks: int = 0
+    reobserve: int = 0
     replans: int = 0
     world: str = "tabletop"
     partition: str | None = None
@@ -71,18 +71,24 @@ def run(job: Job) -> Result:
     # Imported here: a worker of a spawned pool pays for it once, the parent never.
     from wonderful_team.core.values import Instruction
     from wonderful_team.offline import OfflineModel
-    from wonderful_team.planning import Team, TeamConfig
+    from wonderful_team.planning import TeamConfig, TeamPolicy
     from wonderful_team.runtime import rollout
 
     world = world_of(job)
     if job.instruction is not None:
         slots = {name: slot for name, slot in world.instruction.slots.items() if f"{{{name}}}" in job.instruction}
         world.instruction = Instruction(job.instruction, slots)
-    team = Team(OfflineModel(), TeamConfig(way=job.way, setting=job.setting))  # type: ignore[arg-type]
+    team = TeamPolicy(OfflineModel(), TeamConfig(mode=job.mode, ablation=job.ablation))  # type: ignore[arg-type]
     started = time.perf_counter()
     try:
         trial = rollout(
-            team, world, looks=job.looks, replans=job.replans, scorer=world.privileged, seed=job.seed, scene=job.task
+            team,
+            world,
+            reobserve=job.reobserve,
+            replans=job.replans,
+            scorer=world.privileged,
+            seed=job.seed,
+            scene=job.task,
         )
     finally:
         world.close()
@@ -177,10 +183,10 @@ def main() -> None:
         Job(
             task,
             options.first + number,
-            options.way,
-            options.setting,
+            options.mode,
+            options.ablation,
             options.recolour,
-            looks=options.looks,
+            reobserve=options.reobserve,
             replans=options.replans,
             world=options.world,
             partition=options.partition,
@@ -188,10 +194,10 @@ def main() -> None:
         for task in options.tasks or [*VIMA17, *(FRUIT if options.world == "tabletop" else ())]
         for number in range(options.seeds or (20 if task.startswith("fruit") else 50))
     ]
-    print(f"model: offline (classical vision and a grammar)   method: team, {options.way}, {options.setting}")
-    looks = f"a look after every push (at most {options.looks})" if options.looks else "open loop"
+    print(f"model: offline (classical vision and a grammar)   method: team, {options.mode}, {options.ablation}")
+    reobserve = f"a look after every push (at most {options.reobserve})" if options.reobserve else "open loop"
     attempts = f"{options.replans} replans" if options.replans else "single attempt"
-    print(f"{attempts}, {looks}; {options.world}; 95 % Wilson intervals")
+    print(f"{attempts}, {reobserve}; {options.world}; 95 % Wilson intervals")
     results = run_all(jobs, options.jobs)
     report(results)
     if options.json:

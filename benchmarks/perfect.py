@@ -20,8 +20,8 @@ from typing import Any
 from wonderful_team import registry
 from wonderful_team.api.trial import model_of
 from wonderful_team.evals.suites import VIMA_TASKS
-from wonderful_team.models.reshown import CHANGES, Reshown
-from wonderful_team.planning import SETTINGS, Team, TeamConfig
+from wonderful_team.models.image_corruption import CHANGES, ImageCorruption
+from wonderful_team.planning import ABLATIONS, TeamConfig, TeamPolicy
 from wonderful_team.runtime import rollout
 
 Z_95 = 1.959964
@@ -33,11 +33,11 @@ class Job:
 
     task: str
     seed: int
-    way: str
-    setting: str
+    mode: str
+    ablation: str
     model: str
     replans: int
-    looks: int | None
+    reobserve: int | None
     show: str
     isolate: str
 
@@ -84,10 +84,16 @@ def by_team(job: Job) -> tuple[bool, str, str]:
         model = _model(job, world)
         # A scene of pushes is looked at after every push, as long as it lasts.
         sweeping = "push" in world.vocabulary.kinds
-        looks = job.looks if job.looks is not None else world.horizon if sweeping else 0
-        team = Team(model, TeamConfig(way=job.way, setting=job.setting))  # type: ignore[arg-type]
+        reobserve = job.reobserve if job.reobserve is not None else world.horizon if sweeping else 0
+        team = TeamPolicy(model, TeamConfig(mode=job.mode, ablation=job.ablation))  # type: ignore[arg-type]
         trial = rollout(
-            team, world, replans=job.replans, looks=looks, scorer=world.privileged, seed=job.seed, max_age_s=None
+            team,
+            world,
+            replans=job.replans,
+            reobserve=reobserve,
+            scorer=world.privileged,
+            seed=job.seed,
+            max_age_s=None,
         )
         return trial.outcome == "success", trial.stage or "", trial.reason
     finally:
@@ -101,7 +107,7 @@ def _model(job: Job, world: Any) -> Any:
         made = {"*": registry.make_model(job.model, world=world)}
     if not job.show:
         return made
-    wrapped = {id(model): Reshown(model, CHANGES[job.show]) for model in made.values()}
+    wrapped = {id(model): ImageCorruption(model, CHANGES[job.show]) for model in made.values()}
     return {role: wrapped[id(model)] for role, model in made.items()}
 
 
@@ -136,7 +142,7 @@ def main() -> None:
     parser.add_argument("--first", type=int, default=500, help="first seed")
     parser.add_argument("--seeds", type=int, default=6, help="scenes per task")
     parser.add_argument("--way", choices=("lean", "paper"), default="lean")
-    parser.add_argument("--setting", choices=tuple(SETTINGS), default="full", help="members switched off")
+    parser.add_argument("--setting", choices=tuple(ABLATIONS), default="full", help="members switched off")
     parser.add_argument("--model", default="simulated:perfect")
     parser.add_argument("--replans", type=int, default=0)
     parser.add_argument("--looks", type=int, help="default 0; for pushes the task's horizon, one after every push")
@@ -149,7 +155,7 @@ def main() -> None:
     names = options.task or VIMA_TASKS
     jobs = [
         Job(
-            f"{options.world}/{name}", seed, options.way, options.setting, options.model, options.replans, options.looks,
+            f"{options.world}/{name}", seed, options.mode, options.ablation, options.model, options.replans, options.reobserve,
             options.show, options.isolate,
         )
         for name in names

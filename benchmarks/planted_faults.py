@@ -31,13 +31,13 @@ from wonderful_team.core.geometry import Box
 from wonderful_team.core.values import Target
 from wonderful_team.errors import WonderfulTeamError
 from wonderful_team.evals import Confusion, Rate
-from wonderful_team.models.door import Door
+from wonderful_team.models.client import ModelClient
 from wonderful_team.models.wrappers import Injecting, Injection
 from wonderful_team.offline import OfflineModel
-from wonderful_team.planning import Team, TeamConfig
+from wonderful_team.planning import TeamConfig, TeamPolicy
 from wonderful_team.planning.boxes import Job
-from wonderful_team.planning.desk import Desk
 from wonderful_team.planning.scene import SceneShown
+from wonderful_team.planning.session import AgentSession
 from wonderful_team.sims.tabletop import TabletopWorld, make_world
 
 TASKS = (*VIMA, "fruit_placement/both", "fruit_placement/misplaced")
@@ -80,14 +80,14 @@ def scenes(first: int) -> Iterator[Scene]:
         seed += 1
 
 
-def desk_for(shown: SceneShown) -> Desk:
-    return Desk(Door(OfflineModel()), TeamConfig(setting="s8"), shown.instruction.text)
+def desk_for(shown: SceneShown) -> AgentSession:
+    return AgentSession(ModelClient(OfflineModel()), TeamConfig(ablation="s8"), shown.instruction.text)
 
 
-async def objection(desk: Desk, question: Question, stage: str) -> str | None:
+async def objection(session: AgentSession, question: Question, stage: str) -> str | None:
     """What the member objects, or None when it lets the thing pass. A member that refuses to judge objects."""
     try:
-        answer = await desk.ask(question, stage=stage)
+        answer = await session.ask(question, stage=stage)
     except WonderfulTeamError as error:
         return f"refused: {str(error)[:160]}"
     if isinstance(answer, PlanReview):
@@ -188,9 +188,9 @@ async def check_plans(n: int, first: int) -> dict[str, Confusion]:
     for where in scenes(first):
         if done >= n:
             return by_kind
-        desk = desk_for(where.shown)
+        session = desk_for(where.shown)
         try:
-            right: PlanDraft = await desk.ask(DraftPlan(where.shown.task, PICK_PLACE.step_kinds, True), stage="plan")
+            right: PlanDraft = await session.ask(DraftPlan(where.shown.task, PICK_PLACE.step_kinds, True), stage="plan")
         except WonderfulTeamError as error:
             print(f"    {where.task} seed {where.seed}: no draft to spoil: {error}")
             continue
@@ -201,7 +201,7 @@ async def check_plans(n: int, first: int) -> dict[str, Confusion]:
         kinds.sort(key=lambda kind: kind == spoiled[0])
         for kind, plan in (("none", right), spoiled):
             question = ReviewPlan(where.shown.task, PICK_PLACE.step_kinds, plan.to_subgoals(), plan.to_targets())
-            said = await objection(desk, question, "plan")
+            said = await objection(session, question, "plan")
             bad = kind != "none"
             by_kind[kind] = by_kind.get(kind, Confusion()).add(bad=bad, objected=said is not None)
             done += 1
@@ -265,14 +265,14 @@ async def check_boxes(n: int, first: int) -> dict[str, Confusion]:
         names = [goal["thing"] for goal in where.truth["goals"]]
         name = names[int(rng.integers(len(names)))]
         target = target_for(where, name)
-        desk = desk_for(where.shown)
+        session = desk_for(where.shown)
         for kind in ("none", BOX_FAULTS[done // 2 % len(BOX_FAULTS)]):
             box = wrong_box(where, name, kind, rng)
             if box is None:
                 continue
-            job = Job(desk, where.shown, target, 0, (), where.shown.examples([target]))
+            job = Job(session, where.shown, target, 0, (), where.shown.examples([target]))
             crop_shown = job.crop_with("crop", box, box, "target")
-            said = await objection(desk, JudgeBox(target, crop_shown, job.examples), "ground")
+            said = await objection(session, JudgeBox(target, crop_shown, job.examples), "ground")
             bad = kind != "none"
             by_kind[kind] = by_kind.get(kind, Confusion()).add(bad=bad, objected=said is not None)
             done += 1
@@ -321,7 +321,7 @@ async def recover(n: int, first: int) -> Rate:
         if done >= n:
             return Rate(right, done)
         injection = Injection(("ReadScene",), shift_first_box(rng), "first box shifted")
-        team = Team(Injecting(OfflineModel(), [injection]), TeamConfig(way="lean"))
+        team = TeamPolicy(Injecting(OfflineModel(), [injection]), TeamConfig(mode="lean"))
         plan = await team.make_plan(
             where.world.observe(), where.world.instruction, PICK_PLACE, where.world.limits, until="grounded"
         )

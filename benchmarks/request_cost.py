@@ -20,7 +20,7 @@ from typing import Any
 import numpy as np
 
 from tests.models.providers.asking import TARGETS
-from tests.servers.brains import Desk, Tapped, typed_brain
+from tests.servers.brains import AgentSession, Tapped, typed_brain
 from tests.servers.server import Rules, WireServer
 from tests.servers.wiring import WIRES
 from wonderful_team.agents import build_request
@@ -29,7 +29,7 @@ from wonderful_team.core.geometry import Box
 from wonderful_team.core.pictures import Axes, BoxMark, PointMark
 from wonderful_team.core.values import Request, View
 from wonderful_team.images import crop, draw, whole
-from wonderful_team.models.agreeable import agreeable_script
+from wonderful_team.models.stub_model import stub_script
 from wonderful_team.models.wire import compose, ticks_of
 from wonderful_team.models.wire.png import fast_png
 
@@ -91,12 +91,12 @@ def cpu_ms(work: Callable[[], Any]) -> tuple[float, Any]:
 
 async def measure(wire: str, question: str, size: tuple[int, int], times: int) -> Cost:
     """Medians over fresh pictures."""
-    script, desk = agreeable_script(), Desk()
-    brain = typed_brain(desk, lambda request: script[request.contract](request), WIRES[wire].speech)
+    script, session = stub_script(), AgentSession()
+    brain = typed_brain(session, lambda request: script[request.contract](request), WIRES[wire].speech)
     parts: list[tuple[float, float, float, float]] = []
     with WireServer(brain, Rules(local=not WIRES[wire].vendor)) as server:
         provider = WIRES[wire].provider(server, deadline_s=60.0)
-        model = Tapped(provider, desk)
+        model = Tapped(provider, session)
 
         def fresh(seed: int) -> Request:
             return build_request(QUESTIONS[question](photo(size, seed)), id=f"0/{seed}", stage="ground")

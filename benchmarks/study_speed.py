@@ -21,12 +21,12 @@ from wonderful_team.api.study import Study
 from wonderful_team.evals.plan import StudyPlan
 from wonderful_team.evals.study import run_study
 from wonderful_team.evals.suites import Protocol, Suite
-from wonderful_team.evals.trials import RunSettings, TrialResult, TrialSpec
+from wonderful_team.evals.trials import RunSettings, TrialRow, TrialSpec
 
 
-def nothing(spec: TrialSpec, settings: RunSettings) -> TrialResult:
+def nothing(spec: TrialSpec, settings: RunSettings) -> TrialRow:
     """A trial that takes no time."""
-    return TrialResult("success")
+    return TrialRow("success")
 
 
 def store_cost_s(folder: Path, trials: int = 400) -> float:
@@ -69,9 +69,9 @@ def main() -> None:
         started, before_s = time.perf_counter(), cpu_s()
         ended = study.run()
         seconds, used_s = time.perf_counter() - started, cpu_s() - before_s
-        done = ended.standing.done
+        done = ended.status.done
         print(f"{options.method} {options.model}: {done} trials in {seconds:.1f} s on {options.jobs} processes")
-        print(f"{60 * done / seconds:.1f} trials/min here, start of the processes included; {ended.standing.outcomes}")
+        print(f"{60 * done / seconds:.1f} trials/min here, start of the processes included; {ended.status.outcomes}")
         alone = 60 * options.jobs * done / used_s
         print(
             f"{used_s / done:.2f} CPU seconds a trial: {alone:.0f} trials/min if {options.jobs} cores did nothing else"

@@ -33,10 +33,10 @@ def sizes(requests: list[Request]) -> dict[str, int]:
 
 def describe(name: str, config: TeamConfig) -> dict[str, Any]:
     """Print one way of working and return its figures."""
-    plan, watch, seconds = measure(config)
-    figures = sizes([request for _, request in watch.sent])
+    plan, monitor, seconds = measure(config)
+    figures = sizes([request for _, request in monitor.sent])
     print(f"\n{name}: {seconds:.0f} waiting rounds, plan {plan.status}")
-    for number, kinds in enumerate(watch.rounds(), start=1):
+    for number, kinds in enumerate(monitor.rounds(), start=1):
         print(f"  {number:2d}  " + " + ".join(f"{kind} x{n}" if n > 1 else kind for kind, n in kinds.items()))
     print("  " + ", ".join(f"{value:,} {key}" for key, value in figures.items()))
     return {"rounds": round(seconds), **figures}
@@ -47,10 +47,10 @@ def main() -> None:
     print(
         "two targets, one_step, no doubt, first boxes accepted, Memory on; photo 640 x 480; model: agreeable (scripted)"
     )
-    for way in ("paper", "lean"):
-        describe(way, TeamConfig(way=way))
-    for setting in ("s1", "s2", "s4", "s6", "s7", "s8"):
-        describe(f"paper, {setting}", TeamConfig(way="paper", setting=setting))
+    for mode in ("paper", "lean"):
+        describe(mode, TeamConfig(mode=mode))
+    for ablation in ("s1", "s2", "s4", "s6", "s7", "s8"):
+        describe(f"paper, {ablation}", TeamConfig(mode="paper", ablation=ablation))
 
 
 if __name__ == "__main__":

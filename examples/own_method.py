@@ -2,7 +2,7 @@
 
     wonderful-team run tabletop/rotate --seed 3 --method examples/own_method.py:Stirring
 
-A method that asks a model takes `door` as a parameter of its constructor: questions asked there are capped and recorded.
+A method that asks a model takes `client` as a parameter of its constructor: questions asked there are capped and recorded.
 """
 
 import numpy as np

@@ -36,7 +36,7 @@ OWN_FILES = (
 )  # fmt: skip
 
 
-class Desk:
+class AgentSession:
     """Good files of every kind, and a place where an example may spoil copies of them."""
 
     def __init__(self, folder: Path) -> None:
@@ -78,10 +78,10 @@ class Desk:
 
 
 Argv = list[str]
-Kind = Callable[["Desk", st.DrawFn], Argv]
+Kind = Callable[["AgentSession", st.DrawFn], Argv]
 
 
-def pictures(desk: Desk, draw: st.DrawFn) -> Argv:
+def pictures(desk: AgentSession, draw: st.DrawFn) -> Argv:
     name = draw(st.sampled_from([".png", ".jpg", ".bmp", ".tif", ".webp"]))
     good = cv2.imencode(name, cv2.resize(cv2.imread(desk.picture), (64, 48)))[1].tobytes()
     shown = desk.file(f"shown{draw(st.sampled_from(['.png', name, '']))}", draw(damaged_bytes(good)))
@@ -98,7 +98,7 @@ def pictures(desk: Desk, draw: st.DrawFn) -> Argv:
     return ["plan", shown, WORDS, "--until", "draft"]
 
 
-def depths(desk: Desk, draw: st.DrawFn) -> Argv:
+def depths(desk: AgentSession, draw: st.DrawFn) -> Argv:
     if draw(st.booleans()):
         depth = desk.file("depth.npy", draw(st.one_of(lying_array(), damaged_bytes(desk.good("depth.npy")))))
     else:
@@ -106,14 +106,14 @@ def depths(desk: Desk, draw: st.DrawFn) -> Argv:
     return ["plan", desk.picture, WORDS, "--depth", depth, "--camera", str(desk.folder / "camera.json")]
 
 
-def cameras(desk: Desk, draw: st.DrawFn) -> Argv:
+def cameras(desk: AgentSession, draw: st.DrawFn) -> Argv:
     camera = json.loads(desk.good("camera.json"))
     camera["workspace_m"] = {"low": [0.2, -0.4, 0.0], "high": [0.8, 0.4, 0.3]}
     spoiled = desk.file("camera.json", draw(damaged_json(json.dumps(camera))))
     return ["plan", desk.picture, WORDS, "--depth", str(desk.folder / "depth.png"), "--camera", spoiled]
 
 
-def records(desk: Desk, draw: st.DrawFn) -> Argv:
+def records(desk: AgentSession, draw: st.DrawFn) -> Argv:
     source = draw(st.sampled_from([desk.plan, desk.trial]))
     folder = desk.scratch / "runs" / source.name
     shutil.copytree(source, folder)
@@ -133,7 +133,7 @@ def records(desk: Desk, draw: st.DrawFn) -> Argv:
     ]))  # fmt: skip
 
 
-def stores(desk: Desk, draw: st.DrawFn) -> Argv:
+def stores(desk: AgentSession, draw: st.DrawFn) -> Argv:
     store = desk.file("study.db", desk.good("study.db"))
     if draw(st.booleans()):
         desk.file("study.db", draw(damaged_bytes(desk.good("study.db"))))
@@ -163,7 +163,7 @@ def _spoil_table(store: str, draw: st.DrawFn) -> None:
             base.execute(f"UPDATE {table} SET {column} = ?", (wrong,))  # noqa: S608
 
 
-def photos(desk: Desk, draw: st.DrawFn) -> Argv:
+def photos(desk: AgentSession, draw: st.DrawFn) -> Argv:
     coco = {
         "images": [{"id": 1, "file_name": desk.picture, "width": 320, "height": 240}],
         "categories": [{"id": 1, "name": "red circle"}],
@@ -189,7 +189,7 @@ def photos(desk: Desk, draw: st.DrawFn) -> Argv:
     ]
 
 
-def profiles(desk: Desk, draw: st.DrawFn) -> Argv:
+def profiles(desk: AgentSession, draw: st.DrawFn) -> Argv:
     from wonderful_team.models.profiles import Profile, profile_to_json, profiles_folder
 
     profiles_folder().mkdir(parents=True, exist_ok=True)
@@ -199,7 +199,7 @@ def profiles(desk: Desk, draw: st.DrawFn) -> Argv:
     return draw(st.sampled_from([plan, ["list", "models"]]))
 
 
-def caches(desk: Desk, draw: st.DrawFn) -> Argv:
+def caches(desk: AgentSession, draw: st.DrawFn) -> Argv:
     good = desk.folder / "answers.sqlite"
     plan = ["plan", desk.picture, WORDS, "--until", "draft", "--cache", "on", "--cache-file"]
     if not good.exists():
@@ -210,7 +210,7 @@ def caches(desk: Desk, draw: st.DrawFn) -> Argv:
     )
 
 
-def prompts(desk: Desk, draw: st.DrawFn) -> Argv:
+def prompts(desk: AgentSession, draw: st.DrawFn) -> Argv:
     words = desk.scratch / "words"
     run_quietly(["list", "prompts", "--out", str(words)])
     file = draw(st.sampled_from(sorted(one for one in words.rglob("*") if one.is_file())))
@@ -218,7 +218,7 @@ def prompts(desk: Desk, draw: st.DrawFn) -> Argv:
     return ["plan", desk.picture, WORDS, "--prompts", str(words), "--until", "draft"]
 
 
-def own_files(desk: Desk, draw: st.DrawFn) -> Argv:
+def own_files(desk: AgentSession, draw: st.DrawFn) -> Argv:
     code = draw(st.sampled_from(OWN_FILES))
     file = desk.file(draw(st.sampled_from(["own.py", "o w n.py", "json.py"])), code)
     name = f"{file}:{draw(st.sampled_from(['W', 'W', 'W', '', 'x.y', 'W?x=1', 'W?', 'W?seed=3&seed=4']))}"
@@ -229,7 +229,7 @@ def own_files(desk: Desk, draw: st.DrawFn) -> Argv:
     ]))  # fmt: skip
 
 
-def plan_options(desk: Desk, draw: st.DrawFn) -> Argv:
+def plan_options(desk: AgentSession, draw: st.DrawFn) -> Argv:
     options = {
         "--corners": ("20,10 300,10 300,230 20,230=1.0x0.5",), "--keep-out": ("wall=0,0,10,10px", "0.1,0.1,0.2,0.2m"),
         "--price": ("0,0", "planner=1,2"), "--thinking": ("low", "checker=off"), "--picture": ("this=desk.png", "this:scene=x.png"),
@@ -243,7 +243,7 @@ def plan_options(desk: Desk, draw: st.DrawFn) -> Argv:
     return argv
 
 
-def words(desk: Desk, draw: st.DrawFn) -> Argv:
+def words(desk: AgentSession, draw: st.DrawFn) -> Argv:
     said = draw(
         damaged_text(
             WORDS, "put {this} into {that}", "rotate the red circle 1e9 degrees", "put 10**9 red circles on it"
@@ -254,7 +254,7 @@ def words(desk: Desk, draw: st.DrawFn) -> Argv:
     return ["plan", desk.picture, said]
 
 
-def worlds(desk: Desk, draw: st.DrawFn) -> Argv:
+def worlds(desk: AgentSession, draw: st.DrawFn) -> Argv:
     name = draw(
         damaged_text(
             "tabletop/rotate@L3@clutter=2",
@@ -270,7 +270,7 @@ def worlds(desk: Desk, draw: st.DrawFn) -> Argv:
     return [*argv, option, draw(damaged_text(good))] if draw(st.booleans()) else argv
 
 
-def study_options(desk: Desk, draw: st.DrawFn) -> Argv:
+def study_options(desk: AgentSession, draw: st.DrawFn) -> Argv:
     options = {
         "--seeds": ("0:2", "1000:1001"), "--perturb": ("lighting=0..3", "clutter=2"), "--shard": ("1/2",), "--isolate": ("whole,planning",),
         "--no-control": ("oracle", "all"), "--method": ("team,team:s1",), "--model": ("offline,checker=offline", "simulated:perfect"),
@@ -295,7 +295,7 @@ def study_options(desk: Desk, draw: st.DrawFn) -> Argv:
     return argv
 
 
-def names(desk: Desk, draw: st.DrawFn) -> Argv:
+def names(desk: AgentSession, draw: st.DrawFn) -> Argv:
     """Names of runs, files and folders, roles, stages, and what a variable of the environment says."""
     wrong = damaged_text("latest", "runs/x", "supervisor", "a.html", desk.picture, "plan")
     one = draw(wrong)
@@ -323,7 +323,7 @@ def run_quietly(argv: Argv) -> tuple[int, str, str]:
     return code, out.getvalue(), err.getvalue()
 
 
-def attempt(desk: Desk, kind: Kind, draw: st.DrawFn) -> tuple[Argv, str]:
+def attempt(desk: AgentSession, kind: Kind, draw: st.DrawFn) -> tuple[Argv, str]:
     """Run one damaged input; what it did that it must not, or ""."""
     with in_scratch(desk):
         argv = kind(desk, draw)
@@ -348,7 +348,7 @@ def attempt(desk: Desk, kind: Kind, draw: st.DrawFn) -> tuple[Argv, str]:
 
 
 @contextlib.contextmanager
-def in_scratch(desk: Desk) -> Iterator[None]:
+def in_scratch(desk: AgentSession) -> Iterator[None]:
     """An empty folder to spoil files in; where runs, profiles and relative paths lead meanwhile."""
     before, kept = Path.cwd(), dict(os.environ)
     desk.scratch = Path(tempfile.mkdtemp(dir=desk.folder))

@@ -8,19 +8,19 @@ import pytest
 
 from wonderful_team.core.values import Instruction
 from wonderful_team.offline import OfflineModel
-from wonderful_team.planning import Team, TeamConfig
+from wonderful_team.planning import TeamConfig, TeamPolicy
 from wonderful_team.record import Recorder
 from wonderful_team.runtime import rollout
 from wonderful_team.sims.tabletop import make_world
 
 
-def run(task, seed, folder=None, *, scored=True, way="lean", instruction=None, **options):
+def run(task, seed, folder=None, *, scored=True, mode="lean", instruction=None, **options):
     world = make_world(task, seed=seed)
     if instruction is not None:
         world.instruction = Instruction(instruction)
     recorder = Recorder(folder) if folder is not None else None
     subscribers = [recorder] if recorder is not None else []
-    team = Team(OfflineModel(), TeamConfig(way=way), subscribers=subscribers)
+    team = TeamPolicy(OfflineModel(), TeamConfig(mode=mode), subscribers=subscribers)
     try:
         scorer = world.privileged if scored else None
         return rollout(team, world, scorer=scorer, subscribers=subscribers, seed=seed, scene=task, **options)
@@ -30,10 +30,10 @@ def run(task, seed, folder=None, *, scored=True, way="lean", instruction=None, *
             recorder.close()
 
 
-@pytest.mark.parametrize("way", ["lean", "paper"])
+@pytest.mark.parametrize("mode", ["lean", "paper"])
 @pytest.mark.parametrize("task", ["visual_manipulation", "rotate", "fruit_placement/both"])
-def test_a_scene_is_solved_from_pixels_and_words(task, way):
-    trial = run(task, 2, way=way)
+def test_a_scene_is_solved_from_pixels_and_words(task, mode):
+    trial = run(task, 2, mode=mode)
     assert trial.outcome == "success", trial.reason
 
 
@@ -51,7 +51,7 @@ def test_a_thing_that_is_nudged_between_plan_and_motion_stops_the_run():
     world = make_world("visual_manipulation", seed=3)
     thing = world.privileged.truth()["goals"][0]["thing"]
 
-    class Nudging(Team):
+    class Nudging(TeamPolicy):
         async def decide(self, situation):
             decision = await super().decide(situation)
             world.privileged.nudge(thing, dx_m=0.012, dy_m=0.012)
@@ -75,7 +75,7 @@ def test_replanning_carries_on_after_a_nudge():
     thing = world.privileged.truth()["goals"][0]["thing"]
     nudged = []
 
-    class NudgedOnce(Team):
+    class NudgedOnce(TeamPolicy):
         async def decide(self, situation):
             decision = await super().decide(situation)
             if not nudged:

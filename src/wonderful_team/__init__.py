@@ -9,13 +9,14 @@ import importlib
 from typing import TYPE_CHECKING, Any
 
 from wonderful_team._version import __version__
+from wonderful_team.core.renamed import keep_module_names
 
 if TYPE_CHECKING:
     from wonderful_team.api.method import Method
     from wonderful_team.api.observation import Observation
     from wonderful_team.api.photos import instruction_with_pictures
     from wonderful_team.api.probe import probe_model
-    from wonderful_team.api.results import FoundTarget, MadePlan, RecordedTrial
+    from wonderful_team.api.results import FoundTarget, PlanResult, TrialResult
     from wonderful_team.api.rollout import make_world, rollout, task
     from wonderful_team.api.study import Study
     from wonderful_team.api.team import Team, load_run
@@ -55,7 +56,7 @@ _HOMES: dict[str, str] = {
     "Instruction": "core.values",
     "KeepOut": "core.values",
     "Limits": "core.values",
-    "MadePlan": "api.results",
+    "PlanResult": "api.results",
     "Method": "api.method",
     "Model": "core.protocols",
     "Observation": "api.observation",
@@ -68,7 +69,7 @@ _HOMES: dict[str, str] = {
     "PlannedAction": "core.values",
     "Policy": "core.protocols",
     "Pose": "core.geometry",
-    "RecordedTrial": "api.results",
+    "TrialResult": "api.results",
     "Request": "core.values",
     "Scene": "sims.tabletop",
     "Score": "core.protocols",
@@ -92,6 +93,9 @@ _HOMES: dict[str, str] = {
 }
 """Public name to the module that defines it."""
 
+_RENAMED = {"MadePlan": "PlanResult", "RecordedTrial": "TrialResult"}
+"""Public names of the last release."""
+
 __all__ = [
     "ARM",
     "Act",
@@ -107,7 +111,7 @@ __all__ = [
     "Instruction",
     "KeepOut",
     "Limits",
-    "MadePlan",
+    "PlanResult",
     "Method",
     "Model",
     "Observation",
@@ -120,7 +124,7 @@ __all__ = [
     "PlannedAction",
     "Policy",
     "Pose",
-    "RecordedTrial",
+    "TrialResult",
     "Request",
     "Scene",
     "Score",
@@ -146,6 +150,11 @@ __all__ = [
 
 
 def __getattr__(name: str) -> Any:
+    if name in _RENAMED:
+        from wonderful_team.core.renamed import warn_renamed
+
+        warn_renamed(f"wonderful_team.{name}", f"wonderful_team.{_RENAMED[name]}")
+        name = _RENAMED[name]
     if name not in _HOMES:
         raise AttributeError(f"module 'wonderful_team' has no attribute {name!r}; it has: {', '.join(__all__)}")
     value = getattr(importlib.import_module(f"wonderful_team.{_HOMES[name]}"), name)
@@ -155,3 +164,12 @@ def __getattr__(name: str) -> Any:
 
 def __dir__() -> list[str]:
     return sorted({*globals(), *__all__})
+
+
+keep_module_names(
+    {
+        "wonderful_team.replays": "wonderful_team.api.replay",
+        "wonderful_team.interfaces": "wonderful_team.core.protocols",
+        "wonderful_team.photos": "wonderful_team.api.photos",
+    }
+)

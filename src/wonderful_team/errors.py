@@ -87,7 +87,7 @@ def code_of(whose: str, error_class: type[WonderfulTeamError]) -> Iterator[None]
     Errors that say already whose fault they are pass unchanged.
 
     Args:
-        whose: Begins the message, as in "observe() of world Desk".
+        whose: Begins the message, as in "observe() of world AgentSession".
         error_class: Whose fault it is.
     """
     try:

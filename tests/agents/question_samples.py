@@ -34,7 +34,7 @@ from wonderful_team.contracts import (
 from wonderful_team.core.actions import Beside, MoveStep, OriginOf, PickPlaceStep
 from wonderful_team.core.geometry import Box, Frame
 from wonderful_team.core.pictures import Axes, BoxMark, Candidates, Mark, PathMark, Picture, PointMark
-from wonderful_team.core.values import Doubt, Subgoal, Target, Verdict
+from wonderful_team.core.values import Critique, Subgoal, Target, Verdict
 
 KINDS = ("pick_place", "push", "move", "open", "close", "rotate_gripper", "follow", "home", "navigate")
 
@@ -60,7 +60,7 @@ SUBGOALS = (
     Subgoal("G1", "the mug stands on the tray", (), ("T7", "T8"), "a circle round the tray"),
     Subgoal("G2", "the mug is back", ("G1",), ("T7",)),
 )
-DOUBT = Doubt("G1", "collision", "will the mug hit the lamp?", "it passes behind it", True)
+DOUBT = Critique("G1", "collision", "will the mug hit the lamp?", "it passes behind it", True)
 PLAN = ("G1: the mug stands on the tray", "G2: the mug is back")
 STEPS = (PickPlaceStep("G1", "T7", Beside("T8", "left"), -90.0), MoveStep("G2", OriginOf("T7"), "clear"))
 BOX = BoxMark(Box(10, 5, 30, 20), label="T7")

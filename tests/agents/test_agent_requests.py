@@ -14,7 +14,7 @@ from wonderful_team.agents import ROLES, build_request
 from wonderful_team.contracts import QUESTIONS, Question, ShownTask, Strip
 from wonderful_team.core.geometry import Box
 from wonderful_team.core.pictures import Picture
-from wonderful_team.core.values import Doubt, Note, Request, Words
+from wonderful_team.core.values import Critique, Note, Request, Words
 from wonderful_team.errors import ConfigError
 
 EVERY = pytest.mark.parametrize("question", SAMPLES, ids=lambda question: question.contract)
@@ -22,7 +22,7 @@ EVERY = pytest.mark.parametrize("question", SAMPLES, ids=lambda question: questi
 # Fields that are said in other words; the test of changes below watches these.
 RENAMED = {"kind", "purpose", "source", "side", "height", "role", "status"}
 # Where a doubt came from must not reach the model: an injected doubt has to read like a real one.
-UNSEEN = {(Doubt, "provenance")}
+UNSEEN = {(Critique, "provenance")}
 
 
 def shown(request: Request) -> str:

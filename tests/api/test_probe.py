@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import wonderful_team as wt
-from tests.servers.brains import Desk, Tapped, Unmatched, offline_brain
+from tests.servers.brains import AgentSession, Tapped, Unmatched, offline_brain
 from tests.servers.heard import Heard, Reply
 from tests.servers.odd import OddEyes
 from tests.servers.server import KEY, Rules, WireServer
@@ -27,7 +27,7 @@ ODD_SPEECH = Speech("yx", None, longest_side(720), offset=(9.0, -7.0), digits=1)
 class Mind:
     """Plans like `offline` when it is asked what lies on the desk; else it points by colour, in the same odd convention."""
 
-    def __init__(self, desk: Desk, speech: Speech, eyes: OddEyes | None = None) -> None:
+    def __init__(self, desk: AgentSession, speech: Speech, eyes: OddEyes | None = None) -> None:
         self._desk, self._plans = desk, offline_brain(desk, speech)
         self._eyes = eyes or OddEyes(speech)
 
@@ -53,7 +53,7 @@ def _photo(tmp_path: Path, size: tuple[int, int] = (1100, 760)) -> tuple[Path, d
     return path, {mark.words: mark.centre for mark in scene.marks}
 
 
-def _found(plan: wt.MadePlan, words: str) -> np.ndarray:
+def _found(plan: wt.PlanResult, words: str) -> np.ndarray:
     target = next(target for target in plan.targets if target.words == words)
     assert target.point_px is not None
     return np.array(target.point_px)
@@ -63,7 +63,7 @@ def _found(plan: wt.MadePlan, words: str) -> np.ndarray:
 def test_after_probe_save_a_plan_has_the_right_pixels(
     most: int | None, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    desk = Desk()
+    desk = AgentSession()
     photo, places = _photo(tmp_path)
     first, second = list(places)[:2]
     with WireServer(Mind(desk, ODD_SPEECH), Rules(local=True, models=("my-planner",), max_pictures=most)) as server:
@@ -87,7 +87,7 @@ def test_after_probe_save_a_plan_has_the_right_pixels(
 
 def test_without_the_profile_the_same_server_is_misread(tmp_path: Path) -> None:
     """The control: it is the profile that makes the pixels right."""
-    desk = Desk()
+    desk = AgentSession()
     photo, places = _photo(tmp_path)
     first, second = list(places)[:2]
     with WireServer(Mind(desk, ODD_SPEECH), Rules(local=True, models=("my-planner",))) as server:

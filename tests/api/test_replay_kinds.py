@@ -57,8 +57,8 @@ def in_world(out, task=TASK, wrap=lambda world: world, team=None, **more):
         world.close()
 
 
-def looks(out):
-    trial = in_world(out, "tabletop/sweep_without_exceeding", replans=1, looks=4)
+def reobserve(out):
+    trial = in_world(out, "tabletop/sweep_without_exceeding", replans=1, reobserve=4)
     # One push of the first plan ran; the second was made for the picture after it.
     assert len(read_record(trial.folder)["planner"]["plans"]) > 1
     return trial
@@ -66,7 +66,7 @@ def looks(out):
 
 def looks_then_a_replan(out):
     """After a look the robot fails: what follows is judged and replanned, and looks are left."""
-    trial = in_world(out, "tabletop/sweep_without_exceeding", Faulty, replans=2, looks=4)
+    trial = in_world(out, "tabletop/sweep_without_exceeding", Faulty, replans=2, reobserve=4)
     assert any("did not reach" in str(report.fault) for report in trial.reports)
     return trial
 
@@ -175,7 +175,7 @@ def grounding(out):
 
 
 KINDS = (
-    looks, looks_then_a_replan, replans, refused, robot_fault, model_fault, model_fault_after_motion, approved, declined,
+    reobserve, looks_then_a_replan, replans, refused, robot_fault, model_fault, model_fault_after_motion, approved, declined,
     declined_with_advice, own_world,
     a_plan_that_was_read, photo, photo_in_metres, photo_with_a_model_fault, stopped_early, not_understood, out_of_budget,
     grounding,
@@ -196,7 +196,7 @@ def test_every_kind_of_run_replays(make, tmp_path, monkeypatch):
     assert found.answers == len(ended)
 
 
-@pytest.mark.parametrize("make", [looks, looks_then_a_replan, replans], ids=lambda kind: kind.__name__)
+@pytest.mark.parametrize("make", [reobserve, looks_then_a_replan, replans], ids=lambda kind: kind.__name__)
 def test_a_record_without_the_counts_of_attempts_replays_by_the_names_of_its_pictures(make, tmp_path):
     """As records of earlier releases are, which counted one replan fewer as left."""
     folder = make(tmp_path).folder

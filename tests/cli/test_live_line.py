@@ -14,7 +14,7 @@ from pathlib import Path
 from types import SimpleNamespace
 
 from wonderful_team.cli.live_line import CLEAR, LiveLine
-from wonderful_team.cli.progress import Progress
+from wonderful_team.cli.progress import ProgressLine
 from wonderful_team.core.protocols import Event
 
 SLOW = """
@@ -60,13 +60,13 @@ def test_a_line_of_progress_never_lands_on_it() -> None:
 
 
 def test_nothing_moves_where_stderr_is_no_terminal_or_json_is_wanted() -> None:
-    assert Progress()._live is None
-    assert Progress(live=False)._live is None
+    assert ProgressLine()._live is None
+    assert ProgressLine(live=False)._live is None
 
 
 def test_words_of_a_model_cannot_write_on_the_terminal() -> None:
     said: list[str] = []
-    Progress(said.append).on_event(Event("stage", "checked", "1 question: \x1b[2K\rPLAN ok\u202e\nadmitted"))
+    ProgressLine(said.append).on_event(Event("stage", "checked", "1 question: \x1b[2K\rPLAN ok\u202e\nadmitted"))
     assert len(said) == 1
     assert said[0].endswith("1 question: \\x1b[2K\\rPLAN ok\\u202e\\nadmitted")
 

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from tests.models.providers.asking import known_brain, small_scene
-from tests.servers.brains import Desk
+from tests.servers.brains import AgentSession
 from tests.servers.faults import PROMPT_INJECTION, Fault
 from tests.servers.server import KEY, Rules, WireServer
 from tests.servers.wiring import WIRES
@@ -42,9 +42,9 @@ def pace() -> dict[str, float]:
 
 
 @pytest.fixture
-def desk(monkeypatch: pytest.MonkeyPatch, pace: dict[str, float]) -> Desk:
+def desk(monkeypatch: pytest.MonkeyPatch, pace: dict[str, float]) -> AgentSession:
     """Where the requests of every provider lie while they are under way; retries are quick."""
-    desk, asked, made = Desk(), Provider.answer, making.Settings
+    desk, asked, made = AgentSession(), Provider.answer, making.Settings
 
     async def answer(self: Provider, request: Request) -> Answer:
         desk.put(request)
@@ -72,7 +72,7 @@ SOME_WIRES = ("server", "anthropic")
 
 
 @pytest.fixture(params=WIRES)
-def served(request: pytest.FixtureRequest, desk: Desk) -> Iterator[tuple[str, WireServer]]:
+def served(request: pytest.FixtureRequest, desk: AgentSession) -> Iterator[tuple[str, WireServer]]:
     wire = WIRES[request.param]
     with WireServer(known_brain(desk, wire.speech), Rules(local=not wire.vendor)) as server:
         yield wire.spec(server), server
@@ -121,7 +121,7 @@ def test_a_photo_is_planned_in_every_format(
 @pytest.mark.parametrize("fault", EXIT_CODES)
 def test_a_lasting_fault_ends_with_its_exit_code(
     fault: str,
-    desk: Desk,
+    desk: AgentSession,
     pace: dict[str, float],
     photo: Path,
     tmp_path: Path,
@@ -196,7 +196,7 @@ def test_what_a_label_in_the_scene_says_changes_nothing(
 
 
 def test_no_server_at_all_is_the_providers_fault(
-    desk: Desk, photo: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    desk: AgentSession, photo: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     wire = WIRES["openai-chat"]
     with WireServer(known_brain(desk, wire.speech)) as server:

@@ -66,15 +66,15 @@ class Noisy:
     """A world whose camera has noise of its own at every look."""
 
     def __init__(self, inner: Any) -> None:
-        self.inner, self.looks = inner, 0
+        self.inner, self.reobserve = inner, 0
 
     def __getattr__(self, name: str) -> Any:
         return getattr(self.inner, name)
 
     def observe(self) -> wt.Observation:
         seen = self.inner.observe()
-        self.looks += 1
-        noise = np.random.default_rng(self.looks).normal(0, 3.0, seen.main.rgb.shape)
+        self.reobserve += 1
+        noise = np.random.default_rng(self.reobserve).normal(0, 3.0, seen.main.rgb.shape)
         rgb = np.clip(seen.main.rgb + noise, 0, 255).astype(np.uint8)
         return replace(seen, views={**seen.views, seen.main.camera_name: replace(seen.main, rgb=rgb)})
 

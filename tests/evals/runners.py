@@ -9,7 +9,7 @@ import time
 
 from wonderful_team.evals.plan import StudyPlan
 from wonderful_team.evals.suites import Protocol, Suite
-from wonderful_team.evals.trials import RunSettings, TrialResult, TrialSpec
+from wonderful_team.evals.trials import RunSettings, TrialRow, TrialSpec
 
 TOY = Suite("toy", ("toy/a", "toy/b"), Protocol("toy", 10, 0))
 
@@ -26,14 +26,14 @@ def wins(spec: TrialSpec) -> bool:
     return digest < (200 if spec.condition.method == "good" else 60)
 
 
-def quick(spec: TrialSpec, settings: RunSettings) -> TrialResult:
+def quick(spec: TrialSpec, settings: RunSettings) -> TrialRow:
     """A trial that takes no time."""
     if wins(spec):
-        return TrialResult("success", calls=3, tokens=100, usd=0.01, rounds=2, seconds=1.0)
-    return TrialResult("failure", "grounding", "missed", calls=5, tokens=150, usd=0.02, rounds=4, seconds=2.0)
+        return TrialRow("success", calls=3, tokens=100, usd=0.01, rounds=2, seconds=1.0)
+    return TrialRow("failure", "grounding", "missed", calls=5, tokens=150, usd=0.02, rounds=4, seconds=2.0)
 
 
-def slow(spec: TrialSpec, settings: RunSettings) -> TrialResult:
+def slow(spec: TrialSpec, settings: RunSettings) -> TrialRow:
     """A trial that takes a moment, and leaves a line in a log file: one per time that it is really run."""
     log = os.environ["TOY_LOG"]
     with open(log, "a", encoding="utf-8") as file:
@@ -44,40 +44,38 @@ def slow(spec: TrialSpec, settings: RunSettings) -> TrialResult:
     return quick(spec, settings)
 
 
-def capped_slow(spec: TrialSpec, settings: RunSettings) -> TrialResult:
+def capped_slow(spec: TrialSpec, settings: RunSettings) -> TrialRow:
     """Spends ten calls as `capped` does, and takes a moment."""
     slow(spec, settings)
     return capped(spec, settings)
 
 
-def free_slow(spec: TrialSpec, settings: RunSettings) -> TrialResult:
+def free_slow(spec: TrialSpec, settings: RunSettings) -> TrialRow:
     """Asks a model that costs nothing, and takes a moment."""
     slow(spec, settings)
-    return TrialResult("success", calls=5, usd=0.0)
+    return TrialRow("success", calls=5, usd=0.0)
 
 
-def breaking(spec: TrialSpec, settings: RunSettings) -> TrialResult:
+def breaking(spec: TrialSpec, settings: RunSettings) -> TrialRow:
     """Raises on some seeds, as long as the file named by TOY_BROKEN exists."""
     if spec.seed % 5 == 0 and os.path.exists(os.environ.get("TOY_BROKEN", "")):
         raise ConnectionError("the provider hung up")
     return quick(spec, settings)
 
 
-def dying(spec: TrialSpec, settings: RunSettings) -> TrialResult:
+def dying(spec: TrialSpec, settings: RunSettings) -> TrialRow:
     """Kills its own process on one trial."""
     if spec.seed == 1001 and spec.condition.method == "bad" and spec.task == "toy/a":
         os._exit(7)
     return quick(spec, settings)
 
 
-def capped(spec: TrialSpec, settings: RunSettings) -> TrialResult:
+def capped(spec: TrialSpec, settings: RunSettings) -> TrialRow:
     """Spends ten calls, or as many as it may and then fails at stage budget, as the real runner does."""
     allowed = settings.caps.calls
     if allowed is not None and allowed < 10:
-        return TrialResult(
-            "failure", "budget", f"the cap of {allowed} calls is reached ({allowed} made)", calls=allowed
-        )
-    return TrialResult("success", calls=10, usd=None)
+        return TrialRow("failure", "budget", f"the cap of {allowed} calls is reached ({allowed} made)", calls=allowed)
+    return TrialRow("success", calls=10, usd=None)
 
 
 async def _hold(settings: RunSettings) -> None:
@@ -92,7 +90,7 @@ async def _hold(settings: RunSettings) -> None:
             file.write(f"{began} {ended}\n")
 
 
-def limited(spec: TrialSpec, settings: RunSettings) -> TrialResult:
+def limited(spec: TrialSpec, settings: RunSettings) -> TrialRow:
     """Makes one call through the shared limiter."""
     asyncio.run(_hold(settings))
     return quick(spec, settings)

@@ -60,7 +60,7 @@ class Truth:
         return (wt.PickPlace(np.array([0.2, 0.2, 0.0]), np.array([0.3, 0.3, 0.0])),)
 
 
-class Desk:
+class AgentSession:
     vocabulary = wt.PICK_PLACE
     limits = wt.Limits((0.0, 0.0, -0.01), (0.5, 0.5, 0.4))
     instruction = wt.Instruction("tidy the desk")
@@ -107,7 +107,7 @@ def test_a_method_of_fifteen_lines_against_the_controls(tmp_path: Path, capsys: 
 def test_offline_runs_through_the_study_like_any_model(tmp_path: Path) -> None:
     study = wt.Study("rotate", seeds=[1000], store=tmp_path / "s.db", controls=("offline",), jobs=1, pages="none")
     ended = study.run()
-    assert ended.standing.done == 1
+    assert ended.status.done == 1
     summary = study.summary()
     cell = summary.cell(summary.compared[0])
     assert cell.badges == ("OFFLINE",)
@@ -121,7 +121,7 @@ def test_offline_runs_through_the_study_like_any_model(tmp_path: Path) -> None:
 
 def test_a_wrong_scorer_and_wrong_units_are_caught(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (tmp_path / "desk.py").write_text(LENIENT, encoding="utf-8")
-    name = f"{tmp_path / 'desk.py'}:Desk"
+    name = f"{tmp_path / 'desk.py'}:AgentSession"
     assert run(["check", name, "--seeds", "4"]) == 1
     said = capsys.readouterr().out
     assert "doing nothing succeeds in 4 of 4" in said
@@ -136,7 +136,7 @@ def test_a_wrong_scorer_and_wrong_units_are_caught(tmp_path: Path, capsys: pytes
 
 @pytest.mark.parametrize(
     ("kind", "name", "seeds"),
-    [("task", "cups", "2"), ("world", "Desk", "4"), ("method", "Mine", "2"), ("model", "Mine", "1")],
+    [("task", "cups", "2"), ("world", "AgentSession", "4"), ("method", "Mine", "2"), ("model", "Mine", "1")],
 )
 def test_new_files_run_pass_their_check_and_their_own_test(
     tmp_path: Path, kind: str, name: str, seeds: str, capsys: pytest.CaptureFixture[str]
@@ -292,7 +292,7 @@ def test_generalisation_levels_are_suites(tmp_path: Path) -> None:
     suites = known_suites()
     assert "tabletop/rotate@L3" in suites["vima17/L3"].tasks
     study = wt.Study("rotate@L2", seeds=[1000], store=tmp_path / "s.db", methods=["no-op"], controls=(), jobs=1)
-    assert study.run().standing.outcomes == {"failure": 1}
+    assert study.run().status.outcomes == {"failure": 1}
 
 
 @pytest.mark.parametrize(
@@ -373,7 +373,7 @@ def test_our_tabletop_makes_harder_scenes_and_other_worlds_change_their_pictures
         return make_scene(TrialSpec(task, 7, Condition("team", "offline", perturb=tier)))
 
     (tmp_path / "desk.py").write_text(LENIENT, encoding="utf-8")
-    own = f"{tmp_path / 'desk.py'}:Desk"
+    own = f"{tmp_path / 'desk.py'}:AgentSession"
     plain = scene("")
     try:
         before = plain.observe().main

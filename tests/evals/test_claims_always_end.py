@@ -13,10 +13,10 @@ from pathlib import Path
 import pytest
 
 from tests.evals.runners import toy_plan
-from wonderful_team.evals.claims import LEASE_S, Owner, Surroundings
+from wonderful_team.evals.leases import LEASE_S, Owner, Surroundings
 from wonderful_team.evals.spending import CapReached
 from wonderful_team.evals.store import Claim, Store
-from wonderful_team.evals.trials import SpendingCaps, TrialResult
+from wonderful_team.evals.trials import SpendingCaps, TrialRow
 from wonderful_team.evals.workers import settle
 
 MOST_STEPS = 4000
@@ -128,9 +128,9 @@ class World:
             one.spent += 1
             self.really_spent += 1
             return
-        result = TrialResult("success", calls=one.spent, usd=None)
+        result = TrialRow("success", calls=one.spent, usd=None)
         if wanted > most:
-            result = TrialResult("failure", "budget", f"the cap of {most} calls is reached", calls=one.spent, usd=None)
+            result = TrialRow("failure", "budget", f"the cap of {most} calls is reached", calls=one.spent, usd=None)
         if settle(one.store, one.owner, one.claim, SpendingCaps(), result):
             self.written.append(trial)
         one.claim = None
@@ -195,7 +195,7 @@ def test_a_cheap_first_trial_does_not_cut_the_others_for_ever(tmp_path: Path) ->
         owner, caps = Owner("a", 1, "born", 0, "", "1"), SpendingCaps(calls=1000)
         claim = store.claim(plan.name, owner, caps)
         assert claim is not None
-        settle(store, owner, claim, SpendingCaps(), TrialResult("success", calls=1, usd=None))
+        settle(store, owner, claim, SpendingCaps(), TrialRow("success", calls=1, usd=None))
         cuts = 0
         while store.count(plan.name, "done") < store.count_all(plan.name):
             claim = store.claim(plan.name, owner, caps)
@@ -204,7 +204,7 @@ def test_a_cheap_first_trial_does_not_cut_the_others_for_ever(tmp_path: Path) ->
             # Cut before its second call, however much it was allowed below twenty: it reports what it made.
             enough = claim.left.calls >= 20
             reason = "" if enough else f"the cap of {claim.left.calls} calls is reached"
-            result = TrialResult(
+            result = TrialRow(
                 "success" if enough else "failure", None if enough else "budget", reason, calls=1, usd=None
             )
             cuts += not settle(store, owner, claim, SpendingCaps(), result)
@@ -241,7 +241,7 @@ def test_a_late_result_of_a_lost_claim_is_booked_once_and_not_written(tmp_path: 
         again = store.claim(plan.name, quick)
         assert again is not None
         assert again.trial == claim.trial
-        assert store.finish(again.trial, quick, TrialResult("success", calls=3, usd=None))
-        assert not store.finish(claim.trial, slow, TrialResult("success", calls=7, usd=None))
-        assert not store.finish(claim.trial, slow, TrialResult("success", calls=7, usd=None))
+        assert store.finish(again.trial, quick, TrialRow("success", calls=3, usd=None))
+        assert not store.finish(claim.trial, slow, TrialRow("success", calls=7, usd=None))
+        assert not store.finish(claim.trial, slow, TrialRow("success", calls=7, usd=None))
         assert store.spending(plan.name).calls == 3 + 7

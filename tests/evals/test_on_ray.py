@@ -9,9 +9,9 @@ import pytest
 from tests.evals import runners
 from tests.evals.runners import toy_plan
 from wonderful_team.evals import on_ray
+from wonderful_team.evals.monitor import StudyMonitor
 from wonderful_team.evals.store import Store
 from wonderful_team.evals.study import run_study
-from wonderful_team.evals.watch import Watch
 from wonderful_team.evals.workers import Work
 
 ROOT = Path(__file__).parents[2]
@@ -29,7 +29,7 @@ def test_a_study_on_two_ray_workers(tmp_path: Path, monkeypatch: pytest.MonkeyPa
     ray.init(num_cpus=4, include_dashboard=False, log_to_driver=False)
     try:
         ended = run_study(plan, there, runners.quick, jobs=2, ray="local")
-        assert (ended.standing.done, ended.why) == (16, "")
+        assert (ended.status.done, ended.why) == (16, "")
         with Store(here) as one, Store(there) as other:
             assert [(row.spec, row.result) for row in one.rows()] == [(row.spec, row.result) for row in other.rows()]
         with Store(tmp_path / "limited.db") as store:
@@ -38,8 +38,8 @@ def test_a_study_on_two_ray_workers(tmp_path: Path, monkeypatch: pytest.MonkeyPa
             from wonderful_team.evals.trials import RunSettings
 
             work = Work(store.path, small.name, runners.limited, RunSettings())
-            watch = Watch(store, small.name, lambda text, standing: None)
-            assert on_ray.run_on_ray(work, store, watch, "local", 2, 1) == 1
+            monitor = StudyMonitor(store, small.name, lambda text, status: None)
+            assert on_ray.run_on_ray(work, store, monitor, "local", 2, 1) == 1
             assert store.count(small.name, "done") == 8
     finally:
         ray.shutdown()

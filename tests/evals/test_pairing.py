@@ -9,7 +9,7 @@ import pytest
 
 from tests.evals.runners import quick, toy_plan
 from wonderful_team.evals.pairing import mcnemar_exact, newcombe_paired, pair, pairs_needed, visible_gap
-from wonderful_team.evals.trials import Condition, Row, TrialResult, TrialSpec
+from wonderful_team.evals.trials import Condition, Row, TrialRow, TrialSpec
 
 
 def test_mcnemar_is_the_exact_binomial() -> None:
@@ -60,7 +60,7 @@ def test_more_scenes_show_smaller_gaps() -> None:
 
 
 def _row(method: str, seed: int, outcome: str) -> Row:
-    return Row(TrialSpec("toy/a", seed, Condition(method, "m")), TrialResult(outcome))  # type: ignore[arg-type]
+    return Row(TrialSpec("toy/a", seed, Condition(method, "m")), TrialRow(outcome))  # type: ignore[arg-type]
 
 
 def test_a_pair_uses_shared_scored_scenes_only_and_lists_the_discordant_ones() -> None:

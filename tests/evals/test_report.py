@@ -15,14 +15,14 @@ import pytest
 from tests.evals import runners
 from tests.evals.runners import toy_plan
 from wonderful_team.errors import ConfigError
-from wonderful_team.evals.claims import Owner
+from wonderful_team.evals.leases import Owner
 from wonderful_team.evals.paper import paper_figure
 from wonderful_team.evals.report import latex_tables
 from wonderful_team.evals.report.page import read_stores, write_all
 from wonderful_team.evals.store import Store
 from wonderful_team.evals.study import run_study
 from wonderful_team.evals.summary import Cell, summarise
-from wonderful_team.evals.trials import Condition, Row, TrialResult, TrialSpec
+from wonderful_team.evals.trials import Condition, Row, TrialRow, TrialSpec
 from wonderful_team.images import to_png
 
 
@@ -135,7 +135,7 @@ def test_a_trial_that_ended_differently_in_two_stores_is_told(store: Path, tmp_p
 
 def _row(method: str, seed: int, outcome: str, model: str = "m", task: str = "toy/a", perturb: str = "") -> Row:
     condition = Condition(method, model, perturb=perturb)
-    return Row(TrialSpec(task, seed, condition), TrialResult(outcome, calls=1))  # type: ignore[arg-type]
+    return Row(TrialSpec(task, seed, condition), TrialRow(outcome, calls=1))  # type: ignore[arg-type]
 
 
 def test_errors_are_not_failures_and_more_than_two_percent_of_them_warn() -> None:
@@ -150,7 +150,7 @@ def test_errors_are_not_failures_and_more_than_two_percent_of_them_warn() -> Non
 
 
 def test_nothing_scored_is_no_data(tmp_path: Path) -> None:
-    cell = Cell(Condition("a", "m"), (TrialResult("error"), TrialResult("unscored")), (1000, 1001))
+    cell = Cell(Condition("a", "m"), (TrialRow("error"), TrialRow("unscored")), (1000, 1001))
     assert str(cell.rate) == "no data"
     assert cell.usd_per_success is None
     with Store(tmp_path / "s.db") as store:
@@ -273,7 +273,7 @@ def test_hidden_characters_of_a_reason_are_escapes_in_the_table_and_the_page(tmp
         claim = store.claim(plan.name, owner)
         assert claim is not None
         reason = "no\x1b[2J \u202eway"
-        store.finish(claim.trial, owner, TrialResult("failure", "plan", reason))
+        store.finish(claim.trial, owner, TrialRow("failure", "plan", reason))
     made = write_all([tmp_path / "s.db"], tmp_path / "p.html")
     for path in (made.csv, made.page):
         text = path.read_text(encoding="utf-8")

@@ -19,11 +19,11 @@ from tests.evals.runners import toy_plan
 from tests.interrupting import listen
 from wonderful_team.core.filesystem import network_file_system
 from wonderful_team.errors import ConfigError
-from wonderful_team.evals.claims import Owner, Surroundings
+from wonderful_team.evals.leases import Owner, Surroundings
 from wonderful_team.evals.spending import CapReached, Likely, Spending, WaitForCost, allow
 from wonderful_team.evals.store import Store
 from wonderful_team.evals.study import run_study
-from wonderful_team.evals.trials import SpendingCaps, TrialResult
+from wonderful_team.evals.trials import SpendingCaps, TrialRow
 
 ROOT = Path(__file__).parents[2]
 
@@ -42,9 +42,9 @@ def test_a_claim_goes_to_one_owner_and_is_written_once(tmp_path: Path) -> None:
         assert first is not None
         assert second is not None
         assert first.spec != second.spec
-        assert not store.finish(first.trial, two, TrialResult("success"))
-        assert store.finish(first.trial, one, TrialResult("failure", "plan", "why"))
-        assert not store.finish(first.trial, one, TrialResult("success"))
+        assert not store.finish(first.trial, two, TrialRow("success"))
+        assert store.finish(first.trial, one, TrialRow("failure", "plan", "why"))
+        assert not store.finish(first.trial, one, TrialRow("success"))
         (ended,) = [row for row in store.rows() if row.result is not None]
         assert (ended.result.outcome, ended.result.stage) == ("failure", "plan")  # type: ignore[union-attr]
 
@@ -71,11 +71,11 @@ def test_a_claim_of_a_process_that_is_gone_is_free_and_of_a_living_one_is_not() 
 def test_the_same_study_resumes_and_a_larger_one_runs_only_what_is_new(tmp_path: Path) -> None:
     path = tmp_path / "s.db"
     first = run_study(toy_plan(2), path, runners.quick, jobs=1)
-    assert (first.standing.here, first.why) == (8, "")
+    assert (first.status.here, first.why) == (8, "")
     again = run_study(toy_plan(2), path, runners.quick, jobs=1)
-    assert (again.standing.here, again.standing.done) == (0, 8)
+    assert (again.status.here, again.status.done) == (0, 8)
     more = run_study(toy_plan(3), path, runners.quick, jobs=1)
-    assert (more.standing.here, more.standing.done) == (4, 12)
+    assert (more.status.here, more.status.done) == (4, 12)
 
 
 def test_another_programs_database_is_left_alone(tmp_path: Path) -> None:
@@ -103,12 +103,12 @@ def test_errors_are_kept_apart_and_retried_on_request(tmp_path: Path, monkeypatc
     monkeypatch.setenv("TOY_BROKEN", str(broken))
     path = tmp_path / "s.db"
     first = run_study(toy_plan(10), path, runners.breaking, jobs=1)
-    assert first.standing.outcomes["error"] == 8  # seeds 1000 and 1005, two tasks, two methods
+    assert first.status.outcomes["error"] == 8  # seeds 1000 and 1005, two tasks, two methods
     again = run_study(toy_plan(10), path, runners.breaking, jobs=1)
-    assert again.standing.here == 0
+    assert again.status.here == 0
     broken.unlink()
     mended = run_study(toy_plan(10), path, runners.breaking, jobs=1, retry_errors=True)
-    assert "error" not in mended.standing.outcomes
+    assert "error" not in mended.status.outcomes
     with Store(path) as store:
         assert sum(row.discarded for row in store.rows()) == 8
         reasons = {row.result.reason for row in store.rows() if row.result is not None}
@@ -120,13 +120,13 @@ def test_a_cap_stops_a_study_cleanly_and_is_never_passed(tmp_path: Path, cap: in
     path = tmp_path / "s.db"
     ended = run_study(toy_plan(5), path, runners.capped, jobs=1, caps=SpendingCaps(calls=cap))
     assert "cap" in ended.why
-    assert ended.standing.spent.calls <= cap
+    assert ended.status.spent.calls <= cap
     with Store(path) as store:
         results = [row.result for row in store.rows() if row.result is not None]
     assert len(results) == cap // 10
     assert all(result.outcome == "success" for result in results), "a trial cut by the study's cap is not a failure"
     whole = run_study(toy_plan(5), path, runners.capped, jobs=1)
-    assert whole.standing.done == 20
+    assert whole.status.done == 20
 
 
 def test_trials_run_side_by_side_under_a_cap_and_never_pass_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -135,8 +135,8 @@ def test_trials_run_side_by_side_under_a_cap_and_never_pass_it(tmp_path: Path, m
         toy_plan(10), tmp_path / "s.db", runners.capped_slow, jobs=1, at_once=4, caps=SpendingCaps(calls=305)
     )
     assert "cap of 305 calls" in ended.why
-    assert ended.standing.spent.calls == 300, "whatever fits is run, and nothing is cut that fits"
-    assert ended.standing.outcomes == {"success": 30}
+    assert ended.status.spent.calls == 300, "whatever fits is run, and nothing is cut that fits"
+    assert ended.status.outcomes == {"success": 30}
     assert _most_in_flight(tmp_path / "log") >= 3
 
 
@@ -173,7 +173,7 @@ def test_a_store_of_the_first_release_opens_and_goes_on(tmp_path: Path) -> None:
     base.commit()
     base.close()
     again = run_study(toy_plan(3), path, runners.quick, jobs=1)
-    assert (again.standing.here, again.standing.done) == (4, 12)
+    assert (again.status.here, again.status.done) == (4, 12)
 
 
 def test_a_store_of_the_second_schema_opens_and_goes_on(tmp_path: Path) -> None:
@@ -185,7 +185,7 @@ def test_a_store_of_the_second_schema_opens_and_goes_on(tmp_path: Path) -> None:
     base.commit()
     base.close()
     again = run_study(toy_plan(3), path, runners.quick, jobs=1)
-    assert (again.standing.here, again.standing.done) == (4, 12)
+    assert (again.status.here, again.status.done) == (4, 12)
 
 
 def _without_what_came_third(base: sqlite3.Connection) -> None:
@@ -197,8 +197,8 @@ def _without_what_came_third(base: sqlite3.Connection) -> None:
 def test_a_trial_that_kills_its_worker_becomes_an_error_and_the_sweep_goes_on(tmp_path: Path) -> None:
     said: list[str] = []
     ended = run_study(toy_plan(3), tmp_path / "s.db", runners.dying, jobs=2, report=lambda text, _: said.append(text))
-    assert ended.standing.done == ended.standing.total == 12
-    assert ended.standing.outcomes["error"] == 1
+    assert ended.status.done == ended.status.total == 12
+    assert ended.status.outcomes["error"] == 1
     assert any("a worker died (exit code 7)" in text for text in said)
 
 
@@ -220,7 +220,7 @@ def test_several_trials_wait_at_the_same_time_in_one_process(tmp_path: Path, mon
     monkeypatch.setenv("TOY_LOG", str(log))
     started = time.monotonic()
     ended = run_study(toy_plan(10), tmp_path / "s.db", runners.slow, jobs=1, at_once=8)
-    assert ended.standing.done == 40
+    assert ended.status.done == 40
     # One after another they sleep 0.8 s; the bound leaves room for a busy machine.
     assert _most_in_flight(log) > 1, time.monotonic() - started
 

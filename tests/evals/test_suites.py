@@ -16,7 +16,7 @@ from wonderful_team.evals.perturb import moved, read_tiers
 from wonderful_team.evals.photos import Located, overlap, read_photos, score_photo
 from wonderful_team.evals.plan import StudyPlan, read_shard
 from wonderful_team.evals.suites import VIMA_TASKS, all_suites, default_seeds, read_seeds, resolve
-from wonderful_team.evals.trials import Condition, Row, SpendingCaps, TrialResult, TrialSpec
+from wonderful_team.evals.trials import Condition, Row, SpendingCaps, TrialRow, TrialSpec
 from wonderful_team.registry.role_models import choice_of, read_choices, text_of
 
 KNOWN = [
@@ -88,7 +88,7 @@ def test_an_estimate_multiplies_means_and_says_which_gaps_show() -> None:
     condition = Condition("team", "m")
     ended = Row(
         TrialSpec("tabletop/rotate", 1000, condition),
-        TrialResult("success", calls=8, tokens=1000, usd=0.1, seconds=36.0),
+        TrialRow("success", calls=8, tokens=1000, usd=0.1, seconds=36.0),
     )
     found = estimate(plan, [ended], {}, workers=2)
     assert found.total("calls") == 49 * 8
@@ -97,7 +97,7 @@ def test_an_estimate_multiplies_means_and_says_which_gaps_show() -> None:
     assert found.pairs == 50
     assert "with 50 scenes per method you can see gaps of about" in found.text()
     dearer = Row(
-        TrialSpec("tabletop/rotate", 1001, condition), TrialResult("failure", calls=20, tokens=3000, seconds=36.0)
+        TrialSpec("tabletop/rotate", 1001, condition), TrialRow("failure", calls=20, tokens=3000, seconds=36.0)
     )
     both = estimate(plan, [ended, dearer], {}, workers=2)
     assert (both.total("calls"), both.bounds("calls")) == (48 * 14, (48 * 8, 48 * 20))
@@ -212,12 +212,14 @@ def test_a_moved_camera_sees_points_where_the_picture_shows_them() -> None:
 
 def test_looks_are_part_of_what_a_trial_is_and_leave_earlier_trials_alone() -> None:
     suites = resolve(["rotate"], KNOWN, all_suites(KNOWN), _is_own)
-    plain, looking = (StudyPlan(suites, ("team",), ("m",), controls=("oracle",), looks=looks) for looks in (0, 8))
+    plain, looking = (
+        StudyPlan(suites, ("team",), ("m",), controls=("oracle",), reobserve=reobserve) for reobserve in (0, 8)
+    )
     team, oracle = looking.conditions(suites[0])
-    assert (team.looks, oracle.looks) == (8, 0)
-    assert team.label == "team · m · 8 looks"
+    assert (team.reobserve, oracle.reobserve) == (8, 0)
+    assert team.label == "team · m · reobserve 8"
     specs = [TrialSpec("tabletop/rotate", 1000, plan.conditions(suites[0])[0]) for plan in (plain, looking)]
     assert specs[0].key == '["tabletop/rotate", 1000, 0, "team", "m", "", "", 0]'
     assert specs[0].key != specs[1].key
-    with pytest.raises(ConfigError, match="looks must be 0 or more, got -1"):
-        StudyPlan(suites, looks=-1)
+    with pytest.raises(ConfigError, match="reobserve must be 0 or more, got -1"):
+        StudyPlan(suites, reobserve=-1)

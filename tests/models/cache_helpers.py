@@ -16,7 +16,7 @@ from wonderful_team.core.values import Answer, Request, Subgoal, Usage, Words
 from wonderful_team.images import Ticks
 from wonderful_team.models.cache import Cached
 from wonderful_team.models.cache_store import CacheStore
-from wonderful_team.models.door import Door
+from wonderful_team.models.client import ModelClient
 
 GOOD = {"reasoning": "it is free", "accepted": True, "problem": ""}
 CONTRADICTION = {"reasoning": "", "accepted": True, "problem": "it is wrong"}
@@ -58,7 +58,7 @@ class Paid:
 
 
 def ask(model: Any, asked: Request | None = None, **options: Any) -> Answer:
-    return asyncio.run(Door(model, **options).ask(asked or request()))
+    return asyncio.run(ModelClient(model, **options).ask(asked or request()))
 
 
 def fill(file: Path, first: int, count: int) -> None:

@@ -14,7 +14,7 @@ from wonderful_team.core.caps import Caps, Estimate
 from wonderful_team.core.values import Answer, Request, Usage
 from wonderful_team.errors import BudgetReached, ModelServerError
 from wonderful_team.models.budget import Budget, current_ticket
-from wonderful_team.models.door import Door
+from wonderful_team.models.client import ModelClient
 
 VIEW = picture((64, 48))
 REQUEST = reading(VIEW)
@@ -48,42 +48,42 @@ class Counting:
         return Answer(answer_px(VIEW), Usage(1, self.cost.tokens_in, tokens_out=out, usd=usd))
 
 
-async def ask_many(door: Door, count: int) -> list[Any]:
-    return await asyncio.gather(*(door.ask(REQUEST) for _ in range(count)), return_exceptions=True)
+async def ask_many(client: ModelClient, count: int) -> list[Any]:
+    return await asyncio.gather(*(client.ask(REQUEST) for _ in range(count)), return_exceptions=True)
 
 
 @settings(deadline=None, max_examples=40)
 @given(st.integers(400, 5000), st.integers(1, 12), st.integers(10, 300), st.integers(0, 400))
 def test_a_cap_on_tokens_is_never_passed(cap: int, at_once: int, tokens_in: int, wants: int) -> None:
     model = Counting(tokens_in, wants=wants)
-    door = Door(model, budget=Budget(Caps(tokens=cap)), concurrency=at_once)
-    results = asyncio.run(ask_many(door, 20))
-    assert door.budget.spent.tokens <= cap
+    client = ModelClient(model, budget=Budget(Caps(tokens=cap)), concurrency=at_once)
+    results = asyncio.run(ask_many(client, 20))
+    assert client.budget.spent.tokens <= cap
     assert all(isinstance(result, Answer | BudgetReached) for result in results)
-    assert model.sent == door.budget.spent.calls
+    assert model.sent == client.budget.spent.calls
 
 
 @settings(deadline=None, max_examples=30)
 @given(st.floats(0.005, 0.05), st.integers(1, 12))
 def test_a_cap_on_money_is_never_passed(cap: float, at_once: int) -> None:
-    door = Door(Counting(usd=1e-5), budget=Budget(Caps(usd=cap)), concurrency=at_once)
-    asyncio.run(ask_many(door, 20))
-    assert door.budget.spent.usd is not None
-    assert door.budget.spent.usd <= cap + 1e-12
+    client = ModelClient(Counting(usd=1e-5), budget=Budget(Caps(usd=cap)), concurrency=at_once)
+    asyncio.run(ask_many(client, 20))
+    assert client.budget.spent.usd is not None
+    assert client.budget.spent.usd <= cap + 1e-12
 
 
 def test_calls_that_do_not_fit_beside_others_wait_and_are_not_refused() -> None:
     model = Counting(tokens_in=100, most_out=400, wants=10)
-    door = Door(model, budget=Budget(Caps(tokens=1100)))
-    results = asyncio.run(ask_many(door, 6))
+    client = ModelClient(model, budget=Budget(Caps(tokens=1100)))
+    results = asyncio.run(ask_many(client, 6))
     assert all(isinstance(result, Answer) for result in results)
     assert model.most_at_once < 6
-    assert door.budget.spent.tokens == 6 * 110
+    assert client.budget.spent.tokens == 6 * 110
 
 
 def test_without_caps_nothing_waits() -> None:
     model = Counting()
-    asyncio.run(ask_many(Door(model, concurrency=8), 8))
+    asyncio.run(ask_many(ModelClient(model, concurrency=8), 8))
     assert model.most_at_once == 8
 
 
@@ -92,7 +92,7 @@ def test_the_first_call_is_refused_when_its_estimate_passes_the_cap() -> None:
     with pytest.raises(
         BudgetReached, match=r"cap of 1000 tokens is reached \(0 spent; the next call needs about 1156\)"
     ):
-        asyncio.run(Door(model, budget=Budget(Caps(tokens=1000))).ask(REQUEST))
+        asyncio.run(ModelClient(model, budget=Budget(Caps(tokens=1000))).ask(REQUEST))
     assert model.sent == 0
 
 
@@ -114,21 +114,21 @@ class Failing(Counting):
 
 
 def test_tries_count_as_calls_and_what_they_may_have_cost_is_booked() -> None:
-    door = Door(Failing(3, usd=1e-5))
+    client = ModelClient(Failing(3, usd=1e-5))
     with pytest.raises(ModelServerError):
-        asyncio.run(door.ask(REQUEST))
-    assert door.budget.spent.calls == 3
-    assert door.budget.spent.tokens == 300
-    assert door.budget.spent.usd == pytest.approx(300e-5)
-    assert door.budget.by_role["manager"].calls == 3
+        asyncio.run(client.ask(REQUEST))
+    assert client.budget.spent.calls == 3
+    assert client.budget.spent.tokens == 300
+    assert client.budget.spent.usd == pytest.approx(300e-5)
+    assert client.budget.by_role["manager"].calls == 3
 
 
 @pytest.mark.parametrize("caps", [Caps(calls=2), Caps(tokens=850), Caps(usd=0.0085)])
 def test_another_try_is_not_sent_past_a_cap(caps: Caps) -> None:
     model = Failing(50, usd=1e-5)
-    door = Door(model, budget=Budget(caps))
+    client = ModelClient(model, budget=Budget(caps))
     with pytest.raises(BudgetReached):
-        asyncio.run(door.ask(REQUEST))
+        asyncio.run(client.ask(REQUEST))
     assert model.sent <= 6
     assert caps.calls is None or model.sent == 2
 
@@ -143,16 +143,16 @@ def test_a_model_without_an_estimate_is_reckoned_by_the_dearest_call() -> None:
             return Answer(answer_px(VIEW), Usage(1, tokens_in=90, tokens_out=10, usd=None))
 
     model = Plain()
-    door = Door(model, budget=Budget(Caps(tokens=350)))
+    client = ModelClient(model, budget=Budget(Caps(tokens=350)))
 
     async def in_turn() -> None:
         for _ in range(5):
-            await door.ask(REQUEST)
+            await client.ask(REQUEST)
 
     with pytest.raises(BudgetReached, match="cap of 350 tokens"):
         asyncio.run(in_turn())
     assert model.sent == 3
-    assert door.budget.spent.tokens == 300
+    assert client.budget.spent.tokens == 300
 
 
 def test_the_clock_ends_a_wait() -> None:
@@ -172,12 +172,12 @@ def test_a_cancelled_call_gives_its_place_back() -> None:
             raise AssertionError
 
     async def work() -> Budget:
-        door = Door(Hanging(), budget=Budget(Caps(tokens=2000)))
-        task = asyncio.ensure_future(door.ask(REQUEST))
+        client = ModelClient(Hanging(), budget=Budget(Caps(tokens=2000)))
+        task = asyncio.ensure_future(client.ask(REQUEST))
         await asyncio.sleep(0.01)
         task.cancel()
         await asyncio.gather(task, return_exceptions=True)
-        return door.budget
+        return client.budget
 
     budget = asyncio.run(work())
     # It may have been worked on, so its request counts.

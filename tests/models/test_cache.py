@@ -23,7 +23,7 @@ from wonderful_team.models.budget import Budget
 from wonderful_team.models.cache import Cached, cached_models
 from wonderful_team.models.cache_key import model_identity, request_key
 from wonderful_team.models.cache_store import CacheStore, Stored, default_cache_file, network_file_system
-from wonderful_team.models.door import Door
+from wonderful_team.models.client import ModelClient
 from wonderful_team.offline import OfflineModel
 
 
@@ -162,9 +162,9 @@ def test_identical_requests_at_once_are_sent_once(store):
     one, two = Cached(model, store), Cached(model, store)
 
     async def all_at_once():
-        door = Door({"supervisor": one, "*": two}, concurrency=20)
+        client = ModelClient({"supervisor": one, "*": two}, concurrency=20)
         other = replace(request(), role="checker")
-        return await asyncio.gather(*(door.ask(request() if n % 2 else other) for n in range(12)))
+        return await asyncio.gather(*(client.ask(request() if n % 2 else other) for n in range(12)))
 
     answers = asyncio.run(all_at_once())
     assert model.calls == 1

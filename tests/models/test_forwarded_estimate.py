@@ -11,7 +11,7 @@ from tests.models.providers.test_sending import REQUEST
 from wonderful_team.core.caps import Caps, Estimate
 from wonderful_team.errors import BudgetReached
 from wonderful_team.models.budget import Budget
-from wonderful_team.models.door import Door
+from wonderful_team.models.client import ModelClient
 
 
 class Reckoning:
@@ -40,5 +40,5 @@ class Forwarding:
 def test_a_forwarded_estimate_holds_a_request_back() -> None:
     model = Reckoning()
     with pytest.raises(BudgetReached):
-        asyncio.run(Door(Forwarding(model), budget=Budget(Caps(tokens=100))).ask(REQUEST))
+        asyncio.run(ModelClient(Forwarding(model), budget=Budget(Caps(tokens=100))).ask(REQUEST))
     assert model.asked == 0

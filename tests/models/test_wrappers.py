@@ -31,7 +31,7 @@ def test_verification_sees_the_injected_plan_and_its_doubt_is_recorded():
         ReviewPlan=review, RevisePlan={"reasoning": "", "decision": "revise", "answer": "Yes.", "plan": better}
     )
     planted = Injecting(model, [Injection(("DraftPlan",), wrong_way_round, "a plan the wrong way round")])
-    plan = plan_with(planted, TeamConfig(way="lean"))
+    plan = plan_with(planted, TeamConfig(mode="lean"))
     assert plan.first_draft[0].text == "put the second thing into the first thing"
     assert plan.subgoals[0].text == "put the first thing into the second thing"
     assert plan.questions[0].changed

@@ -13,12 +13,12 @@ from wonderful_team.core.actions import PICK_PLACE
 from wonderful_team.core.geometry import Box
 from wonderful_team.core.pictures import PointMark
 from wonderful_team.core.values import Observation, Target
-from wonderful_team.models.door import Door
+from wonderful_team.models.client import ModelClient
 from wonderful_team.offline import OfflineModel
-from wonderful_team.planning import Team, TeamConfig
+from wonderful_team.planning import TeamConfig, TeamPolicy
 from wonderful_team.planning.boxes import Job
-from wonderful_team.planning.desk import Desk
 from wonderful_team.planning.scene import SceneShown
+from wonderful_team.planning.session import AgentSession
 from wonderful_team.sims.tabletop import make_world
 
 SEED = 4
@@ -45,7 +45,7 @@ def true_box(world):
 
 
 def ask(shown, question, stage="ground"):
-    desk = Desk(Door(OfflineModel()), TeamConfig(setting="s8"), shown.instruction.text)
+    desk = AgentSession(ModelClient(OfflineModel()), TeamConfig(ablation="s8"), shown.instruction.text)
     return asyncio.run(desk.ask(question, stage=stage))
 
 
@@ -60,7 +60,7 @@ def rolled(picture, right_px):
 
 
 def job(shown, target=TARGET):
-    desk = Desk(Door(OfflineModel()), TeamConfig(), shown.instruction.text)
+    desk = AgentSession(ModelClient(OfflineModel()), TeamConfig(), shown.instruction.text)
     return Job(desk, shown, target, 0, (), shown.examples([target]))
 
 
@@ -122,7 +122,7 @@ def test_a_team_that_is_shown_noise_finds_nothing_and_moves_nothing(world):
     noisy = Observation(
         {name: replace(view, rgb=noise_like_view(view), depth_m=None) for name, view in seen.views.items()}
     )
-    plan = asyncio.run(Team(OfflineModel()).make_plan(noisy, world.instruction, PICK_PLACE, world.limits))
+    plan = asyncio.run(TeamPolicy(OfflineModel()).make_plan(noisy, world.instruction, PICK_PLACE, world.limits))
     assert plan.status == "needs_clarification"
     assert plan.actions == ()
 

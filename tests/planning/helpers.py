@@ -10,9 +10,9 @@ from wonderful_team.core.actions import PICK_PLACE, Vocabulary
 from wonderful_team.core.caps import Caps
 from wonderful_team.core.protocols import Event
 from wonderful_team.core.values import Instruction, Plan, Request
-from wonderful_team.models.agreeable import agreeable_script
 from wonderful_team.models.scripted import ScriptedModel
-from wonderful_team.planning import Team, TeamConfig
+from wonderful_team.models.stub_model import stub_script
+from wonderful_team.planning import TeamConfig, TeamPolicy
 
 
 class Tape:
@@ -33,7 +33,7 @@ class Tape:
 
 
 def scripted(**changes: Any) -> ScriptedModel:
-    return ScriptedModel({**agreeable_script(), **changes})
+    return ScriptedModel({**stub_script(), **changes})
 
 
 def plan_with(
@@ -45,7 +45,7 @@ def plan_with(
     tape: Tape | None = None,
     **options: Any,
 ) -> Plan:
-    team = Team(model, config or TeamConfig(way="paper"), caps=caps, subscribers=[tape] if tape else ())
+    team = TeamPolicy(model, config or TeamConfig(mode="paper"), caps=caps, subscribers=[tape] if tape else ())
     instruction = Instruction("put the first thing into the second thing")
     return asyncio.run(team.make_plan(photo(), instruction, vocabulary, **options))
 

@@ -12,8 +12,8 @@ from tests.planning.virtual_time import run_virtual
 from wonderful_team.core.actions import PICK_PLACE
 from wonderful_team.core.protocols import Event
 from wonderful_team.core.values import Instruction, Observation, Plan, Request, View
-from wonderful_team.models.agreeable import agreeable_model
-from wonderful_team.planning import Team, TeamConfig
+from wonderful_team.models.stub_model import stub_model
+from wonderful_team.planning import TeamConfig, TeamPolicy
 
 
 @dataclass
@@ -45,7 +45,7 @@ def photo(width: int = 640, height: int = 480) -> Observation:
 def measure(config: TeamConfig) -> tuple[Plan, Stopwatch, float]:
     """One plan by a model that takes one virtual second per answer: the plan, what was sent, and the time in seconds."""
     watch = Stopwatch()
-    team = Team(agreeable_model(delay_s=1.0), config, subscribers=(watch,))
+    team = TeamPolicy(stub_model(delay_s=1.0), config, subscribers=(watch,))
 
     async def run() -> tuple[Plan, float]:
         start = asyncio.get_running_loop().time()

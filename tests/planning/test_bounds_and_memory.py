@@ -13,9 +13,9 @@ from wonderful_team.core.actions import ARM, PICK_PLACE
 from wonderful_team.core.caps import Caps
 from wonderful_team.core.values import Instruction, Usage, Words
 from wonderful_team.errors import ConfigError, ModelUnavailableError
-from wonderful_team.models.agreeable import agreeable_script
 from wonderful_team.models.scripted import ScriptedModel
-from wonderful_team.planning import Team, TeamConfig
+from wonderful_team.models.stub_model import stub_script
+from wonderful_team.planning import TeamConfig, TeamPolicy
 
 
 @pytest.mark.parametrize("calls", [1, 2, 3, 4, 6, 9, 14])
@@ -37,23 +37,23 @@ def test_a_cap_on_money_stops_before_the_call_that_could_pass_it():
 
         async def answer(self, request):
             self.calls += 1
-            value = await ScriptedModel(agreeable_script()).answer(request)
+            value = await ScriptedModel(stub_script()).answer(request)
             return Answer(value.value, Usage(calls=1, tokens_in=100, usd=0.01))
 
     model = Paid()
-    plan = plan_with(model, TeamConfig(way="lean"), caps=Caps(usd=0.025))
+    plan = plan_with(model, TeamConfig(mode="lean"), caps=Caps(usd=0.025))
     assert plan.status == "budget"
     assert model.calls == 2
 
 
 def test_a_slow_model_meets_the_cap_on_seconds():
-    plan = plan_with(ScriptedModel(agreeable_script(), delay_s=0.2), caps=Caps(seconds=0.3))
+    plan = plan_with(ScriptedModel(stub_script(), delay_s=0.2), caps=Caps(seconds=0.3))
     assert plan.status == "budget"
     assert "0.3 s" in plan.message
 
 
 def test_a_silent_model_is_unavailable_not_a_failed_plan():
-    team = Team(ScriptedModel(agreeable_script(), delay_s=5), deadline_s=0.05)
+    team = TeamPolicy(ScriptedModel(stub_script(), delay_s=5), deadline_s=0.05)
     with pytest.raises(ModelUnavailableError, match=r"within 0\.05 s"):
         asyncio.run(team.make_plan(photo(), Instruction("do it"), PICK_PLACE))
 
@@ -68,13 +68,13 @@ def test_requests_do_not_depend_on_the_order_of_answers():
     """Answers that arrive in another order leave every request's words, notes and pictures the same."""
 
     def each_sample_elsewhere(request):
-        points = agreeable_script()["LocatePoints"](request)["points"]
+        points = stub_script()["LocatePoints"](request)["points"]
         moved = [{"x": point["x"] + 3 * request.sample, "y": point["y"]} for point in points]
         return {"reasoning": "", "found": True, "points": moved}
 
     class Jittery(ScriptedModel):
         def __init__(self, seed):
-            super().__init__({**agreeable_script(), "LocatePoints": each_sample_elsewhere})
+            super().__init__({**stub_script(), "LocatePoints": each_sample_elsewhere})
             self.rng, self.late = random.Random(seed), seed > 0
 
         async def answer(self, request):
@@ -140,7 +140,7 @@ def test_helper_functions_run_in_the_sandbox_and_are_rewritten_until_accepted():
         ],
         WriteSteps={"reasoning": "", "steps": [{"kind": "follow", "subgoal": "G1", "function": "G1"}]},
     )
-    plan = plan_with(model, TeamConfig(way="lean"), vocabulary=ARM)
+    plan = plan_with(model, TeamConfig(mode="lean"), vocabulary=ARM)
     assert plan.status == "planned", plan.message
     assert [s.kind for s in plan.steps] == ["follow"]
     second, third = asked(model, "WriteFunction")[1:]
@@ -167,7 +167,7 @@ def test_functions_that_never_work_fail_their_stage_at_the_bound():
         "clarification": None,
     }
     model = scripted(DraftPlan=path_goal, WriteFunction={"reasoning": "", "code": "def path(boxes): return []"})
-    plan = plan_with(model, TeamConfig(way="lean"), vocabulary=ARM)
+    plan = plan_with(model, TeamConfig(mode="lean"), vocabulary=ARM)
     assert plan.status == "failed"
     assert plan.stage == "function"
     assert len(asked(model, "WriteFunction")) == 5

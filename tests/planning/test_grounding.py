@@ -29,8 +29,8 @@ def shift(right_px):
     }  # fmt: skip
 
 
-@pytest.mark.parametrize("way", ["lean", "paper"])
-def test_a_box_is_moved_until_the_checker_stops(way):
+@pytest.mark.parametrize("mode", ["lean", "paper"])
+def test_a_box_is_moved_until_the_checker_stops(mode):
     model = scripted(
         JudgeBox=for_target("T1", [REVISE], ACCEPT),
         JudgeRevision=[
@@ -40,7 +40,7 @@ def test_a_box_is_moved_until_the_checker_stops(way):
         ],
         MoveBox=[shift(100), shift(-20), shift(-20)],
     )
-    plan = plan_with(model, TeamConfig(way=way))
+    plan = plan_with(model, TeamConfig(mode=mode))
     moved, still = plan.grounded["T1"], plan.grounded["T2"]
     assert moved.status == still.status == "found"
     first = next(event.box for event in moved.history if event.what == "box")
@@ -84,7 +84,7 @@ def test_a_box_that_always_fails_ends_as_not_found_within_the_bounds():
     model = scripted(
         JudgeBox=for_target("T1", [REVISE], ACCEPT), JudgeRevision={"reasoning": "", "decision": "keep_before"}
     )
-    plan = plan_with(model, TeamConfig(way="paper", bounds=bounds))
+    plan = plan_with(model, TeamConfig(mode="paper", bounds=bounds))
     assert plan.status == "not_found"
     assert plan.stage == "grounding"
     assert plan.grounded["T1"].status == "gave_up"
@@ -108,7 +108,7 @@ def test_absent_goes_back_to_the_supervisor_who_may_describe_it_anew():
             ],
         },
     )  # fmt: skip
-    plan = plan_with(model, TeamConfig(way="lean"))
+    plan = plan_with(model, TeamConfig(mode="lean"))
     assert plan.status == "planned"
     advice = asked(model, "DraftPlan")[1].question.advice
     assert advice == ("T1 (the first thing) was not found in the picture.",)

@@ -8,7 +8,7 @@ from wonderful_team.core.actions import At, PickPlaceStep, PushStep
 from wonderful_team.core.protocols import Act
 from wonderful_team.core.values import Instruction, Plan, Subgoal
 from wonderful_team.offline import OfflineModel
-from wonderful_team.planning import Team
+from wonderful_team.planning import TeamPolicy
 from wonderful_team.planning.looking import first_part, is_uncertain, looking_lines
 from wonderful_team.runtime import rollout
 from wonderful_team.sims.tabletop import make_world
@@ -28,7 +28,7 @@ def test_only_plans_of_pushes_are_cut() -> None:
     assert "push the block into the frame" in line
 
 
-class Watched(Team):
+class Watched(TeamPolicy):
     """Keeps what the team decided."""
 
     def __init__(self) -> None:
@@ -42,28 +42,28 @@ class Watched(Team):
         return decision
 
 
-def run(task: str, seed: int, looks: int) -> tuple[Watched, str]:
+def run(task: str, seed: int, reobserve: int) -> tuple[Watched, str]:
     world, team = make_world(task, seed=seed), Watched()
     try:
-        trial = rollout(team, world, looks=looks, scorer=world.privileged)
+        trial = rollout(team, world, reobserve=reobserve, scorer=world.privileged)
     finally:
         world.close()
     return team, trial.outcome
 
 
 def test_every_push_is_followed_by_a_look() -> None:
-    team, outcome = run("sweep_without_touching", 504, looks=12)
+    team, outcome = run("sweep_without_touching", 504, reobserve=12)
     assert outcome == "success"
-    assert all(act.look and len(act.actions) == 1 for act in team.acts)
+    assert all(act.reobserve and len(act.actions) == 1 for act in team.acts)
 
 
 def test_open_loop_sweeps_in_one_plan() -> None:
-    team, outcome = run("sweep_without_exceeding", 505, looks=0)
+    team, outcome = run("sweep_without_exceeding", 505, reobserve=0)
     assert outcome == "success"
-    assert [act.look for act in team.acts] == [False]
+    assert [act.reobserve for act in team.acts] == [False]
 
 
 def test_picking_and_placing_runs_whole() -> None:
-    team, outcome = run("visual_manipulation", 505, looks=5)
+    team, outcome = run("visual_manipulation", 505, reobserve=5)
     assert outcome == "success"
-    assert [act.look for act in team.acts] == [False]
+    assert [act.reobserve for act in team.acts] == [False]

@@ -7,7 +7,7 @@ import pytest
 from tests.planning.helpers import APPROVED, Tape, asked, doubt, draft, one_step_each, plan_with, scripted, subgoal
 from wonderful_team.planning import Bounds, TeamConfig
 
-LEAN = TeamConfig(way="lean")
+LEAN = TeamConfig(mode="lean")
 
 
 def test_a_doubt_is_answered_and_recorded():
@@ -51,7 +51,7 @@ def test_full_mode_looks_at_the_whole_plan_after_an_answer_that_changed_nothing(
 def test_endless_doubt_ends_at_the_bound_as_not_verified(mode):
     model = scripted(DraftPlan=draft(subgoal("G1"), mode=mode), ReviewPlan=doubt())
     tape = Tape()
-    plan = plan_with(model, TeamConfig(way="lean", bounds=Bounds(questions=4)), tape=tape)
+    plan = plan_with(model, TeamConfig(mode="lean", bounds=Bounds(questions=4)), tape=tape)
     assert plan.status == "planned"
     assert not plan.verified
     assert len(plan.questions) == 4
@@ -60,7 +60,7 @@ def test_endless_doubt_ends_at_the_bound_as_not_verified(mode):
 
 def test_strict_refuses_a_plan_that_is_not_approved():
     model = scripted(ReviewPlan=doubt())
-    plan = plan_with(model, TeamConfig(way="lean", strict=True, bounds=Bounds(questions=1)))
+    plan = plan_with(model, TeamConfig(mode="lean", strict=True, bounds=Bounds(questions=1)))
     assert plan.status == "refused"
     assert not plan.actions
 
@@ -118,9 +118,9 @@ def test_a_doubt_about_a_step_has_the_steps_rewritten():
 
 
 @pytest.mark.parametrize(("until", "status"), [("draft", "draft"), ("checked", "checked"), ("grounded", "grounded")])
-@pytest.mark.parametrize("way", ["lean", "paper"])
-def test_until_stops_early(until, status, way):
+@pytest.mark.parametrize("mode", ["lean", "paper"])
+def test_until_stops_early(until, status, mode):
     model = scripted()
-    plan = plan_with(model, TeamConfig(way=way), until=until)
+    plan = plan_with(model, TeamConfig(mode=mode), until=until)
     assert plan.status == status
     assert not asked(model, "WriteSteps")

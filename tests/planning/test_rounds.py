@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from tests.planning.rounds import measure
-from wonderful_team.planning import SETTINGS, TeamConfig
+from wonderful_team.planning import ABLATIONS, TeamConfig
 
 
 def chain(config: TeamConfig) -> list[dict[str, int]]:
@@ -14,7 +14,7 @@ def chain(config: TeamConfig) -> list[dict[str, int]]:
 
 
 def test_paper_waits_twelve_rounds():
-    plan, watch, seconds = measure(TeamConfig(way="paper"))
+    plan, watch, seconds = measure(TeamConfig(mode="paper"))
     assert plan.status == "planned"
     assert round(seconds) == 12
     assert [dict(kinds) for kinds in watch.rounds()] == [
@@ -34,7 +34,7 @@ def test_paper_waits_twelve_rounds():
 
 
 def test_lean_waits_five_rounds():
-    plan, watch, seconds = measure(TeamConfig(way="lean"))
+    plan, watch, seconds = measure(TeamConfig(mode="lean"))
     assert plan.status == "planned"
     assert round(seconds) == 5
     main_line = [{k: n for k, n in kinds.items() if k != "Remember"} for kinds in watch.rounds()]
@@ -69,19 +69,19 @@ ROLES_GONE = {
 }
 
 
-@pytest.mark.parametrize("setting", sorted(set(SETTINGS) - {"full"}))
-@pytest.mark.parametrize("way", ["paper", "lean"])
-def test_a_switched_off_member_sends_nothing(setting, way):
-    plan, watch, _ = measure(TeamConfig(way=way, setting=setting))
+@pytest.mark.parametrize("ablation", sorted(set(ABLATIONS) - {"full"}))
+@pytest.mark.parametrize("mode", ["paper", "lean"])
+def test_a_switched_off_member_sends_nothing(ablation, mode):
+    plan, watch, _ = measure(TeamConfig(mode=mode, ablation=ablation))
     requests = [request for _, request in watch.sent]
     assert plan.status == "planned"
-    assert not GONE[setting] & {request.contract for request in requests}
-    assert not ROLES_GONE[setting] & {request.role for request in requests}
+    assert not GONE[ablation] & {request.contract for request in requests}
+    assert not ROLES_GONE[ablation] & {request.role for request in requests}
 
 
 def test_without_memory_no_request_carries_its_notes():
-    def sources(setting: str) -> set[str]:
-        _, watch, _ = measure(TeamConfig(way="paper", setting=setting))
+    def sources(ablation: str) -> set[str]:
+        _, watch, _ = measure(TeamConfig(mode="paper", ablation=ablation))
         return {note.source for _, request in watch.sent for note in request.notes}
 
     assert "memory" in sources("full")
@@ -89,14 +89,14 @@ def test_without_memory_no_request_carries_its_notes():
 
 
 def test_with_the_checker_off_the_mover_may_stop():
-    _, watch, _ = measure(TeamConfig(way="paper", setting="s2"))
+    _, watch, _ = measure(TeamConfig(mode="paper", ablation="s2"))
     moves = [request.question for _, request in watch.sent if request.contract == "MoveBox"]
     assert moves
     assert all(question.may_stop for question in moves)
 
 
 def test_with_grounding_off_the_supervisor_points():
-    _, watch, _ = measure(TeamConfig(way="lean", setting="s6"))
+    _, watch, _ = measure(TeamConfig(mode="lean", ablation="s6"))
     pointing = [request for _, request in watch.sent if request.contract == "LocatePoints"]
     assert {request.role for request in pointing} == {"supervisor"}
     assert len(pointing) == 2

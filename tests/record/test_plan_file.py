@@ -12,7 +12,7 @@ from tests.runtime.runtime_fake_run import world_with_pictures
 from tests.runtime.runtime_fakes import make_plan
 from wonderful_team.core.actions import Beside, FollowStep, MoveStep, MoveTo, OriginOf, PushStep, Trajectory
 from wonderful_team.core.geometry import Box, Pose
-from wonderful_team.core.values import Doubt, KeepOut, PlannedAction
+from wonderful_team.core.values import Critique, KeepOut, PlannedAction
 from wonderful_team.errors import ConfigError
 from wonderful_team.record import plan_from_json, plan_to_json, read_plan, write_plan
 
@@ -31,7 +31,7 @@ def rich_plan():
         actions=plan.actions + more,
         steps=plan.steps + tuple(item.step for item in more),
         keep_out=(KeepOut("cup", Box(1, 2, 3.5, 4), "px"),),
-        questions=(Doubt("G1", "collision", "Is it free?", "Yes.", False, "offline"),),
+        questions=(Critique("G1", "collision", "Is it free?", "Yes.", False, "offline"),),
         parent="0123456789ab",
         choices=("red", "blue"),
     )

@@ -12,7 +12,7 @@ from test_plan_file import rich_plan
 
 from tests.runtime.runtime_fakes import SquaresWorld, make_plan
 from wonderful_team.core.geometry import Box
-from wonderful_team.core.values import Doubt, Instruction, Subgoal, Target, content_hash
+from wonderful_team.core.values import Critique, Instruction, Subgoal, Target, content_hash
 from wonderful_team.errors import ConfigError
 from wonderful_team.record import plan_from_json, plan_to_json
 
@@ -92,7 +92,7 @@ def test_what_is_only_read_counts_too():
         {"grounded": grounded},
         {"warnings": ("mind the cable",)},
         {"choices": ("red",)},
-        {"questions": (Doubt("G1", "collision", "Is it free?", "Yes.", False, "offline"),)},
+        {"questions": (Critique("G1", "collision", "Is it free?", "Yes.", False, "offline"),)},
         {"targets": (Target("T1", "object", "the other square"), *plan.targets[1:])},
         {"subgoals": (Subgoal("G1", "move another square", targets=("T1", "T2")),)},
         {"instruction": Instruction("put it away")},

@@ -145,7 +145,7 @@ def test_the_picture_of_a_recorded_plan_is_found_again(tmp_path):
     scene = read_plan_scene(tmp_path, plan)
     assert scene is not None
     assert scene.hash == plan.scene_hash
-    later, nudged = SquaresWorld(noise=4.0, looks=50), SquaresWorld({"red": (63.0, 60.0)}, noise=4.0, looks=50)
+    later, nudged = SquaresWorld(noise=4.0, reobserve=50), SquaresWorld({"red": (63.0, 60.0)}, noise=4.0, reobserve=50)
     assert rollout(MovesPolicy([]), later, plan=plan, plan_observation=scene).stage is None
     assert rollout(MovesPolicy([]), nudged, plan=plan, plan_observation=scene).stage == "gate"
     assert (later.ran, nudged.ran) == (1, 0)

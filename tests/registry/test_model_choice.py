@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 import wonderful_team as wt
-from tests.servers.brains import Desk, Tapped, offline_brain
+from tests.servers.brains import AgentSession, Tapped, offline_brain
 from tests.servers.server import KEY, Rules, WireServer
 from tests.servers.wiring import WIRES
 from wonderful_team.cli import main
@@ -118,7 +118,7 @@ def test_a_plan_over_the_wire_names_its_model_and_leaves_no_key_in_any_file(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("WONDERFUL_TEAM_SERVER_KEY", KEY)
-    wire, desk = WIRES["server"], Desk()
+    wire, desk = WIRES["server"], AgentSession()
     world = wt.make_world("tabletop/rotate", seed=3)
     with WireServer(offline_brain(desk, wire.speech), Rules(local=True)) as server:
         model = Tapped(wire.provider(server, api_key=None, price=GivenPrice(1, 1), deadline_s=60), desk)

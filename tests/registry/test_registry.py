@@ -10,7 +10,7 @@ import wonderful_team as wt
 from wonderful_team import registry
 from wonderful_team.core.protocols import Privileged, offers, privileged
 from wonderful_team.errors import ConfigError, UnknownNameError
-from wonderful_team.planning import SETTINGS
+from wonderful_team.planning import ABLATIONS
 
 
 class Echo:
@@ -28,11 +28,11 @@ def file(tmp_path: Path, content: str) -> str:
 
 def test_every_listed_method_is_a_configuration_of_the_team() -> None:
     for name in registry.METHODS:
-        way = registry.team_way(name)
-        assert way is not None
-        assert way.setting in SETTINGS
+        mode = registry.team_mode(name)
+        assert mode is not None
+        assert mode.ablation in ABLATIONS
         assert wt.Team(method=name).name == name
-    assert {name for name in SETTINGS if name != "full"} == set(registry.SETTINGS)
+    assert {name for name in ABLATIONS if name != "full"} == set(registry.ABLATIONS)
 
 
 def test_the_planner_carries_the_name_it_was_asked_for_by() -> None:
@@ -82,17 +82,17 @@ def test_a_constructor_that_asks_for_what_nobody_offers(tmp_path: Path) -> None:
     name = file(
         tmp_path, "class Mine:\n    name = 'm'\n    def __init__(self, engine): ...\n    def decide(self, s): ...\n"
     )
-    with pytest.raises(ConfigError, match="parameter 'engine'; it may ask for: door"):
+    with pytest.raises(ConfigError, match="parameter 'engine'; it may ask for: client"):
         wt.Method(method=name + ":Mine").policy()
 
 
 def test_a_method_from_a_file_asks_through_a_capped_door(tmp_path: Path) -> None:
     name = file(
         tmp_path,
-        "class Mine:\n    name = 'm'\n    def __init__(self, door): self.door = door\n    def decide(self, s): ...\n",
+        "class Mine:\n    name = 'm'\n    def __init__(self, client): self.client = client\n    def decide(self, s): ...\n",
     )
     policy = wt.Method(method=name + ":Mine", max_calls=7).policy()
-    assert policy.door.budget.caps.calls == 7  # type: ignore[attr-defined]
+    assert policy.client.budget.caps.calls == 7  # type: ignore[attr-defined]
     with pytest.raises(ConfigError, match="is not the team"):
         wt.Team(method=name + ":Mine")
 

@@ -13,7 +13,7 @@ from wonderful_team.core.pictures import Axes, BoxMark, Candidates
 from wonderful_team.core.protocols import Act, Decision, Done, Event, Situation, Subscriber
 from wonderful_team.core.values import (
     Answer,
-    Doubt,
+    Critique,
     Instruction,
     KeepOut,
     Limits,
@@ -62,7 +62,7 @@ class TalkingPolicy:
         self._talk(situation)
         plan = make_plan(situation.observation, moves, instruction=situation.instruction)
         if situation.attempt == 0:
-            doubt = Doubt(
+            doubt = Critique(
                 "G2", "missing_prerequisite", "Is the place free before G1?", "No, so G2 comes after G1.", True
             )
             goals = (plan.subgoals[0], replace(plan.subgoals[1], after=("G1",)))

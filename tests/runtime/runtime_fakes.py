@@ -55,20 +55,20 @@ class SquaresWorld:
     nudge: dict[int, tuple[str, float]] = field(default_factory=dict)
     trouble: dict[int, BaseException] = field(default_factory=dict)
     noise: float = 0.0
-    looks: int = 0
+    reobserve: int = 0
     ran: int = 0
     stopped: int = 0
 
     def observe(self) -> Observation:
-        self.looks += 1
-        if self.looks in self.nudge:
-            name, by_px = self.nudge[self.looks]
+        self.reobserve += 1
+        if self.reobserve in self.nudge:
+            name, by_px = self.nudge[self.reobserve]
             x, y = self.squares[name]
             self.squares[name] = (x + by_px, y)
         rgb = np.full((SIZE_PX[1], SIZE_PX[0], 3), 150, dtype=np.float64)
         for name, (x, y) in self.squares.items():
             rgb[round(y) - HALF_PX : round(y) + HALF_PX, round(x) - HALF_PX : round(x) + HALF_PX] = COLOURS[name]
-        rgb += np.random.default_rng(self.looks).normal(0, self.noise, rgb.shape) if self.noise else 0.0
+        rgb += np.random.default_rng(self.reobserve).normal(0, self.noise, rgb.shape) if self.noise else 0.0
         view = View("top", "top", 0.1 * self.ran, np.clip(rgb, 0, 255).astype(np.uint8), camera=camera())
         return Observation({"top": view})
 

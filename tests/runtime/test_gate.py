@@ -205,7 +205,7 @@ def test_a_nudged_object_is_noticed_and_sensor_noise_is_not():
     assert gate(plan.actions, plan=plan, then=then, now=world.observe()).admitted
     for nudge_px in (2.6, 5.1):  # one and two centimetres
         moved = SquaresWorld({"red": (60.0 + nudge_px, 60.0), "blue": (160.0, 90.0)}, noise=4.0)
-        moved.looks = 7
+        moved.reobserve = 7
         assert failed(gate(plan.actions, plan=plan, then=then, now=moved.observe())) == {"unchanged: T1 (pick)"}
 
 
@@ -223,7 +223,7 @@ def test_what_the_plan_itself_changed_is_excused():
     then = SquaresWorld().observe()
     plan = make_plan(then, [MOVE])
     blocked = SquaresWorld({"red": (60.0, 60.0), "blue": (200.0, 30.0)}).observe()
-    assert gate(plan.actions, plan=plan, then=then, now=blocked, excused=[Box(190, 20, 210, 40)]).admitted
+    assert gate(plan.actions, plan=plan, then=then, now=blocked, expected_change=[Box(190, 20, 210, 40)]).admitted
 
 
 def test_an_old_picture_and_a_foreign_picture_are_refused():

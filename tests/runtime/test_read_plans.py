@@ -81,10 +81,10 @@ def test_a_noisy_camera_changes_nothing_and_a_moved_thing_does():
     assert noisy.observe().hash != read.observation.hash
     trial, _ = run_read(noisy, read, scorer=SquaresTruth(noisy, {"red": UP}))
     assert trial.outcome == "success"
-    moved = SquaresWorld({"red": (63.0, 60.0), "blue": BLUE}, noise=4.0, looks=5)
+    moved = SquaresWorld({"red": (63.0, 60.0), "blue": BLUE}, noise=4.0, reobserve=5)
     trial, _ = run_read(moved, read)
     assert (trial.stage, moved.ran) == ("gate", 0)
-    elsewhere = SquaresWorld({"red": RED, "blue": (100.0, 110.0)}, noise=4.0, looks=5)
+    elsewhere = SquaresWorld({"red": RED, "blue": (100.0, 110.0)}, noise=4.0, reobserve=5)
     assert run_read(elsewhere, read)[0].stage is None
 
 
@@ -176,7 +176,7 @@ def test_a_run_folder_gives_the_plan_with_its_picture_and_page(recorded):
     assert read.observation.hash == read.plan.scene_hash
     assert read.observation.main.camera is not None
     assert len(read.page_hash) == 64
-    world = SquaresWorld(noise=4.0, looks=9)
+    world = SquaresWorld(noise=4.0, reobserve=9)
     assert run_read(world, read)[0].stage is None
     assert world.ran == 1
 
@@ -189,7 +189,7 @@ def test_a_picture_that_was_changed_since_is_not_at_hand(recorded):
     Image.fromarray(rgb).save(file)
     read = read_run_plan(recorded)
     assert read.observation is None
-    world = SquaresWorld(noise=4.0, looks=9)
+    world = SquaresWorld(noise=4.0, reobserve=9)
     trial, _ = run_read(world, read)
     assert (trial.stage, world.ran) == ("gate", 0)
 

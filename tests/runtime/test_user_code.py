@@ -45,11 +45,11 @@ def test_motion_that_raises_is_the_robots_fault():
 @pytest.mark.parametrize("after", [0, 1, 3])
 def test_a_camera_that_raises_is_the_worlds_error_whenever_it_happens(after):
     class Blind(SquaresWorld):
-        looks = 0
+        reobserve = 0
 
         def observe(self):
-            self.looks += 1
-            if self.looks > after:
+            self.reobserve += 1
+            if self.reobserve > after:
                 raise OSError("the camera is unplugged")
             return super().observe()
 

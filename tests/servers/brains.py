@@ -1,6 +1,6 @@
 """What stands behind a server: a function of what was heard to a reply.
 
-The offline brain answers with the real offline model. Vision needs the typed question, which no wire carries: a Desk
+The offline brain answers with the real offline model. Vision needs the typed question, which no wire carries: a AgentSession
 keeps the requests that are under way, and the brain finds the one that it was sent by its words and pictures.
 """
 
@@ -19,7 +19,7 @@ import numpy as np
 from tests.servers.heard import Heard, Reply
 from tests.servers.speech import Seat, Speech, say
 from wonderful_team.core.values import Answer, Request, Words
-from wonderful_team.models.door import as_answer, settle_answer
+from wonderful_team.models.client import as_answer, validate_answer
 
 Brain: TypeAlias = Callable[[Heard], "Reply | str"]
 SAME_SHARE = 0.5
@@ -31,7 +31,7 @@ class Unmatched(Exception):  # noqa: N818
 
 
 @dataclass
-class Desk:
+class AgentSession:
     """Requests on their way to a model."""
 
     _open: list[Request] = field(default_factory=list)
@@ -121,7 +121,7 @@ def _check_picture(heard: Heard, request: Request, index: int) -> None:
 class Tapped:
     """A model whose requests are laid on a desk while they are under way."""
 
-    def __init__(self, model: Any, desk: Desk) -> None:
+    def __init__(self, model: Any, desk: AgentSession) -> None:
         self._model = model
         self._desk = desk
 
@@ -136,7 +136,7 @@ class Tapped:
             self._desk.take(request)
 
 
-def typed_brain(desk: Desk, answer: Callable[[Request], Any], speech: Speech) -> Brain:
+def typed_brain(desk: AgentSession, answer: Callable[[Request], Any], speech: Speech) -> Brain:
     """A brain that answers the typed request, and says it in its own convention and the request's schema."""
 
     def brain(heard: Heard) -> Reply:
@@ -147,7 +147,7 @@ def typed_brain(desk: Desk, answer: Callable[[Request], Any], speech: Speech) ->
 
 
 def _spoken(request: Request, result: Any, heard: Heard, speech: Speech) -> str:
-    value, _ = settle_answer(request, result.value if isinstance(result, Answer) else result)
+    value, _ = validate_answer(request, result.value if isinstance(result, Answer) else result)
     view = getattr(request.question, "view", None)
     places = [index for index, picture in enumerate(request.pictures) if picture is view]
     seat = Seat((1, 1), (1, 1))
@@ -156,7 +156,7 @@ def _spoken(request: Request, result: Any, heard: Heard, speech: Speech) -> str:
     return json.dumps(say(value.model_dump(mode="json"), heard.schema, speech, seat))
 
 
-def offline_brain(desk: Desk, speech: Speech) -> Brain:
+def offline_brain(desk: AgentSession, speech: Speech) -> Brain:
     """The real offline model behind the server."""
     from wonderful_team.offline import OfflineModel
 

@@ -13,8 +13,8 @@ from wonderful_team.contracts.draft_plan import DraftPlan
 from wonderful_team.core.geometry import Box
 from wonderful_team.core.protocols import Model
 from wonderful_team.core.values import Request, Target, Trial
-from wonderful_team.models.reshown import CHANGES, Reshown
-from wonderful_team.planning import Team, TeamConfig
+from wonderful_team.models.image_corruption import CHANGES, ImageCorruption
+from wonderful_team.planning import TeamConfig, TeamPolicy
 from wonderful_team.planning.scene import SceneShown, show_views
 from wonderful_team.runtime import rollout
 from wonderful_team.sims.tabletop import make_world
@@ -79,8 +79,8 @@ def solve(
     try:
         model: Model = SimulatedModel(world.privileged, world.instruction, PROFILES[profile])
         if show:
-            model = Reshown(model, CHANGES[show], only)
-        team = Team({"*": model, **(models or {})}, TeamConfig(way=way))  # type: ignore[arg-type]
+            model = ImageCorruption(model, CHANGES[show], only)
+        team = TeamPolicy({"*": model, **(models or {})}, TeamConfig(mode=way))  # type: ignore[arg-type]
         return rollout(team, world, replans=replans, scorer=world.privileged, seed=seed, max_age_s=None)
     finally:
         world.close()

@@ -34,10 +34,10 @@ from wonderful_team.contracts import (
 )
 from wonderful_team.core.geometry import Box
 from wonderful_team.core.pictures import BoxMark, Candidates, Picture, PointMark
-from wonderful_team.core.values import Doubt, Subgoal, Target, Verdict
+from wonderful_team.core.values import Critique, Subgoal, Target, Verdict
 from wonderful_team.errors import UnsupportedQuestion
 from wonderful_team.images import crop, crop_pair, edge_strips
-from wonderful_team.models.reshown import CHANGES, Reshown
+from wonderful_team.models.image_corruption import CHANGES, ImageCorruption
 from wonderful_team.simulated.model import ANSWERS
 
 from .tables import Set, set_table, show_views
@@ -58,8 +58,8 @@ def names(table: Set) -> tuple[str, str]:
     return pick.words, place.words
 
 
-def blind(table: Set) -> Reshown:
-    return Reshown(table.model, CHANGES["flipped"])
+def blind(table: Set) -> ImageCorruption:
+    return ImageCorruption(table.model, CHANGES["flipped"])
 
 
 def at(picture: Picture, box: Box) -> Picture:
@@ -81,7 +81,7 @@ def test_a_draft_names_what_is_carried_and_where_to(table: Set, names: tuple[str
 def test_no_plan_comes_from_a_task_of_which_one_picture_is_wrong(table: Set, only: str) -> None:
     for change in CHANGES.values():
         question: Any = _draft_question(table)
-        answer = table.ask(question, Reshown(table.model, change, only))
+        answer = table.ask(question, ImageCorruption(table.model, change, only))
         assert answer.clarification is not None
         assert not answer.subgoals
 
@@ -203,7 +203,7 @@ def test_a_plan_is_extracted_written_and_reviewed_as_it_was_drafted(table: Set) 
     assert [(step.pick, step.place.target) for step in steps_renamed] == [("A", "B")]
     assert table.ask(ReviewPlan(task, kinds, subgoals, targets)).approved
     assert table.ask(ReviewSteps(task, subgoals, targets, steps, table.scene.views[0])).approved
-    doubt = Doubt("G1", "collision", "Is there room?")
+    doubt = Critique("G1", "collision", "Is there room?")
     assert table.ask(RevisePlan(task, kinds, subgoals, targets, doubt, True)).decision == "keep"
 
 

@@ -14,7 +14,7 @@ from wonderful_team.core.geometry import Box, Frame
 from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.pictures import BoxMark, Picture
 from wonderful_team.images import crop, edge_strips, whole
-from wonderful_team.models.reshown import CHANGES
+from wonderful_team.models.image_corruption import CHANGES
 from wonderful_team.simulated.seeing import Eyes
 
 from .tables import Set, set_table

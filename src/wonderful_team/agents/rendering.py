@@ -9,7 +9,7 @@ from wonderful_team.agents.step_words import STEP_KINDS
 from wonderful_team.contracts import ShownSlot, ShownTask
 from wonderful_team.core.pictures import Axes, BoxMark, Candidates, LineMark, Mark, PathMark, Picture, PointMark
 from wonderful_team.core.values import Note, Part, Subgoal, Target, Words
-from wonderful_team.images.telling import axes_words, size_words
+from wonderful_team.images.captions import axes_words, size_words
 
 _BOX_STYLES = {
     "target": "the box",

@@ -28,7 +28,7 @@ from wonderful_team.contracts import (
     WriteFunction,
     WriteSteps,
 )
-from wonderful_team.core.values import Doubt, Part
+from wonderful_team.core.values import Critique, Part
 
 SYSTEM = system_words(
     """
@@ -143,7 +143,7 @@ def _render_revise(question: RevisePlan) -> list[Part]:
     ]
 
 
-def _doubt_parts(doubt: Doubt) -> list[Part]:
+def _doubt_parts(doubt: Critique) -> list[Part]:
     lines = [f"Verification's doubt about {doubt.about} ({doubt.kind}): {doubt.question}"]
     if doubt.answer:
         lines.append(f"What was answered before: {doubt.answer}" + (" (the plan was changed)" if doubt.changed else ""))

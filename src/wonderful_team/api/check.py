@@ -16,7 +16,7 @@ from wonderful_team.core.text import counted
 from wonderful_team.errors import ConfigError
 from wonderful_team.evals.checking import SEEDS, Findings, check_controls, check_looks, contact_sheet
 from wonderful_team.evals.controls import CONTROLS, NO_MODEL
-from wonderful_team.evals.trials import Condition, RunSettings, TrialResult, TrialSpec
+from wonderful_team.evals.trials import Condition, RunSettings, TrialRow, TrialSpec
 from wonderful_team.evals.workers import run_safely
 from wonderful_team.registry.files import load_from_file
 
@@ -106,6 +106,6 @@ def _check_thinking(kind: str, name: str, seeds: Sequence[int], findings: Findin
         )
 
 
-def _run(task: str, condition: Condition, seeds: Sequence[int]) -> list[TrialResult]:
+def _run(task: str, condition: Condition, seeds: Sequence[int]) -> list[TrialRow]:
     settings: Any = RunSettings(pages="none")
     return [run_safely(run_trial, TrialSpec(task, seed, condition), settings) for seed in seeds]

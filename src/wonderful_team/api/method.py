@@ -11,14 +11,15 @@ from wonderful_team import registry
 from wonderful_team.agents.prompts import role_names
 from wonderful_team.core.caps import Caps
 from wonderful_team.core.protocols import Model, Policy, Subscriber, World
+from wonderful_team.core.renamed import renamed_attribute
 from wonderful_team.errors import ConfigError
 from wonderful_team.models.budget import Budget
 from wonderful_team.models.cache import CacheMode, cached_models
 from wonderful_team.models.cache_key import model_identity
-from wonderful_team.models.door import Door
+from wonderful_team.models.client import ModelClient
 from wonderful_team.models.providers import PriceChoice, check_prices, model_options
-from wonderful_team.planning import Team as Planner
 from wonderful_team.planning import TeamConfig
+from wonderful_team.planning import TeamPolicy as Planner
 from wonderful_team.registry.simulated import waiting
 
 ModelChoice = str | Model | Mapping[str, str | Model]
@@ -122,15 +123,17 @@ class Method:
                 f"wt.Team(model={name!r}, world=world), or run it with wt.rollout(team, world)"
             )
 
-    def door(self, *subscribers: Subscriber) -> Door:
+    door = renamed_attribute("door", "client")
+
+    def client(self, *subscribers: Subscriber) -> ModelClient:
         """A door to the model for one run: capped, and told to subscribers."""
         everyone = (*subscribers, *self.subscribers)
-        return Door(self._models, budget=Budget(self._caps), subscribers=everyone, concurrency=self.concurrency)
+        return ModelClient(self._models, budget=Budget(self._caps), subscribers=everyone, concurrency=self.concurrency)
 
     def policy(self, *subscribers: Subscriber) -> Policy:
         """The method at work in one trial."""
         if self._config is None:
-            return registry.load_method(self.method, self.door(*subscribers))
+            return registry.load_method(self.method, self.client(*subscribers))
         return Planner(
             self._models,
             self._config,
@@ -173,11 +176,11 @@ def team_config(method: str, prompts: str | Path | None = None, strict: bool = F
     """
     from wonderful_team.agents import Prompts
 
-    way = registry.team_way(method)
-    if way is None:
+    mode = registry.team_mode(method)
+    if mode is None:
         return None
     words = Prompts.default() if prompts is None else Prompts.load(Path(prompts))
-    return TeamConfig(way=way.way, setting=way.setting, strict=strict, prompts=words)
+    return TeamConfig(mode=mode.mode, ablation=mode.ablation, strict=strict, prompts=words)
 
 
 def _known_names(model: ModelChoice, made: Mapping[str, Model]) -> ModelChoice:

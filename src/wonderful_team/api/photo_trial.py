@@ -9,20 +9,20 @@ from typing import Any
 
 from wonderful_team.api.method import Method, team_config
 from wonderful_team.api.observation import Observation
-from wonderful_team.api.trial_setup import Counting, fingerprint, prepared
+from wonderful_team.api.trial_setup import UsageCounter, fingerprint, prepared
 from wonderful_team.core.geometry import Box
 from wonderful_team.core.values import GroundedTarget, Instruction, Target, Usage
 from wonderful_team.errors import BudgetReached, ConfigError, ModelUnavailableError, WonderfulTeamError
 from wonderful_team.evals.photos import Located, PhotoScene, read_photos, score_photo
-from wonderful_team.evals.trials import RunSettings, TrialResult, TrialSpec
-from wonderful_team.models.door import Door
+from wonderful_team.evals.trials import RunSettings, TrialRow, TrialSpec
+from wonderful_team.models.client import ModelClient
 from wonderful_team.planning import TeamConfig
 from wonderful_team.planning.ground_only import find
 from wonderful_team.registry.role_models import choice_of
 from wonderful_team.runtime.loop import Caller
 
 
-def run_photo(spec: TrialSpec, settings: RunSettings) -> TrialResult:
+def run_photo(spec: TrialSpec, settings: RunSettings) -> TrialRow:
     """Ask a method where everything in one photo is.
 
     Raises:
@@ -31,7 +31,7 @@ def run_photo(spec: TrialSpec, settings: RunSettings) -> TrialResult:
     started = time.monotonic()
     scene = read_photos(spec.task)[spec.seed]
     words = [asked.words for asked in scene.asked]
-    seen, count = Observation.from_files(scene.picture), Counting()
+    seen, count = Observation.from_files(scene.picture), UsageCounter()
     method = prepared(spec, settings, choice_of(spec.condition.model))
     config = team_config(spec.condition.method, settings.prompts)
     by_role = count.by_role
@@ -39,9 +39,9 @@ def run_photo(spec: TrialSpec, settings: RunSettings) -> TrialResult:
         if config is None:
             result = _judged(scene, lambda: _by_own(caller, method, count, seen, words))
         else:
-            door = method.door(count)
-            result = _judged(scene, lambda: _by_team(caller, door, config, seen, words))
-            by_role = door.budget.by_role
+            client = method.client(count)
+            result = _judged(scene, lambda: _by_team(caller, client, config, seen, words))
+            by_role = client.budget.by_role
     usage = sum(by_role.values(), Usage())
     return replace(
         result,
@@ -57,7 +57,7 @@ def run_photo(spec: TrialSpec, settings: RunSettings) -> TrialResult:
     )
 
 
-def _judged(scene: PhotoScene, ask: Callable[[], list[Located]]) -> TrialResult:
+def _judged(scene: PhotoScene, ask: Callable[[], list[Located]]) -> TrialRow:
     """Where things were said to be, scored; what ends a method without an answer is its failure, at the stage it names.
 
     Raises:
@@ -69,13 +69,15 @@ def _judged(scene: PhotoScene, ask: Callable[[], list[Located]]) -> TrialResult:
     except (ConfigError, ModelUnavailableError):
         raise
     except WonderfulTeamError as error:
-        return TrialResult("failure", error.stage or "grounding", str(error))
+        return TrialRow("failure", error.stage or "grounding", str(error))
 
 
-def _by_team(caller: Caller, door: Door, config: TeamConfig, seen: Observation, words: Sequence[str]) -> list[Located]:
+def _by_team(
+    caller: Caller, client: ModelClient, config: TeamConfig, seen: Observation, words: Sequence[str]
+) -> list[Located]:
     targets = [Target(f"T{number}", "object", text) for number, text in enumerate(words, start=1)]
     asked = Instruction("Find: " + "; ".join(words))
-    plan = caller.wait_for(find(door, config, seen, asked, targets))
+    plan = caller.wait_for(find(client, config, seen, asked, targets))
     if plan.status == "budget":
         raise BudgetReached(plan.message)
     return [_of_team(plan.grounded.get(target.id)) for target in targets]
@@ -87,7 +89,9 @@ def _of_team(item: GroundedTarget | None) -> Located:
     return Located(item.box, next(iter(item.points.values()), None))
 
 
-def _by_own(caller: Caller, method: Method, count: Counting, seen: Observation, words: Sequence[str]) -> list[Located]:
+def _by_own(
+    caller: Caller, method: Method, count: UsageCounter, seen: Observation, words: Sequence[str]
+) -> list[Located]:
     policy: Any = method.policy(count)
     if not callable(getattr(policy, "locate", None)):
         raise ConfigError(

@@ -15,7 +15,7 @@ from typing import Any
 
 from wonderful_team import registry
 from wonderful_team.agents import Prompts
-from wonderful_team.api.results import MadePlan, RecordedTrial
+from wonderful_team.api.results import PlanResult, TrialResult
 from wonderful_team.api.rollout import rollout
 from wonderful_team.api.team import Team
 from wonderful_team.core.actions import Vocabulary
@@ -125,7 +125,7 @@ def branch(
     subscribers: Sequence[Subscriber] = (),
     command: str | None = None,
     **caps: Any,
-) -> MadePlan | RecordedTrial:
+) -> PlanResult | TrialResult:
     """Run again with another model from a stage on; the answers before it come from the record.
 
     Args:
@@ -167,7 +167,7 @@ def _team(folder: Path, record: Mapping[str, Any], model: Model | Mapping[str, M
     if missing:
         raise ConfigError(f"{folder}: the record does not say its {', '.join(missing)}, so it cannot be run again")
     method = str(configuration["method"])
-    if registry.team_way(method) is None:
+    if registry.team_mode(method) is None:
         raise ConfigError(f"{folder}: method {method!r} is a file of your own; only runs of the team can be run again")
     with tempfile.TemporaryDirectory(prefix="wonderful-team-words-") as words:
         _write_words(Path(words), record.get("words") or {})
@@ -181,7 +181,7 @@ def _team(folder: Path, record: Mapping[str, Any], model: Model | Mapping[str, M
         )
 
 
-def _plan_again(folder: Path, record: Mapping[str, Any], setup: Setup, team: Team) -> MadePlan:
+def _plan_again(folder: Path, record: Mapping[str, Any], setup: Setup, team: Team) -> PlanResult:
     if setup.plan is not None:
         raise ConfigError(f"{folder}: this run was handed its plan {setup.plan}: there is nothing to plan again")
     with reading(f"{folder}: the record"):
@@ -201,7 +201,7 @@ def _plan_again(folder: Path, record: Mapping[str, Any], setup: Setup, team: Tea
     )
 
 
-def _trial_again(folder: Path, record: Mapping[str, Any], setup: Setup, team: Team) -> RecordedTrial:
+def _trial_again(folder: Path, record: Mapping[str, Any], setup: Setup, team: Team) -> TrialResult:
     name = setup.scene.rpartition("#")[0]
     with reading(f"{folder}: the record"):
         wanted = stored_instruction(folder, record)
@@ -217,7 +217,7 @@ def _trial_again(folder: Path, record: Mapping[str, Any], setup: Setup, team: Te
             world,
             plan=None if setup.plan is None else recorded_plan(folder, record, setup.plan),
             replans=setup.replans,
-            looks=setup.looks,
+            reobserve=setup.reobserve,
             seed=setup.seed,
             scene=setup.scene,
             scored=setup.scored,

@@ -41,7 +41,7 @@ class FoundTarget:
 
 
 @dataclass(frozen=True, eq=False)
-class MadePlan:
+class PlanResult:
     """A plan with what it cost and where its page lies.
 
     Attributes:
@@ -176,7 +176,7 @@ class MadePlan:
 
 
 @dataclass(frozen=True, eq=False)
-class RecordedTrial(Trial):
+class TrialResult(Trial):
     """A trial that knows its run folder, and what the user was warned of."""
 
     folder: Path | None = None

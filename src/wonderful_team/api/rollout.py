@@ -11,9 +11,10 @@ from typing import Any
 from wonderful_team import registry
 from wonderful_team.api.method import Method
 from wonderful_team.api.recording import tell, write_page_or_warn
-from wonderful_team.api.results import MadePlan, RecordedTrial
+from wonderful_team.api.results import PlanResult, TrialResult
 from wonderful_team.api.team import _failing, _recording
 from wonderful_team.core.protocols import Policy, Privileged, Subscriber, World, privileged
+from wonderful_team.core.renamed import renamed_arguments
 from wonderful_team.core.values import Instruction, KeepOut, Plan, ReadPlan
 from wonderful_team.errors import ConfigError
 from wonderful_team.record import read_run_plan
@@ -48,20 +49,21 @@ def make_world(
     return registry.make_world(name, seed, instruction, keep_out, **arguments)
 
 
+@renamed_arguments(looks="reobserve")
 def rollout(
     method: Method | Policy,
     world: World | str,
     *,
-    plan: MadePlan | ReadPlan | Plan | str | Path | None = None,
+    plan: PlanResult | ReadPlan | Plan | str | Path | None = None,
     replans: int = 0,
-    looks: int = 0,
+    reobserve: int = 0,
     approval: Approval | Approver | None = None,
     seed: int | None = None,
     scene: str = "",
     scored: bool = True,
     out: str | Path | None = None,
     subscribers: Sequence[Subscriber] = (),
-) -> RecordedTrial:
+) -> TrialResult:
     """Run a method in a world, recorded.
 
     Args:
@@ -71,7 +73,7 @@ def rollout(
             that plan runs, in its own instruction and scene, or nothing moves; after it ran, replans go on as asked.
             A bare `Plan` comes without its picture: then the scene must be the same pixel for pixel.
         replans: How often the method may plan again after its first attempt.
-        looks: How often it may run only the first push of a plan, look, and plan the rest anew; that is no replan.
+        reobserve: How often it may run only the first push of a plan, look, and plan the rest anew; that is no replan.
         approval: Consent to one plan (`plan.approve("Ada")`), or a function that takes a `Proposal` and returns
             `proposal.approve(…)` or `proposal.decline(…)`. A no ends the trial; a no with a reason is advice for one
             new plan, which is asked about again.
@@ -94,7 +96,7 @@ def rollout(
                 made_here,
                 plan=plan,
                 replans=replans,
-                looks=looks,
+                reobserve=reobserve,
                 approval=approval,
                 seed=seed or 0,
                 scene=scene or registry.scene_name(world, seed or 0),
@@ -123,7 +125,7 @@ def rollout(
         scene=scene,
         seed=seed,
         replans=replans,
-        looks=looks,
+        reobserve=reobserve,
         plan=None if read is None else read.plan.id,
         scored=scorer is not None,
     )
@@ -138,7 +140,7 @@ def rollout(
                 world,
                 plan=read,
                 replans=replans,
-                looks=looks,
+                reobserve=reobserve,
                 scorer=scorer,
                 subscribers=everyone,
                 approval=approval,
@@ -155,7 +157,7 @@ def rollout(
                 strict=named.strict if named else False,
             )
     happened = {item.name: getattr(trial, item.name) for item in fields(trial)}
-    return RecordedTrial(**happened, folder=recorder.folder, warnings=recorder.warnings)
+    return TrialResult(**happened, folder=recorder.folder, warnings=recorder.warnings)
 
 
 def task(name: str, *, instruction: str, horizon: int = 1, **more: Any) -> Callable[[Callable[..., Any]], Any]:
@@ -165,7 +167,7 @@ def task(name: str, *, instruction: str, horizon: int = 1, **more: Any) -> Calla
     return tabletop_task(name, instruction=instruction, horizon=horizon, **more)
 
 
-def _read(plan: MadePlan | ReadPlan | Plan | str | Path | None) -> ReadPlan | None:
+def _read(plan: PlanResult | ReadPlan | Plan | str | Path | None) -> ReadPlan | None:
     """A plan that is handed in, with its picture and its page where those are at hand.
 
     Raises:
@@ -174,7 +176,7 @@ def _read(plan: MadePlan | ReadPlan | Plan | str | Path | None) -> ReadPlan | No
     match plan:
         case None | ReadPlan():
             return plan
-        case MadePlan():
+        case PlanResult():
             photo = getattr(plan.observation, "photo", False)
             return ReadPlan(plan.plan, plan.observation, plan.page, same_clock=not photo)
         case Plan():

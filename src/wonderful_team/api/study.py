@@ -11,18 +11,19 @@ from typing import Any, Literal
 
 from wonderful_team import registry
 from wonderful_team.api.trial import check_isolation, check_names, code_of_names, run_trial
+from wonderful_team.core.renamed import renamed_arguments
 from wonderful_team.errors import ConfigError, UnknownNameError
 from wonderful_team.evals.controls import CONTROLS
 from wonderful_team.evals.estimate import Estimate, estimate
+from wonderful_team.evals.monitor import Report
 from wonderful_team.evals.perturb import IN_PICTURE, read_tier, read_tiers
 from wonderful_team.evals.photos import count_photos
 from wonderful_team.evals.plan import OFFLINE, WHOLE, StudyPlan, of_photos, read_shard, split_names
 from wonderful_team.evals.store import Store
-from wonderful_team.evals.study import Finish, run_study, started_by_spawn
+from wonderful_team.evals.study import StudyResult, run_study, started_by_spawn
 from wonderful_team.evals.suites import PARTITIONS, Suite, all_suites, read_seeds, resolve
 from wonderful_team.evals.summary import Summary, summarise
-from wonderful_team.evals.trials import Condition, RunSettings, SpendingCaps, TrialResult, TrialSpec
-from wonderful_team.evals.watch import Report
+from wonderful_team.evals.trials import Condition, RunSettings, SpendingCaps, TrialRow, TrialSpec
 from wonderful_team.evals.workers import run_safely
 from wonderful_team.models.cache import CacheMode
 from wonderful_team.models.providers import PriceChoice
@@ -37,6 +38,7 @@ FREE = ("-", OFFLINE)
 """Models whose pilot trials cost no money; simulated ones beside them."""
 
 
+@renamed_arguments(looks="reobserve")
 @dataclass
 class Study:
     """A comparison.
@@ -47,7 +49,7 @@ class Study:
             with "*" for the rest.
         seeds: For every task; None for the suite's own, from 1000 on.
         store: File that keeps what ended; the same study on the same file resumes.
-        repeats, replans, looks, shard: As `bench` has them.
+        repeats, replans, reobserve, shard: As `bench` has them.
         isolate: whole, planning, grounding: one or several. perturb: KIND=LEVEL: one or several; "" is the scene as it is.
         thinking, price, allow_unpriced, local_only, cache, cache_file, prompts: As `Method` takes them.
         controls: Those that run beside the methods; () refuses them all.
@@ -66,7 +68,7 @@ class Study:
     store: str | Path = "study.db"
     repeats: int = 1
     replans: int | None = None
-    looks: int = 0
+    reobserve: int = 0
     isolate: str | Sequence[str] = ""
     perturb: str | Sequence[str] = ""
     shard: tuple[int, int] = (1, 1)
@@ -125,7 +127,7 @@ class Study:
             self.replans,
             self.shard,
             self._how(),
-            self.looks,
+            self.reobserve,
             {"command": self.command, **_photo_counts(suites)},
         )
         self.store = sharded(Path(self.store), self.shard)
@@ -145,7 +147,7 @@ class Study:
             options["store"],
             repeats=options["repeats"],
             replans=options["replans"],
-            looks=options["looks"],
+            reobserve=options["reobserve"],
             isolate=options["isolate"],
             perturb=options["perturb"],
             shard=(1, 1) if options["shard"] is None else read_shard(options["shard"]),
@@ -205,7 +207,7 @@ class Study:
         said += [f"at most {value:g} {units[name]}" for name, value in self.trial_caps.given.items()]
         return ", ".join(said)
 
-    def run(self, report: Report = lambda text, standing: None) -> Finish:
+    def run(self, report: Report = lambda text, status: None) -> StudyResult:
         """Run what is missing; `report` is told how it goes.
 
         Raises:
@@ -246,14 +248,14 @@ class Study:
             with Store(path) as store:
                 rows = store.rows()
         known = {row.spec.condition for row in rows if row.result is not None}
-        pilots: dict[Condition, list[TrialResult]] = {}
+        pilots: dict[Condition, list[TrialRow]] = {}
         with tempfile.TemporaryDirectory() as scratch:
             self._run_pilots(pilots, known, pilot, paid_pilot, replace(self._settings(), out=Path(scratch)))
         return estimate(self.plan, rows, pilots, (self.jobs or os.cpu_count() or 1) * self.at_once)
 
     def _run_pilots(
         self,
-        pilots: dict[Condition, list[TrialResult]],
+        pilots: dict[Condition, list[TrialRow]],
         known: set[Condition],
         pilot: int,
         paid_pilot: bool,
@@ -300,15 +302,15 @@ class Study:
         with Store(self.store, must_exist=True) as store:
             return to_frame(store.rows())
 
-    def to_json(self, ended: Finish) -> dict[str, Any]:
+    def to_json(self, ended: StudyResult) -> dict[str, Any]:
         """For machines: the figures per condition."""
         from wonderful_team.evals.report.tables import condition_json
 
         summary = self.summary()
         return {
             "store": str(self.store),
-            "total": ended.standing.total,
-            "done": ended.standing.done,
+            "total": ended.status.total,
+            "done": ended.status.done,
             "stopped": ended.why,
             "conditions": [condition_json(summary.cell(one)) for one in (*summary.compared, *summary.bounds)],
             "answer": summary.headline(),

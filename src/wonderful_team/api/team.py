@@ -13,7 +13,7 @@ from typing import Any
 from wonderful_team.api.method import Method
 from wonderful_team.api.observation import Seen, seen
 from wonderful_team.api.recording import tell, write_page_or_warn
-from wonderful_team.api.results import MadePlan
+from wonderful_team.api.results import PlanResult
 from wonderful_team.core import values
 from wonderful_team.core.actions import PICK_PLACE, VOCABULARIES, Vocabulary
 from wonderful_team.core.geometry import PlanarCamera
@@ -30,7 +30,7 @@ from wonderful_team.core.values import (
 )
 from wonderful_team.errors import ConfigError, UnknownNameError, WonderfulTeamError
 from wonderful_team.interrupts import ends_on_signal, held
-from wonderful_team.planning import Team as Planner
+from wonderful_team.planning import TeamPolicy as Planner
 from wonderful_team.planning import Until
 from wonderful_team.planning.ground_only import find
 from wonderful_team.record.recorder import Recorder
@@ -80,7 +80,7 @@ class Team(Method):
         limits: Limits | None = None,
         until: Until = "actions",
         keep_out: Sequence[KeepOut] = (),
-    ) -> MadePlan:
+    ) -> PlanResult:
         """Plan for what is seen; nothing moves.
 
         Args:
@@ -113,7 +113,9 @@ class Team(Method):
         setup = setup_entry("plan", words, bounds, until=until, keep_out=keep_out)
         return self._recorded(observation, wanted, words, bounds, setup, make)
 
-    def ground(self, observation: Seen, objects: str | Sequence[str] = (), areas: str | Sequence[str] = ()) -> MadePlan:
+    def ground(
+        self, observation: Seen, objects: str | Sequence[str] = (), areas: str | Sequence[str] = ()
+    ) -> PlanResult:
         """Find things in a picture: boxes and points, no plan.
 
         Args:
@@ -135,8 +137,8 @@ class Team(Method):
 
         def make(recorder: Recorder) -> _Work:
             assert self._config is not None
-            door = self.door(recorder)
-            return _Work(find(door, self._config, observation, wanted, targets), lambda: door.budget.by_role)
+            client = self.client(recorder)
+            return _Work(find(client, self._config, observation, wanted, targets), lambda: client.budget.by_role)
 
         setup = setup_entry("ground", PICK_PLACE, NO_WORKSPACE, targets=targets)
         return self._recorded(observation, wanted, PICK_PLACE, NO_WORKSPACE, setup, make)
@@ -149,7 +151,7 @@ class Team(Method):
         limits: Limits,
         setup: Mapping[str, Any],
         make: Callable[[Recorder], _Work],
-    ) -> MadePlan:
+    ) -> PlanResult:
         """Make a plan in a run folder of its own, pass it through the gate, and write its page."""
         started = time.monotonic()
         with _recording(instruction.plain_text, self.out, self.command) as recorder:
@@ -168,7 +170,7 @@ class Team(Method):
                 status = plan.status if gate is None or gate.admitted else "refused"
                 tell(everyone, "done", status, plan)
         spent, seconds = dict(work.usage_by_role()), time.monotonic() - started
-        return MadePlan(plan, observation, gate, spent, seconds, recorder.folder, recorder.warnings)
+        return PlanResult(plan, observation, gate, spent, seconds, recorder.folder, recorder.warnings)
 
 
 def instruction_of(words: str | Instruction) -> Instruction:

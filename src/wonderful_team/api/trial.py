@@ -19,14 +19,14 @@ from wonderful_team import registry
 from wonderful_team.api.method import Method
 from wonderful_team.api.photo_trial import run_photo
 from wonderful_team.api.rollout import rollout
-from wonderful_team.api.trial_setup import Counting, fingerprint, prepared
+from wonderful_team.api.trial_setup import UsageCounter, fingerprint, prepared
 from wonderful_team.core.actions import Action
 from wonderful_team.core.jsonable import to_jsonable
 from wonderful_team.core.protocols import Policy, World, privileged
 from wonderful_team.core.values import Instruction, Observation, StepReport, Trial, Usage, View
 from wonderful_team.errors import ConfigError
 from wonderful_team.evals.controls import CONTROLS, make_control
-from wonderful_team.evals.trials import Condition, RunSettings, TrialResult, TrialSpec
+from wonderful_team.evals.trials import Condition, RunSettings, TrialRow, TrialSpec
 from wonderful_team.registry.files import check_names_no_code, is_file_name
 from wonderful_team.registry.role_models import REST, choice_of
 from wonderful_team.runtime import rollout as roll_out
@@ -35,7 +35,7 @@ SUCCESS_EVERY = 10
 """With pages of failures, successes of these seeds (1000, 1010, ...) keep theirs too: a reader wants to see both."""
 
 
-def run_trial(spec: TrialSpec, settings: RunSettings) -> TrialResult:
+def run_trial(spec: TrialSpec, settings: RunSettings) -> TrialRow:
     """Run one trial of a study in this process; a `TrialRunner`."""
     check_code(spec, settings)
     if spec.task.endswith(".json"):
@@ -43,11 +43,11 @@ def run_trial(spec: TrialSpec, settings: RunSettings) -> TrialResult:
     started = time.monotonic()
     world = make_scene(spec)
     try:
-        count = Counting()
+        count = UsageCounter()
         trial, page = _run(spec, settings, world, count)
         usage = trial.usage if trial.usage_by_role else sum(count.by_role.values(), Usage())
         by_role = trial.usage_by_role or count.by_role
-        return TrialResult(
+        return TrialRow(
             outcome=trial.outcome,
             stage=trial.stage,
             reason=trial.reason,
@@ -88,7 +88,7 @@ def check_code(spec: TrialSpec, settings: RunSettings) -> None:
         check_names_no_code(name, "the store")
 
 
-class Unseen:
+class BlankWorld:
     """A world for policies that never look: the same blank picture at every look, and no drawing."""
 
     def __init__(self, world: World) -> None:
@@ -124,13 +124,13 @@ def make_scene(spec: TrialSpec) -> World:
     return perturbed(registry.make_world(spec.task, spec.seed), tier, spec.seed)
 
 
-def _run(spec: TrialSpec, settings: RunSettings, world: World, count: Counting) -> tuple[Trial, str]:
+def _run(spec: TrialSpec, settings: RunSettings, world: World, count: UsageCounter) -> tuple[Trial, str]:
     truth = privileged(world)
     condition = spec.condition
     if condition.method in CONTROLS:
         control = make_control(condition.method, spec.seed, truth)
         # Controls do not look: nothing is drawn for them.
-        blind = Unseen(world)
+        blind = BlankWorld(world)
         trial = roll_out(control, blind, scorer=truth, seed=spec.seed, scene=spec.scene, max_age_s=None)
         return trial, ""
     method = prepared(spec, settings, models_of(condition, world), world)
@@ -143,7 +143,7 @@ def _run(spec: TrialSpec, settings: RunSettings, world: World, count: Counting) 
             seed=spec.seed,
             scene=spec.scene,
             replans=condition.replans,
-            looks=condition.looks,
+            reobserve=condition.reobserve,
             max_age_s=None,
         )
         return trial, ""
@@ -153,7 +153,7 @@ def _run(spec: TrialSpec, settings: RunSettings, world: World, count: Counting) 
         method,
         world,
         replans=condition.replans,
-        looks=condition.looks,
+        reobserve=condition.reobserve,
         seed=spec.seed,
         scene=spec.scene,
         out=out,

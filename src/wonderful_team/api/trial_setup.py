@@ -30,7 +30,7 @@ BESIDE = frozenset({"memory"})
 
 
 @dataclass
-class Counting:
+class UsageCounter:
     """Counts what a trial asks: calls, pictures, cost by role, and waiting rounds."""
 
     rounds: int = 0
@@ -49,7 +49,7 @@ class Counting:
             self.provenance.add(answer.provenance)
 
 
-class Limited:
+class RateLimitedModel:
     """A model whose calls wait for a place among those of all workers."""
 
     def __init__(self, model: Model, limiter: Limiter) -> None:
@@ -77,7 +77,7 @@ def prepared(spec: TrialSpec, settings: RunSettings, model: Any, world: World | 
     if settings.limiter is not None:
         options = model_options(asked.get("thinking"), asked.get("price"), bool(asked.get("local_only")), role_names())
         made = registry.make_models(model, role_names(), options, world)
-        behind = {id(one): Limited(one, settings.limiter) for one in made.values()}
+        behind = {id(one): RateLimitedModel(one, settings.limiter) for one in made.values()}
         model = {role: behind[id(one)] for role, one in made.items()}
     return Method(
         **asked,
@@ -113,7 +113,11 @@ def reproduce(spec: TrialSpec, asked: Mapping[str, Any] | None = None) -> str:
     else:
         words = ["run", spec.task, "--seed", str(spec.seed)]
         models = [*(word for name in by_role for word in ("--model", name)), *thinking]
-    replans = ["--replans", str(condition.replans), *(["--looks", str(condition.looks)] if condition.looks else [])]
+    replans = [
+        "--replans",
+        str(condition.replans),
+        *(["--reobserve", str(condition.reobserve)] if condition.reobserve else []),
+    ]
     return shlex.join(["wonderful-team", *words, *replans, "--method", condition.method, *models])
 
 

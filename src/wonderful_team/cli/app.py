@@ -39,6 +39,10 @@ COMMANDS: dict[str, tuple[str, str]] = {
 }
 
 
+RENAMED_FLAGS = {"--looks": "--reobserve"}
+"""Flags of the last release."""
+
+
 class LazyGroup(click.Group):
     """Knows its commands by name and imports one only when it is asked for, so that `--help` answers at once."""
 
@@ -61,11 +65,21 @@ class LazyGroup(click.Group):
     def resolve_command(
         self, ctx: click.Context, args: list[str]
     ) -> tuple[str | None, click.Command | None, list[str]]:
+        args = [_flag_of_now(word) for word in args]
         if args and args[0] not in COMMANDS and not args[0].startswith("-"):
             from wonderful_team.errors import UnknownNameError
 
             raise UnknownNameError("command", args[0], COMMANDS)
         return super().resolve_command(ctx, args)
+
+
+def _flag_of_now(word: str) -> str:
+    name, equals, value = word.partition("=")
+    if name not in RENAMED_FLAGS:
+        return word
+    new = RENAMED_FLAGS[name]
+    click.echo(f"warning: {name} is called {new} now; the old name goes with the next release", err=True)
+    return f"{new}{equals}{value}"
 
 
 @click.group(

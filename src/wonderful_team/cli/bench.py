@@ -17,7 +17,7 @@ from wonderful_team.cli.output import finish
 from wonderful_team.interrupts import as_keyboard, exit_code
 
 if TYPE_CHECKING:
-    from wonderful_team.evals.watch import Standing
+    from wonderful_team.evals.monitor import StudyStatus
 
 BUDGET = 5
 QUIET_S = 10.0
@@ -56,7 +56,7 @@ QUIET_S = 10.0
 @click.option("--repeats", type=click.IntRange(1), default=1, show_default=True, help="How often each scene is run.")
 @click.option("--replans", type=click.IntRange(0), help="Plans after the first; default the suite's protocol.")
 @click.option(
-    "--looks",
+    "--reobserve",
     type=click.IntRange(0),
     default=0,
     show_default=True,
@@ -136,12 +136,12 @@ class Teller:
         self._terminal = sys.stderr.isatty()
         self._last_s, self._last = -math.inf, ""
 
-    def __call__(self, text: str, standing: Standing | None) -> None:
-        if standing is None:
+    def __call__(self, text: str, status: StudyStatus | None) -> None:
+        if status is None:
             click.echo(("\n" if self._terminal and self._last else "") + text, err=True)
             return
-        line = standing.line()
-        whole = standing.done == standing.total
+        line = status.line()
+        whole = status.done == status.total
         if self._terminal:
             # A line longer than the terminal would not be overwritten by the next.
             line = line[: shutil.get_terminal_size().columns - 1]

@@ -13,7 +13,7 @@ from wonderful_team.cli.run_summary import program, shown_path, trial_json
 from wonderful_team.cli.wording import action_line, said_of, trial_exit_code, trial_lines, words_of
 
 if TYPE_CHECKING:
-    from wonderful_team.api.results import RecordedTrial
+    from wonderful_team.api.results import TrialResult
     from wonderful_team.contracts import BoxAnswer, PlanDraft
     from wonderful_team.core.values import Request
     from wonderful_team.models.wrappers import Injection
@@ -41,12 +41,12 @@ def command(seed: int, out: Path | None, as_json: bool, open_page: bool) -> int:
     """
     from wonderful_team.api.rollout import make_world, rollout
     from wonderful_team.api.team import Team
-    from wonderful_team.cli.progress import Progress
+    from wonderful_team.cli.progress import ProgressLine
     from wonderful_team.models.wrappers import Injecting
     from wonderful_team.registry.models import make_model
     from wonderful_team.registry.worlds import scene_name
 
-    progress = Progress(live=not as_json)
+    progress = ProgressLine(live=not as_json)
     injections = planted_mistakes()
     model = Injecting(make_model("offline"), injections)
     progress.note("`offline` is classical vision and a grammar, not a vision-language model: no key, no weights.")
@@ -98,7 +98,7 @@ def shift_first_box(answer: BoxAnswer, request: Request) -> BoxAnswer | None:
     return wrong
 
 
-def caught(trial: RecordedTrial) -> dict[str, list[str]]:
+def caught(trial: TrialResult) -> dict[str, list[str]]:
     """What the checking members said against the planted mistakes: doubts that changed the plan, boxes not accepted."""
     if not trial.plans:
         return {"verification": [], "checker": []}
@@ -112,7 +112,7 @@ def caught(trial: RecordedTrial) -> dict[str, list[str]]:
     return {"verification": doubts, "checker": verdicts}
 
 
-def _story(trial: RecordedTrial, planted: list[str]) -> list[str]:
+def _story(trial: TrialResult, planted: list[str]) -> list[str]:
     """Each planted mistake with what caught it below, then the plan and how it went."""
     found = caught(trial)
     plan = trial.plans[-1] if trial.plans else None

@@ -28,11 +28,11 @@ def command(
         raise click.UsageError("say what to look for: at least one DESCRIPTION or --area DESCRIPTION")
     from wonderful_team.api.observation import Observation
     from wonderful_team.api.team import Team
-    from wonderful_team.cli.progress import Progress
+    from wonderful_team.cli.progress import ProgressLine
     from wonderful_team.cli.run_summary import report_plan
 
     observation = Observation.from_files(image)
-    progress = Progress(live=not common.as_json)
+    progress = ProgressLine(live=not common.as_json)
     team = Team(**common.team_arguments(), subscribers=(progress,))
     progress.header(team)
     made = team.ground(observation, descriptions, area)

@@ -66,7 +66,7 @@ def command(
     from wonderful_team.api.observation import Observation
     from wonderful_team.api.photos import instruction_with_pictures, read_keep_out
     from wonderful_team.api.team import Team
-    from wonderful_team.cli.progress import Progress
+    from wonderful_team.cli.progress import ProgressLine
     from wonderful_team.cli.run_summary import report_plan
     from wonderful_team.errors import reading
 
@@ -76,7 +76,7 @@ def command(
         instruction = instruction_with_pictures(text, read_pairs(picture, "--picture"))
     with reading("--keep-out", "[NAME=]x0,y0,x1,y1[px|m]"):
         regions = read_keep_out(keep_out)
-    progress = Progress(live=not common.as_json)
+    progress = ProgressLine(live=not common.as_json)
     team = Team(**common.team_arguments(), subscribers=(progress,))
     progress.header(team)
     made = team.plan(

@@ -35,7 +35,7 @@ def _to_stderr(line: str) -> None:
         say(line, err=True)
 
 
-class Progress:
+class ProgressLine:
     """Prints what happens while it happens; on a terminal a last line moves while models think.
 
     Args:

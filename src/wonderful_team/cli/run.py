@@ -10,7 +10,7 @@ from wonderful_team.cli.options import PATH, Common, common
 from wonderful_team.core.text import counted
 from wonderful_team.record.run_folders import find_run
 
-LOOKS = 16
+REOBSERVE = 16
 """More pushes than any sweep of the suite may take."""
 
 
@@ -38,9 +38,9 @@ LOOKS = 16
     help="Most new plans after the first one ran or was refused; 0 with --plan: that plan and no other.",
 )
 @click.option(
-    "--looks",
+    "--reobserve",
     type=click.IntRange(0),
-    help=f"New pictures after a push, the rest planned anew; default {LOOKS}, none with --replans 0 or --plan.",
+    help=f"New pictures after a push, the rest planned anew; default {REOBSERVE}, none with --replans 0 or --plan.",
 )
 @click.option(
     "--approve",
@@ -57,7 +57,7 @@ def command(
     seed: int,
     plan_run: str | None,
     replans: int,
-    looks: int | None,
+    reobserve: int | None,
     approve: bool,
     keep_out: tuple[str, ...],
     video: Path | None,
@@ -71,25 +71,25 @@ def command(
     from wonderful_team.api.rollout import make_world, rollout
     from wonderful_team.api.team import Team
     from wonderful_team.cli.asking import ask_person
-    from wonderful_team.cli.progress import Progress
+    from wonderful_team.cli.progress import ProgressLine
     from wonderful_team.cli.run_summary import report_trial
     from wonderful_team.cli.video import FRAME_S, Film, check_video_name
     from wonderful_team.core.protocols import Filmed, offers
     from wonderful_team.errors import reading
     from wonderful_team.record import read_run_plan
-    from wonderful_team.registry.methods import team_way
+    from wonderful_team.registry.methods import team_mode
     from wonderful_team.registry.worlds import scene_name
     from wonderful_team.runtime.user_code import close_world
 
     if video is not None:
         check_video_name(video)
     plan = read_run_plan(find_run(plan_run, common.out)) if plan_run is not None else None
-    if looks is None:
-        looks = LOOKS if replans and plan is None else 0
-    kind = Method if team_way(common.method) is None else Team
+    if reobserve is None:
+        reobserve = REOBSERVE if replans and plan is None else 0
+    kind = Method if team_mode(common.method) is None else Team
     with reading("--keep-out", "[NAME=]x0,y0,x1,y1[px|m]"):
         regions = read_keep_out(keep_out)
-    progress = Progress(live=not common.as_json)
+    progress = ProgressLine(live=not common.as_json)
     method = kind(**common.team_arguments(), subscribers=(progress,))
     place = make_world(world, seed, instruction, regions)
     try:
@@ -103,7 +103,7 @@ def command(
             place,
             plan=plan,
             replans=replans,
-            looks=looks,
+            reobserve=reobserve,
             approval=ask_person() if approve else None,
             seed=seed,
             scene=scene_name(world, seed),

@@ -10,29 +10,29 @@ from typing import Any
 
 import click
 
-from wonderful_team.api.results import MadePlan, RecordedTrial, cost_json
+from wonderful_team.api.results import PlanResult, TrialResult, cost_json
 from wonderful_team.cli.options import Common
 from wonderful_team.cli.output import finish
-from wonderful_team.cli.progress import Progress
+from wonderful_team.cli.progress import ProgressLine
 from wonderful_team.cli.wording import plan_exit_code, plan_lines, trial_exit_code, trial_lines
 from wonderful_team.core.jsonable import to_jsonable
 
 
-def report_plan(command: str, made: MadePlan, common: Common, progress: Progress) -> int:
+def report_plan(command: str, made: PlanResult, common: Common, progress: ProgressLine) -> int:
     """Print a plan; returns the exit code."""
     progress.end(made.usage)
     return end(command, plan_lines(made), made.to_json(), common, plan_exit_code(made), made.page)
 
 
 def report_trial(
-    command: str, trial: RecordedTrial, common: Common, progress: Progress, more: Mapping[str, Any]
+    command: str, trial: TrialResult, common: Common, progress: ProgressLine, more: Mapping[str, Any]
 ) -> int:
     """Print a trial; returns the exit code."""
     progress.end(trial.usage)
     return end(command, trial_lines(trial), {**trial_json(trial), **more}, common, trial_exit_code(trial), trial.page)
 
 
-def trial_json(trial: RecordedTrial) -> dict[str, Any]:
+def trial_json(trial: TrialResult) -> dict[str, Any]:
     """A trial as JSON: the whole of it stands in record.json."""
     return {
         "scene": trial.scene,

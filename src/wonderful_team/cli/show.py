@@ -116,12 +116,12 @@ def _replay(folder: Path, tolerant: bool, as_json: bool) -> int:
 def _branch(folder: Path, stage: str, words: Sequence[str], out: Path | None, as_json: bool, open_page: bool) -> int:
     """A new run that branches off this one."""
     from wonderful_team.api.replay import branch
-    from wonderful_team.api.results import MadePlan
-    from wonderful_team.cli.progress import Progress
+    from wonderful_team.api.results import PlanResult
+    from wonderful_team.cli.progress import ProgressLine
     from wonderful_team.cli.run_summary import trial_json
     from wonderful_team.cli.wording import plan_exit_code, plan_lines, trial_exit_code, trial_lines
 
-    progress = Progress(live=not as_json)
+    progress = ProgressLine(live=not as_json)
     # "latest" points at the new run once there is one.
     folder = folder.resolve()
     command = shlex.join(["wonderful-team", *(click.get_current_context().obj or ())])
@@ -135,7 +135,7 @@ def _branch(folder: Path, stage: str, words: Sequence[str], out: Path | None, as
         command=command,
     )
     progress.end(made.usage)
-    if isinstance(made, MadePlan):
+    if isinstance(made, PlanResult):
         lines, result, code = plan_lines(made), made.to_json(), plan_exit_code(made)
     else:
         lines, result, code = trial_lines(made), trial_json(made), trial_exit_code(made)

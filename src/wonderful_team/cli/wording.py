@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from wonderful_team.api.results import FoundTarget, MadePlan, RecordedTrial
+from wonderful_team.api.results import FoundTarget, PlanResult, TrialResult
 from wonderful_team.core.actions import Action, MoveTo, Navigate, PickPlace, Place, Push, Step, Trajectory, places_of
 from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.text import counted, picture_names, spoken, visible
@@ -29,14 +29,14 @@ EXIT_OF_STATUS: dict[str, int] = {
 EXIT_OF_STAGE: dict[str, int] = {"gate": 4, "budget": 5}
 
 
-def plan_exit_code(made: MadePlan) -> int:
+def plan_exit_code(made: PlanResult) -> int:
     """The exit code of `plan` and `ground`."""
     if made.gate is not None and not made.gate.admitted:
         return 4
     return EXIT_OF_STATUS[made.status]
 
 
-def trial_exit_code(trial: RecordedTrial) -> int:
+def trial_exit_code(trial: TrialResult) -> int:
     """The exit code of `run`: an unscored trial that reached its end counts as done, if anybody judged that."""
     if trial.outcome == "success" or (trial.outcome == "unscored" and trial.stage is None and trial.judged):
         return 0
@@ -48,7 +48,7 @@ def trial_exit_code(trial: RecordedTrial) -> int:
     return EXIT_OF_STAGE.get(trial.stage or "", EXIT_OF_STATUS.get(status, 1) or 1)
 
 
-def plan_lines(made: MadePlan) -> list[str]:
+def plan_lines(made: PlanResult) -> list[str]:
     """What `plan` prints: how it ended, then what would run."""
     words = words_of(made.plan)
     lines = []
@@ -147,7 +147,7 @@ def _metres(action: Action | None) -> str:
     return " -> ".join(f"({', '.join(f'{value:.3f}' for value in point)})" for point in shown) + f" m{through}"
 
 
-def trial_word(trial: RecordedTrial) -> str:
+def trial_word(trial: TrialResult) -> str:
     """How a trial ended, in capitals; in a world without a scorer the method's own judgement is all that there is."""
     last = {verdict.subgoal: verdict.status for verdict in trial.verdicts}
     if trial.outcome == "unscored" and trial.stage is None and last and set(last.values()) == {"done"}:
@@ -181,7 +181,7 @@ def _shown(name: str, value: Any) -> str:
     return f"{np.array2string(flat, separator=', ', threshold=64)}{unit}"
 
 
-def trial_lines(trial: RecordedTrial) -> list[str]:
+def trial_lines(trial: TrialResult) -> list[str]:
     """What `run` prints: outcome, stage, reason, and how every subgoal went."""
     stage = f" at {trial.stage}" if trial.stage else ""
     lines = [f"{trial_word(trial)}{stage}  {visible(trial.reason)}"]

@@ -16,7 +16,7 @@ from wonderful_team.contracts.read_scene import ReadScene, RolePoint, SceneReadi
 from wonderful_team.contracts.remember import MemoryEntry, Remember
 from wonderful_team.contracts.replan import Advice, Replan
 from wonderful_team.contracts.review_path import PathReview, ReviewPath
-from wonderful_team.contracts.review_plan import DoubtDraft, PlanReview, ReviewPlan
+from wonderful_team.contracts.review_plan import CritiqueDraft, PlanReview, ReviewPlan
 from wonderful_team.contracts.review_steps import ReviewSteps
 from wonderful_team.contracts.revise_plan import PlanRevision, RevisePlan
 from wonderful_team.contracts.shown import (
@@ -57,8 +57,6 @@ QUESTIONS: tuple[type[Question], ...] = (
 )
 
 __all__ = [
-    "EDGES",
-    "QUESTIONS",
     "Advice",
     "AnswerModel",
     "BoxAnswer",
@@ -68,8 +66,9 @@ __all__ = [
     "ChooseMark",
     "ChoosePoint",
     "ClarificationDraft",
-    "DoubtDraft",
+    "CritiqueDraft",
     "DraftPlan",
+    "EDGES",
     "Edge",
     "EdgePresence",
     "ExtractTargets",
@@ -94,6 +93,7 @@ __all__ = [
     "Points",
     "Presence",
     "PresenceAnswer",
+    "QUESTIONS",
     "Question",
     "ReadScene",
     "Remember",

@@ -40,7 +40,7 @@ class ChooseMark(Question):
     def candidates(self) -> Candidates:
         return candidates_of(self.view)
 
-    def settle(self, answer: Any) -> tuple[Any, tuple[str, ...]]:
+    def validate(self, answer: Any) -> tuple[Any, tuple[str, ...]]:
         if answer.number is not None:
             self.candidates.at(answer.number)
         return answer, ()

@@ -43,6 +43,6 @@ class ChoosePoint(Question):
     def output(self) -> type[AnswerModel]:
         return PointChoice
 
-    def settle(self, answer: Any) -> tuple[Any, tuple[str, ...]]:
+    def validate(self, answer: Any) -> tuple[Any, tuple[str, ...]]:
         self.candidates.at(answer.number)
         return answer, ()

@@ -27,6 +27,6 @@ class DraftPlan(Question):
     def output(self) -> type[AnswerModel]:
         return PlanDraft
 
-    def settle(self, answer: Any) -> tuple[Any, tuple[str, ...]]:
+    def validate(self, answer: Any) -> tuple[Any, tuple[str, ...]]:
         check_plan(answer, self.task.slot_names, self.with_targets)
         return answer, ()

@@ -37,7 +37,7 @@ class ExtractTargets(Question):
     def output(self) -> type[AnswerModel]:
         return TargetList
 
-    def settle(self, answer: Any) -> tuple[Any, tuple[str, ...]]:
+    def validate(self, answer: Any) -> tuple[Any, tuple[str, ...]]:
         check_targets(answer.targets, self.task.slot_names)
         ids = [target.id for target in answer.targets]
         wanted = [subgoal.id for subgoal in self.subgoals]

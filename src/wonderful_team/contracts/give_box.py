@@ -35,7 +35,7 @@ class GiveBox(Question):
     def output(self) -> type[AnswerModel]:
         return BoxAnswer
 
-    def settle(self, answer: Any) -> tuple[Any, tuple[str, ...]]:
+    def validate(self, answer: Any) -> tuple[Any, tuple[str, ...]]:
         if answer.box is None:
             return answer, ()
         box, repairs = settle_box(answer.box, self.view)

@@ -56,7 +56,7 @@ class JudgeOutcome(Question):
     def output(self) -> type[AnswerModel]:
         return Outcome
 
-    def settle(self, answer: Any) -> tuple[Any, tuple[str, ...]]:
+    def validate(self, answer: Any) -> tuple[Any, tuple[str, ...]]:
         wanted = sorted(subgoal.id for subgoal in self.subgoals)
         if sorted(item.subgoal for item in answer.verdicts) != wanted:
             raise ValueError(f"verdicts must hold each subgoal once: {', '.join(wanted)}")

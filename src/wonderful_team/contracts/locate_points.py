@@ -44,7 +44,7 @@ class LocatePoints(Question):
     def output(self) -> type[AnswerModel]:
         return Points
 
-    def settle(self, answer: Any) -> tuple[Any, tuple[str, ...]]:
+    def validate(self, answer: Any) -> tuple[Any, tuple[str, ...]]:
         if answer.found != bool(answer.points):
             raise ValueError("points must be given exactly when found is true")
         if len(answer.points) > self.count:

@@ -68,7 +68,7 @@ class MoveBox(Question):
     def output(self) -> type[AnswerModel]:
         return BoxMove
 
-    def settle(self, answer: Any) -> tuple[Any, tuple[str, ...]]:
+    def validate(self, answer: Any) -> tuple[Any, tuple[str, ...]]:
         if answer.action == "stop":
             if not self.may_stop:
                 raise ValueError("action 'stop' is not offered here: propose a move or a resize")

@@ -49,7 +49,7 @@ class Presence(Question):
     def output(self) -> type[AnswerModel]:
         return PresenceAnswer
 
-    def settle(self, answer: Any) -> tuple[Any, tuple[str, ...]]:
+    def validate(self, answer: Any) -> tuple[Any, tuple[str, ...]]:
         if sorted(item.edge for item in answer.edges) != sorted(EDGES):
             raise ValueError(f"edges must hold each of {', '.join(EDGES)} once")
         return answer, ()

@@ -65,7 +65,7 @@ class ReadScene(Question):
     def output(self) -> type[AnswerModel]:
         return SceneReading
 
-    def settle(self, answer: Any) -> tuple[Any, tuple[str, ...]]:
+    def validate(self, answer: Any) -> tuple[Any, tuple[str, ...]]:
         by_id = {target.id: target for target in self.targets}
         ids = [item.id for item in answer.targets]
         unique(ids, "target ids")

@@ -36,7 +36,7 @@ class Remember(Question):
     def output(self) -> type[AnswerModel]:
         return MemoryEntry
 
-    def settle(self, answer: Any) -> tuple[Any, tuple[str, ...]]:
+    def validate(self, answer: Any) -> tuple[Any, tuple[str, ...]]:
         if answer.keep != bool(answer.key and answer.summary):
             raise ValueError("key and summary must be given exactly when keep is true")
         return answer, ()

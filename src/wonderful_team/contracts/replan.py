@@ -33,7 +33,7 @@ class Replan(Question):
     def output(self) -> type[AnswerModel]:
         return Advice
 
-    def settle(self, answer: Any) -> tuple[Any, tuple[str, ...]]:
+    def validate(self, answer: Any) -> tuple[Any, tuple[str, ...]]:
         if (answer.decision == "replan") != bool(answer.advice):
             raise ValueError("advice must be given exactly when the decision is replan")
         return answer, ()

@@ -30,7 +30,7 @@ class ReviewPath(Question):
     def output(self) -> type[AnswerModel]:
         return PathReview
 
-    def settle(self, answer: Any) -> tuple[Any, tuple[str, ...]]:
+    def validate(self, answer: Any) -> tuple[Any, tuple[str, ...]]:
         if answer.accepted == bool(answer.problem):
             raise ValueError("problem must be empty exactly when accepted is true")
         return answer, ()

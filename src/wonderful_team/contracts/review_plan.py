@@ -11,7 +11,7 @@ from wonderful_team.contracts.shown import AnswerModel, Question, Reasoning, Sho
 from wonderful_team.core.values import Subgoal, Target
 
 
-class DoubtDraft(AnswerModel):
+class CritiqueDraft(AnswerModel):
     """One question about one subgoal or step."""
 
     about: str = Field(description="Id of the subgoal (or number of the step) in doubt.")
@@ -26,7 +26,7 @@ class PlanReview(AnswerModel):
 
     reasoning: str = Reasoning
     approved: bool
-    doubt: DoubtDraft | None = Field(description="Null exactly when approved.")
+    doubt: CritiqueDraft | None = Field(description="Null exactly when approved.")
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,7 +48,7 @@ class ReviewPlan(Question):
     def output(self) -> type[AnswerModel]:
         return PlanReview
 
-    def settle(self, answer: Any) -> tuple[Any, tuple[str, ...]]:
+    def validate(self, answer: Any) -> tuple[Any, tuple[str, ...]]:
         check_review(answer, [subgoal.id for subgoal in self.subgoals] or ["plan"], "subgoal")
         return answer, ()
 

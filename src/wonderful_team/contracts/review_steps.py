@@ -30,6 +30,6 @@ class ReviewSteps(Question):
     def output(self) -> type[AnswerModel]:
         return PlanReview
 
-    def settle(self, answer: Any) -> tuple[Any, tuple[str, ...]]:
+    def validate(self, answer: Any) -> tuple[Any, tuple[str, ...]]:
         check_review(answer, [str(number) for number in range(1, len(self.steps) + 1)], "step")
         return answer, ()

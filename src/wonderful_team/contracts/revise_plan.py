@@ -9,7 +9,7 @@ from pydantic import Field
 
 from wonderful_team.contracts.plans import PlanDraft, check_plan
 from wonderful_team.contracts.shown import AnswerModel, Question, Reasoning, ShownTask
-from wonderful_team.core.values import Doubt, Subgoal, Target
+from wonderful_team.core.values import Critique, Subgoal, Target
 
 
 class PlanRevision(AnswerModel):
@@ -29,13 +29,13 @@ class RevisePlan(Question):
     step_kinds: tuple[str, ...]
     subgoals: tuple[Subgoal, ...]
     targets: tuple[Target, ...]
-    doubt: Doubt
+    doubt: Critique
     with_targets: bool
 
     def output(self) -> type[AnswerModel]:
         return PlanRevision
 
-    def settle(self, answer: Any) -> tuple[Any, tuple[str, ...]]:
+    def validate(self, answer: Any) -> tuple[Any, tuple[str, ...]]:
         if (answer.decision == "revise") != (answer.plan is not None):
             raise ValueError("plan must be given exactly when the decision is revise")
         if answer.plan is not None:

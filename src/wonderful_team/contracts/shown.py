@@ -92,7 +92,7 @@ class Question:
         """The type of a right answer to this very question."""
         raise NotImplementedError
 
-    def settle(self, answer: Any) -> tuple[Any, tuple[str, ...]]:
+    def validate(self, answer: Any) -> tuple[Any, tuple[str, ...]]:
         """Check what the schema cannot, and clamp small overshoots.
 
         Returns:

@@ -29,7 +29,7 @@ class WriteSteps(Question):
     def output(self) -> type[AnswerModel]:
         return step_list_type(self.step_kinds)
 
-    def settle(self, answer: Any) -> tuple[Any, tuple[str, ...]]:
+    def validate(self, answer: Any) -> tuple[Any, tuple[str, ...]]:
         check_steps(
             answer.to_steps(), [s.id for s in self.subgoals], [target.id for target in self.targets], self.functions
         )

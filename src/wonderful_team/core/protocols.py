@@ -9,9 +9,11 @@ from typing import Any, Protocol, TypeAlias, TypeGuard, TypeVar, cast, runtime_c
 
 from wonderful_team.core.actions import Action, Vocabulary
 from wonderful_team.core.geometry.arrays import Array
+from wonderful_team.core.renamed import renamed_arguments, renamed_attribute
 from wonderful_team.core.values import (
     Answer,
     GateReport,
+    GroundTruthView,
     Instruction,
     Limits,
     Observation,
@@ -20,7 +22,6 @@ from wonderful_team.core.values import (
     Request,
     StepReport,
     SubgoalRun,
-    TrueSight,
     TrueThing,
     Verdict,
 )
@@ -114,7 +115,7 @@ class SceneTruth(Privileged, Protocol):
         """The same, as it stood when the world was made: where a thing is restored to."""
         ...
 
-    def sights(self, view_id: str) -> Sequence[TrueSight]:
+    def observation_log(self, view_id: str) -> Sequence[GroundTruthView]:
         """What really was in every look at a view so far, newest first; one for an instruction's picture; () for an unknown id."""
         ...
 
@@ -127,7 +128,7 @@ class Situation:
         attempt: 0 for the first plan, then one more each time that the method is asked to go on.
         replans_left: How many replans may still be made, one in answer to this question included.
         executed: What ran since the last question, subgoal by subgoal.
-        looks_left: How often the method may still run a part of its plan and be asked again with a new picture.
+        reobserve_left: How often the method may still run a part of its plan and be asked again with a new picture.
         refused: The gate's report when the last answer was refused.
         plan: A plan that was read and approved beforehand and must be run as it is.
         advice: Why a person declined the last plan; one new plan may heed it, and that is no replan.
@@ -142,22 +143,27 @@ class Situation:
     executed: tuple[SubgoalRun, ...] = ()
     refused: GateReport | None = None
     plan: Plan | None = None
-    looks_left: int = 0
+    reobserve_left: int = 0
+
+    looks_left = renamed_attribute("looks_left", "reobserve_left")
     advice: str = ""
 
 
+@renamed_arguments(look="reobserve")
 @dataclass(frozen=True, eq=False)
 class Act:
     """Run these actions. `plan` lets the gate check hash, picture and approval, and the page tell the story.
 
-    `look`: they are only the first of what is to be done; the method asks to be shown a new picture after them. That uses
-    one of the looks that the situation grants, not a replan; without any left it is a last attempt like any other.
+    `reobserve`: they are only the first of what is to be done; the method asks to be shown a new picture after them. That uses
+    one of the new pictures that the situation grants, not a replan; without any left it is a last attempt like any other.
     """
 
     actions: tuple[PlannedAction, ...]
     plan: Plan | None = None
     verdicts: tuple[Verdict, ...] = ()
-    look: bool = False
+    reobserve: bool = False
+
+    look = renamed_attribute("look", "reobserve")
 
 
 @dataclass(frozen=True)

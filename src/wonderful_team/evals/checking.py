@@ -16,7 +16,7 @@ from wonderful_team.core.text import counted
 from wonderful_team.core.values import View
 from wonderful_team.errors import WonderfulTeamError
 from wonderful_team.evals.controls import CONTROLS, control_faults
-from wonderful_team.evals.trials import TrialResult
+from wonderful_team.evals.trials import TrialRow
 from wonderful_team.images import to_png
 
 SEEDS = 20
@@ -119,7 +119,7 @@ def view_problems(view: View, world: World) -> list[str]:
     return found
 
 
-def check_controls(results: dict[str, list[TrialResult]], findings: Findings) -> None:
+def check_controls(results: dict[str, list[TrialRow]], findings: Findings) -> None:
     """The oracle succeeds, no-op and random do not."""
     counts = {}
     for name in CONTROLS:

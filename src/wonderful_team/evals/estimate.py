@@ -10,7 +10,7 @@ from wonderful_team.core.text import counted
 from wonderful_team.evals.names import CONTROLS
 from wonderful_team.evals.pairing import visible_gap
 from wonderful_team.evals.plan import StudyPlan
-from wonderful_team.evals.trials import Condition, Row, TrialResult
+from wonderful_team.evals.trials import Condition, Row, TrialRow
 
 DISCORDANT = 0.3
 """Share of pairs in which just one method succeeds that the reckoning of visible gaps assumes."""
@@ -144,7 +144,7 @@ class Estimate:
 
 
 def estimate(
-    plan: StudyPlan, rows: Sequence[Row], pilots: Mapping[Condition, Sequence[TrialResult]], workers: int
+    plan: StudyPlan, rows: Sequence[Row], pilots: Mapping[Condition, Sequence[TrialRow]], workers: int
 ) -> Estimate:
     """Reckon what is missing of a plan.
 
@@ -165,7 +165,7 @@ def estimate(
     return Estimate(lines, workers, min(asked, default=0), len(ended))
 
 
-def _line(condition: Condition, trials: int, rows: Sequence[Row], pilots: Sequence[TrialResult]) -> Line:
+def _line(condition: Condition, trials: int, rows: Sequence[Row], pilots: Sequence[TrialRow]) -> Line:
     own = [row.result for row in rows if row.result is not None and row.spec.condition == condition]
     results, source = [*own, *pilots], f"{len(own)} recorded and {len(pilots)} pilot trials"
     calls = tokens = usd = seconds = least = most = None

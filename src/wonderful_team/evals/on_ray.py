@@ -10,14 +10,14 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from wonderful_team.errors import ConfigError, MissingExtraError
-from wonderful_team.evals.claims import RENEW_EVERY_S, Owner
+from wonderful_team.evals.leases import RENEW_EVERY_S, Owner
 from wonderful_team.evals.spending import CapReached
 from wonderful_team.evals.store import Claim, Store
-from wonderful_team.evals.trials import RunSettings, TrialResult, TrialRunner, TrialSpec
+from wonderful_team.evals.trials import RunSettings, TrialRow, TrialRunner, TrialSpec
 from wonderful_team.evals.workers import POLL_S, Work, run_safely, settle, tighter
 
 if TYPE_CHECKING:
-    from wonderful_team.evals.watch import Watch
+    from wonderful_team.evals.monitor import StudyMonitor
 
 LOCAL = "local"
 MAX_TRIES = 3
@@ -64,17 +64,19 @@ class TrialWorker:
     def __init__(self, runner: TrialRunner) -> None:
         self._runner = runner
 
-    def run(self, spec: TrialSpec, settings: RunSettings) -> TrialResult:
+    def run(self, spec: TrialSpec, settings: RunSettings) -> TrialRow:
         return run_safely(self._runner, spec, settings)
 
 
-def run_on_ray(work: Work, store: Store, watch: Watch, address: str, jobs: int, calls_at_once: int | None) -> int:
+def run_on_ray(
+    work: Work, store: Store, monitor: StudyMonitor, address: str, jobs: int, calls_at_once: int | None
+) -> int:
     """Run what is missing of a study on a cluster.
 
     Args:
         work: What is to be done.
         store: Kept by this process alone; workers never open it, so it needs no shared disk.
-        watch: Told how it goes.
+        monitor: Told how it goes.
         address: Of the cluster; "local" starts one here.
         jobs: Actors.
         calls_at_once: Most model calls in flight over all actors; None for each trial's own limit.
@@ -101,7 +103,7 @@ def run_on_ray(work: Work, store: Store, watch: Watch, address: str, jobs: int, 
         places = ray.remote(num_cpus=0, max_concurrency=1000)(Places).remote(calls_at_once) if calls_at_once else None
         if places is not None:
             work = replace(work, settings=replace(work.settings, limiter=RayLimiter(places)))
-        _Cluster(ray, work, store, watch, jobs).run()
+        _Cluster(ray, work, store, monitor, jobs).run()
         return int(ray.get(places.most.remote())) if places is not None else 0
     finally:
         if began:
@@ -111,8 +113,8 @@ def run_on_ray(work: Work, store: Store, watch: Watch, address: str, jobs: int, 
 class _Cluster:
     """Keeps actors busy and books what they hand back."""
 
-    def __init__(self, ray: Any, work: Work, store: Store, watch: Watch, jobs: int) -> None:
-        self._ray, self._work, self._store, self._watch = ray, work, store, watch
+    def __init__(self, ray: Any, work: Work, store: Store, monitor: StudyMonitor, jobs: int) -> None:
+        self._ray, self._work, self._store, self._watch = ray, work, store, monitor
         self._owner = Owner.this_process()
         self._make = ray.remote(num_cpus=1)(TrialWorker)
         self._idle = [self._make.remote(work.runner) for _ in range(jobs)]
@@ -171,7 +173,7 @@ class _Cluster:
         why = f"{type(error).__name__}: {str(error).splitlines()[0] if str(error) else ''}"
         self._watch.report(f"warning: a Ray worker died at {claim.spec.scene}: {why}", None)
         if self._tries[claim.trial] >= MAX_TRIES:
-            self._store.finish(claim.trial, self._owner, TrialResult("error", "crash", why, usd=None))
+            self._store.finish(claim.trial, self._owner, TrialRow("error", "crash", why, usd=None))
         else:
             self._store.give_back(claim.trial, self._owner)
         with contextlib.suppress(Exception):

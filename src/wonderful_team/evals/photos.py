@@ -16,7 +16,7 @@ from pydantic import BaseModel, Field, ValidationError
 from wonderful_team.core.geometry import Box
 from wonderful_team.core.pictures import Point
 from wonderful_team.errors import ConfigError, reading
-from wonderful_team.evals.trials import TrialResult
+from wonderful_team.evals.trials import TrialRow
 
 ENOUGH_OVERLAP = 0.5
 """Intersection over union from which a box counts as found (the usual COCO threshold AP50)."""
@@ -137,7 +137,7 @@ def _area(box: Box) -> float:
     return (box.x1 - box.x0) * (box.y1 - box.y0)
 
 
-def score_photo(scene: PhotoScene, located: Sequence[Located]) -> TrialResult:
+def score_photo(scene: PhotoScene, located: Sequence[Located]) -> TrialRow:
     """Success when everything is found: by its box, or by a point within the true box for methods that give points only."""
     overlaps, inside, misses = [], [], []
     for asked, found in zip(scene.asked, located, strict=True):
@@ -157,5 +157,5 @@ def score_photo(scene: PhotoScene, located: Sequence[Located]) -> TrialResult:
     n = len(scene.asked)
     facts = {"overlap": sum(overlaps) / n, "points inside": sum(inside) / n, "found": (n - len(misses)) / n}
     if misses:
-        return TrialResult("failure", "grounding", "; ".join(misses), facts=facts)
-    return TrialResult("success", None, f"all {n} found", facts=facts)
+        return TrialRow("failure", "grounding", "; ".join(misses), facts=facts)
+    return TrialRow("success", None, f"all {n} found", facts=facts)

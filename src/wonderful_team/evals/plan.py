@@ -32,7 +32,7 @@ class StudyPlan:
         isolate: "" (whole), planning, grounding: one or several.
         perturb: "" (as it is) or KIND=LEVEL: one or several, each a condition of its own.
         replans: None for each suite's own protocol.
-        looks: Looks of every condition that asks a model; see Condition.
+        reobserve: Looks of every condition that asks a model; see Condition.
         how: What else was asked for of models, words and caps: part of every condition that asks a model.
         shard: (I, N): only the I-th of N parts, counted from 1; a scene's trials stay together.
 
@@ -51,12 +51,12 @@ class StudyPlan:
     replans: int | None = None
     shard: tuple[int, int] = (1, 1)
     how: str = ""
-    looks: int = 0
+    reobserve: int = 0
     note: Mapping[str, Any] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        if self.looks < 0:
-            raise ConfigError(f"looks must be 0 or more, got {self.looks}")
+        if self.reobserve < 0:
+            raise ConfigError(f"reobserve must be 0 or more, got {self.reobserve}")
         if self.repeats < 1:
             raise ConfigError(f"repeats must be at least 1, got {self.repeats}")
         for isolate in self.isolate:
@@ -79,7 +79,7 @@ class StudyPlan:
         for perturb in self.perturb:
             asked += [Condition(name, NO_MODEL, "", perturb, 0) for name in bounds]
             if OFFLINE in self.controls:
-                asked.append(Condition("team", OFFLINE, "", perturb, replans, self.how, self.looks))
+                asked.append(Condition("team", OFFLINE, "", perturb, replans, self.how, self.reobserve))
         return tuple(dict.fromkeys(asked))
 
     def _named(self) -> list[tuple[str, str, str]]:
@@ -88,7 +88,7 @@ class StudyPlan:
     def _condition(self, method: str, model: str, isolate: str, perturb: str, replans: int) -> Condition:
         if method in CONTROLS:
             return Condition(method, NO_MODEL, "", perturb, 0)
-        return Condition(method, model, isolate, perturb, replans, self.how, self.looks)
+        return Condition(method, model, isolate, perturb, replans, self.how, self.reobserve)
 
     def trials(self) -> Iterator[TrialSpec]:
         """Every trial of this shard, seed by seed, so that a study cut short is balanced."""

@@ -7,9 +7,11 @@ import sqlite3
 from wonderful_team.errors import ConfigError
 
 SCHEMA_VERSION = 3
-"""1: first release. 2: `how` and `looks` of a condition, and what a trial in flight holds of the study's caps. 3: leases by a clock that
+"""1: first release. 2: `how` and `reobserve` of a condition, and what a trial in flight holds of the study's caps. 3: leases by a clock that
 does not jump; whose a discarded attempt was, and what it was allowed."""
 SPEC = ("task", "seed", "repeat", "method", "model", "isolate", "perturb", "replans", "how", "looks")
+CONDITION = SPEC[3:]
+"""Columns of a condition, in the order of its fields; `looks` holds its `reobserve`."""
 RESULT = (
     *("outcome", "stage", "reason", "calls", "tokens", "pictures", "usd", "seconds", "rounds"),
     *("provenance", "by_role", "page", "instruction", "versions", "facts"),

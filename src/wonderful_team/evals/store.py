@@ -18,15 +18,15 @@ from pydantic import TypeAdapter
 
 from wonderful_team.core.filesystem import network_file_system
 from wonderful_team.errors import ConfigError, reading
-from wonderful_team.evals.claims import LEASE_S, Owner, Surroundings
+from wonderful_team.evals.leases import LEASE_S, Owner, Surroundings
 from wonderful_team.evals.names import NO_MODEL
-from wonderful_team.evals.schema import JSON, RESULT, SCHEMA_VERSION, SPEC, check_values, make_tables
+from wonderful_team.evals.schema import CONDITION, JSON, RESULT, SCHEMA_VERSION, SPEC, check_values, make_tables
 from wonderful_team.evals.spending import UNITS, Allowance, Costs, Likely, Spending, WaitForCost, allow
-from wonderful_team.evals.trials import CONDITION, Condition, Row, SpendingCaps, TrialResult, TrialSpec
+from wonderful_team.evals.trials import Condition, Row, SpendingCaps, TrialRow, TrialSpec
 
 CUT = "cut by the study's cap"
 """Why an attempt was discarded that had all it was allowed and wanted more."""
-_REQUEST, _RESULT = TypeAdapter(dict[str, Any]), TypeAdapter(TrialResult)
+_REQUEST, _RESULT = TypeAdapter(dict[str, Any]), TypeAdapter(TrialRow)
 """What is read out of the file is of the types that it was written with."""
 MAX_CRASHES = 3
 """A trial whose worker process died so often is written as an error, ours, and not tried again."""
@@ -221,7 +221,7 @@ class Store:
             )
             return done.rowcount == 1
 
-    def finish(self, trial: int, owner: Owner, result: TrialResult) -> bool:
+    def finish(self, trial: int, owner: Owner, result: TrialRow) -> bool:
         """Write a result; False when the claim was lost: then only what it cost is booked, in place of what it held."""
         values = ((name, getattr(result, name)) for name in RESULT)
         texts = [json.dumps(value, default=dict) if name in JSON else value for name, value in values]
@@ -235,7 +235,7 @@ class Store:
                 _correct(base, trial, owner, result)
             return done.rowcount == 1
 
-    def give_back(self, trial: int, owner: Owner, why: str = "interrupted", spent: TrialResult | None = None) -> None:
+    def give_back(self, trial: int, owner: Owner, why: str = "interrupted", spent: TrialRow | None = None) -> None:
         """Let somebody else run a claimed trial; what it cost is booked, or what it held where that is not known."""
         with self._writing() as base:
             row = base.execute(
@@ -354,7 +354,7 @@ def _lose(base: sqlite3.Connection, row: sqlite3.Row, why: str) -> None:
     )
 
 
-def _correct(base: sqlite3.Connection, trial: int, owner: Owner, spent: TrialResult) -> None:
+def _correct(base: sqlite3.Connection, trial: int, owner: Owner, spent: TrialRow) -> None:
     """Book what an attempt cost in place of what it held; once."""
     base.execute(
         "UPDATE discarded SET calls=?, tokens=?, usd=?, reason=?, owner='' WHERE rowid = "
@@ -384,11 +384,11 @@ def _spec_values(spec: TrialSpec) -> tuple[Any, ...]:
 
 
 def _spec(row: sqlite3.Row) -> TrialSpec:
-    condition = Condition(**{name: row[name] for name in CONDITION})
+    condition = Condition(*(row[name] for name in CONDITION))
     return TrialSpec(row["task"], row["seed"], condition, row["repeat"])
 
 
-def _result(row: sqlite3.Row) -> TrialResult:
+def _result(row: sqlite3.Row) -> TrialRow:
     values = {name: json.loads(row[name]) if name in JSON else row[name] for name in RESULT}
     return _RESULT.validate_python(values)
 

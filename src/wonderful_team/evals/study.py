@@ -18,11 +18,11 @@ from typing import Any
 
 from wonderful_team.core.text import counted
 from wonderful_team.errors import ConfigError
-from wonderful_team.evals.limits import ProcessLimiter
+from wonderful_team.evals.monitor import Report, StudyMonitor, StudyStatus
 from wonderful_team.evals.plan import StudyPlan
+from wonderful_team.evals.rate_limit import ProcessLimiter
 from wonderful_team.evals.store import Store
 from wonderful_team.evals.trials import RunSettings, SpendingCaps, TrialRunner
-from wonderful_team.evals.watch import Report, Standing, Watch
 from wonderful_team.evals.workers import POLL_S, Work, work_until_done, worker_main
 
 STARTS_THAT_FAIL = 3
@@ -30,10 +30,10 @@ _THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 
 
 @dataclass(frozen=True)
-class Finish:
+class StudyResult:
     """How a run of a study ended: `why` is "" when all trials ended, else what stopped it."""
 
-    standing: Standing
+    status: StudyStatus
     why: str = ""
 
 
@@ -50,8 +50,8 @@ def run_study(
     retry_errors: bool = False,
     ray: str | None = None,
     needs_main: bool = True,
-    report: Report = lambda text, standing: None,
-) -> Finish:
+    report: Report = lambda text, status: None,
+) -> StudyResult:
     """Run what is missing of a study.
 
     Args:
@@ -84,29 +84,29 @@ def run_study(
         opened.want(plan.name, plan.trials(), plan.request())
         if retry_errors and (again := opened.retry_errors(plan.name)):
             report(f"{counted(again, 'trial')} that ended in an error: tried again", None)
-        watch = Watch(opened, plan.name, report)
+        monitor = StudyMonitor(opened, plan.name, report)
         work = Work(opened.path, plan.name, runner, settings, caps, deadline_s, at_once)
-        report("", watch.standing())
-        if not watch.missing:
+        report("", monitor.status())
+        if not monitor.missing:
             pass
         elif ray is not None:
             from wonderful_team.evals.on_ray import run_on_ray
 
-            run_on_ray(work, opened, watch, ray, jobs, calls_at_once)
+            run_on_ray(work, opened, monitor, ray, jobs, calls_at_once)
         elif jobs == 1 and calls_at_once is None:
-            work_until_done(work, lambda: watch.look() and False)
+            work_until_done(work, lambda: monitor.look() and False)
         else:
-            _run_processes(work, watch, min(jobs, watch.missing), calls_at_once, needs_main)
-        report("", watch.standing())
-        if caps.usd is not None and (unpriced := watch.standing().spent.unpriced):
+            _run_processes(work, monitor, min(jobs, monitor.missing), calls_at_once, needs_main)
+        report("", monitor.status())
+        if caps.usd is not None and (unpriced := monitor.status().spent.unpriced):
             report(
                 f"warning: {counted(unpriced, 'trial')} without a known price: the cap of {caps.usd:g} USD does not see them",
                 None,
             )
-        return Finish(watch.standing(), watch.why(caps, deadline_s))
+        return StudyResult(monitor.status(), monitor.why(caps, deadline_s))
 
 
-def _run_processes(work: Work, watch: Watch, jobs: int, calls_at_once: int | None, needs_main: bool) -> None:
+def _run_processes(work: Work, monitor: StudyMonitor, jobs: int, calls_at_once: int | None, needs_main: bool) -> None:
     """Spawn workers, replace those that die, and end them when told to."""
     context = multiprocessing.get_context("spawn")
     stopping = context.Event()
@@ -129,22 +129,22 @@ def _run_processes(work: Work, watch: Watch, jobs: int, calls_at_once: int | Non
                 for place, process in enumerate(processes):
                     if process.exitcode in (None, 0):
                         continue
-                    lost = watch.store.crashed(process.pid or 0, socket.gethostname())
+                    lost = monitor.store.crashed(process.pid or 0, socket.gethostname())
                     failing = 0 if lost else failing + 1
-                    watch.report(
+                    monitor.report(
                         f"warning: a worker died (exit code {process.exitcode}) at {', '.join(lost) or 'its start'}",
                         None,
                     )
-                    if failing >= STARTS_THAT_FAIL and not watch.standing().here:
+                    if failing >= STARTS_THAT_FAIL and not monitor.status().here:
                         raise ConfigError(
                             f"workers die before they take a trial (exit code {process.exitcode}); see above"
                         )
                     processes[place] = start()
-                watch.look()
+                monitor.look()
                 multiprocessing.connection.wait([one.sentinel for one in processes if one.is_alive()], POLL_S)
         except BaseException as error:
             stopping.set()
-            _end(processes, watch, patient=isinstance(error, KeyboardInterrupt))
+            _end(processes, monitor, patient=isinstance(error, KeyboardInterrupt))
             raise
 
 
@@ -164,11 +164,11 @@ def _without_main() -> Iterator[None]:
         sys.modules["__main__"] = script
 
 
-def _end(processes: list[Any], watch: Watch, *, patient: bool) -> None:
+def _end(processes: list[Any], monitor: StudyMonitor, *, patient: bool) -> None:
     """Let trials in flight end; a second interrupt ends them at once, and their claims are given back."""
     try:
         if patient:
-            watch.report("interrupted: waiting for the trials in flight; press again to drop them", None)
+            monitor.report("interrupted: waiting for the trials in flight; press again to drop them", None)
             for process in processes:
                 process.join()
     finally:
@@ -176,7 +176,7 @@ def _end(processes: list[Any], watch: Watch, *, patient: bool) -> None:
             if process.is_alive():
                 process.kill()
                 process.join()
-                watch.store.crashed(process.pid or 0, socket.gethostname())
+                monitor.store.crashed(process.pid or 0, socket.gethostname())
 
 
 @contextmanager

@@ -12,7 +12,7 @@ from wonderful_team.core.text import counted
 from wonderful_team.evals.controls import CONTROLS, ORACLE, control_faults
 from wonderful_team.evals.pairing import Pair, pair
 from wonderful_team.evals.plan import OFFLINE
-from wonderful_team.evals.trials import DEVELOPMENT_BELOW, Condition, Row, TrialResult
+from wonderful_team.evals.trials import DEVELOPMENT_BELOW, Condition, Row, TrialRow
 
 SENTENCES = 3
 TOO_MANY_ERRORS = 0.02
@@ -31,7 +31,7 @@ class Cell:
     """
 
     condition: Condition
-    results: tuple[TrialResult, ...]
+    results: tuple[TrialRow, ...]
     seeds: tuple[int, ...]
     missing: int = 0
     retried: int = 0

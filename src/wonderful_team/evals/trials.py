@@ -26,7 +26,7 @@ class Condition:
         perturb: "" or KIND=LEVEL: a harder tier, scored separately.
         replans: How often it may plan again after its first attempt.
         how: What else was asked for of models, words and caps, such as "thinking high"; "" for nothing.
-        looks: How often it may run only the first push of a plan, look, and plan the rest anew.
+        reobserve: How often it may run only the first push of a plan, look, and plan the rest anew.
     """
 
     method: str
@@ -35,7 +35,7 @@ class Condition:
     perturb: str = ""
     replans: int = 0
     how: str = ""
-    looks: int = 0
+    reobserve: int = 0
 
     @property
     def values(self) -> tuple[Any, ...]:
@@ -49,7 +49,7 @@ class Condition:
         words += [f"{self.isolate} alone"] if self.isolate else []
         words += [self.perturb] if self.perturb else []
         words += [f"{self.replans} replans"] if self.replans else []
-        words += [f"{self.looks} looks"] if self.looks else []
+        words += [f"reobserve {self.reobserve}"] if self.reobserve else []
         words += [self.how] if self.how else []
         return " · ".join(words)
 
@@ -69,9 +69,9 @@ class TrialSpec:
 
     @property
     def key(self) -> str:
-        """Identity in the store; stores made before `how` and `looks` existed keep theirs."""
-        *values, how, looks = self.condition.values
-        later = [how, looks] if looks else [how] if how else []
+        """Identity in the store; stores made before `how` and `reobserve` existed keep theirs."""
+        *values, how, reobserve = self.condition.values
+        later = [how, reobserve] if reobserve else [how] if how else []
         return json.dumps([self.task, self.seed, self.repeat, *values, *later])
 
     @property
@@ -81,7 +81,7 @@ class TrialSpec:
 
 
 @dataclass(frozen=True)
-class TrialResult:
+class TrialRow:
     """What came of one trial.
 
     Attributes:
@@ -121,7 +121,7 @@ class Row:
     """A trial of a store: what was asked for and, once it ended, what came of it."""
 
     spec: TrialSpec
-    result: TrialResult | None
+    result: TrialRow | None
     discarded: int = 0
 
 
@@ -188,7 +188,7 @@ class RunSettings:
             raise ConfigError(f"pages {self.pages!r}: valid are all, failures, none")
 
 
-TrialRunner: TypeAlias = Callable[[TrialSpec, RunSettings], TrialResult]
+TrialRunner: TypeAlias = Callable[[TrialSpec, RunSettings], TrialRow]
 """Handed in by the top of the house: turns names into methods, models and worlds, and runs one trial.
 
 It must be importable by name (a module-level function), because worker processes import it."""

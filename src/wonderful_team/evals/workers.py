@@ -13,10 +13,10 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from wonderful_team.evals.claims import RENEW_EVERY_S, Owner
+from wonderful_team.evals.leases import RENEW_EVERY_S, Owner
 from wonderful_team.evals.spending import CapReached
 from wonderful_team.evals.store import CUT, Claim, Store
-from wonderful_team.evals.trials import RunSettings, SpendingCaps, TrialResult, TrialRunner, TrialSpec
+from wonderful_team.evals.trials import RunSettings, SpendingCaps, TrialRow, TrialRunner, TrialSpec
 
 POLL_S = 0.2
 """How long a worker waits before it looks again for a trial that another process holds [s]."""
@@ -93,7 +93,7 @@ async def _run(work: Work, store: Store, owner: Owner, claim: Claim) -> None:
     settle(store, owner, claim, work.settings.caps, result)
 
 
-def settle(store: Store, owner: Owner, claim: Claim, own: SpendingCaps, result: TrialResult) -> bool:
+def settle(store: Store, owner: Owner, claim: Claim, own: SpendingCaps, result: TrialRow) -> bool:
     """Write a result, unless the study's cap, and not one of its own, cut it short: then it did not happen.
 
     Returns:
@@ -105,7 +105,7 @@ def settle(store: Store, owner: Owner, claim: Claim, own: SpendingCaps, result: 
     return store.finish(claim.trial, owner, result)
 
 
-def cut_by_study(own: SpendingCaps, left: SpendingCaps, result: TrialResult) -> bool:
+def cut_by_study(own: SpendingCaps, left: SpendingCaps, result: TrialRow) -> bool:
     """Whether the cap that a trial met was what the study had left, and not its own."""
     for name in ("calls", "tokens", "usd"):
         study, trial = getattr(left, name), getattr(own, name)
@@ -135,7 +135,7 @@ def tighter(one: SpendingCaps, other: SpendingCaps) -> SpendingCaps:
     )
 
 
-def run_safely(runner: TrialRunner, spec: TrialSpec, settings: RunSettings) -> TrialResult:
+def run_safely(runner: TrialRunner, spec: TrialSpec, settings: RunSettings) -> TrialRow:
     """Run a trial; whatever escapes it is an error of ours, never the method's failure."""
     started = time.monotonic()
     try:
@@ -144,7 +144,7 @@ def run_safely(runner: TrialRunner, spec: TrialSpec, settings: RunSettings) -> T
         where = traceback.extract_tb(error.__traceback__)[-1]
         reason = f"{type(error).__name__}: {error} ({Path(where.filename).name}:{where.lineno})"
         stage = getattr(error, "stage", None) or "crash"
-        return TrialResult("error", stage, reason, usd=None, seconds=time.monotonic() - started)
+        return TrialRow("error", stage, reason, usd=None, seconds=time.monotonic() - started)
 
 
 @contextlib.asynccontextmanager

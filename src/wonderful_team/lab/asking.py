@@ -21,8 +21,8 @@ from wonderful_team.errors import ModelOutputError
 from wonderful_team.lab.fit import Sighting
 from wonderful_team.lab.marks import MarkedScene
 from wonderful_team.models.budget import Budget
+from wonderful_team.models.client import ModelClient
 from wonderful_team.models.conventions import PIXELS, Convention
-from wonderful_team.models.door import Door
 from wonderful_team.models.profiles import Profile
 
 Thinking = str | None
@@ -43,7 +43,7 @@ class Loose(Question):
     def output(self) -> type[AnswerModel]:
         return SceneReading
 
-    def settle(self, answer: Any) -> tuple[Any, tuple[str, ...]]:
+    def validate(self, answer: Any) -> tuple[Any, tuple[str, ...]]:
         ids = [item.id for item in answer.targets]
         unique(ids, "target ids")
         known(ids, [target.id for target in self.inner.targets], "target")
@@ -58,7 +58,7 @@ class Plain:
         self.name = str(getattr(model, "name", type(model).__name__))
 
     async def answer(self, request: Request) -> Any:
-        from wonderful_team.models.door import call_model
+        from wonderful_team.models.client import call_model
 
         question = request.question
         return await call_model(
@@ -110,14 +110,14 @@ class Bench:
         """One answer through the door: capped, deadlined, its form checked."""
         self._asked += 1
         wrapped = Priced(model) if hasattr(model, "estimate") else Plain(model)
-        door = Door(
+        client = ModelClient(
             wrapped,
             budget=self.budget,
             attempts=self.attempts,
             concurrency=self.concurrency,
             deadline_s=self.deadline_s,
         )
-        answer = await door.ask(replace(request, id=f"{request.id}/{self._asked}"))
+        answer = await client.ask(replace(request, id=f"{request.id}/{self._asked}"))
         self.answers.append(answer)
         return answer
 

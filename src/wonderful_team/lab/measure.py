@@ -209,7 +209,7 @@ async def _judge(bench: Bench, model: Model, scene: LabScene, tally: _Tally) -> 
     chosen = rng.permutation(len(scene.targets))[:JUDGED]
     for turn, i in enumerate(chosen):
         state = STATES[(scene.seed + turn * 2) % len(STATES)]
-        box = spoiled(scene, int(i), state, rng)
+        box = perturbed(scene, int(i), state, rng)
         if box is None:
             continue
         truth = scene.targets[i]
@@ -221,7 +221,7 @@ async def _judge(bench: Bench, model: Model, scene: LabScene, tally: _Tally) -> 
         tally.verdicts[state]["no answer" if verdict is None else verdict.decision] += 1
 
 
-def spoiled(scene: LabScene, index: int, state: BoxState, rng: np.random.Generator) -> Box | None:
+def perturbed(scene: LabScene, index: int, state: BoxState, rng: np.random.Generator) -> Box | None:
     """The true box of a target, brought into a state; None where that cannot be done in this scene."""
     width, height = scene.view.size_px
     box = scene.targets[index].box
@@ -287,4 +287,4 @@ def _profile(tally: _Tally, scenes: Sequence[LabScene], seed: int) -> ErrorProfi
     )
 
 
-__all__ = ["LabScene", "LabTarget", "measure_errors", "spoiled", "synthetic_scenes"]
+__all__ = ["LabScene", "LabTarget", "measure_errors", "perturbed", "synthetic_scenes"]

@@ -25,7 +25,7 @@ from wonderful_team.core.values import Answer, Provenance, Request, Usage
 from wonderful_team.errors import CacheMissError, ConfigError, WonderfulTeamError
 from wonderful_team.models.cache_key import request_key
 from wonderful_team.models.cache_store import CacheStore, Stored
-from wonderful_team.models.door import as_answer, call_model, settle_answer
+from wonderful_team.models.client import as_answer, call_model, validate_answer
 
 CacheMode: TypeAlias = Literal["on", "off", "only"]
 CACHE_MODES: tuple[CacheMode, ...] = get_args(CacheMode)
@@ -163,7 +163,7 @@ class Cached:
         if entry is None:
             return None
         try:
-            settle_answer(request, entry.value)
+            validate_answer(request, entry.value)
         except ValueError:
             # A stricter release of ours would refuse it: it is asked for anew.
             if self.mode == "on":
@@ -176,7 +176,7 @@ class Cached:
         if answer.provenance not in KEPT:
             return answer
         try:
-            settle_answer(request, answer.value)
+            validate_answer(request, answer.value)
         except ValueError:
             return answer
         entry = Stored(

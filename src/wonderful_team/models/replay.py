@@ -22,7 +22,7 @@ from wonderful_team.errors import (
     WonderfulTeamError,
     reading,
 )
-from wonderful_team.models.door import as_answer, call_model
+from wonderful_team.models.client import as_answer, call_model
 
 STAGES = ("plan", "ground", "act", "replan")
 """Stages of an attempt that a run can branch at; `replan` comes after the first execution."""

@@ -12,7 +12,7 @@ from wonderful_team.contracts import BoxPx, PointPx, SceneReading
 from wonderful_team.contracts.give_box import BoxAnswer
 from wonderful_team.core.protocols import Model
 from wonderful_team.core.values import Answer, Request
-from wonderful_team.models.door import as_answer, settle_answer
+from wonderful_team.models.client import as_answer, validate_answer
 
 
 @dataclass
@@ -50,12 +50,12 @@ class Injecting:
         answer = as_answer(result, self.model)
         for injection in self.injections:
             if injection.struck < injection.times and request.contract in injection.contracts:
-                value, _ = settle_answer(request, answer.value)
-                spoiled = injection.change(value, request)
-                if spoiled is not None:
+                value, _ = validate_answer(request, answer.value)
+                changed = injection.change(value, request)
+                if changed is not None:
                     injection.struck += 1
                     return replace(
-                        answer, value=spoiled, raw="", provenance="injected", repairs=(f"injected: {injection.label}",)
+                        answer, value=changed, raw="", provenance="injected", repairs=(f"injected: {injection.label}",)
                     )
         return answer
 

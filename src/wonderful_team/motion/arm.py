@@ -24,16 +24,16 @@ from wonderful_team.core.actions import (
 )
 from wonderful_team.core.geometry import Pose
 from wonderful_team.core.values import PlannedAction
+from wonderful_team.motion.deprojector import ResolvedPoint
 from wonderful_team.motion.heights import above_z_m, clear_z_m, grasp_z_m
-from wonderful_team.motion.lift import Spot
 from wonderful_team.motion.pick_place import put_spot
 from wonderful_team.motion.places import TO_GRASP, Places
-from wonderful_team.motion.progress import Held, Moved, Progress
 from wonderful_team.motion.sources import source
+from wonderful_team.motion.state import Held, MotionState, Moved
 from wonderful_team.motion.turns import yaw_of
 
 
-def ground_move(step: MoveStep, places: Places, progress: Progress) -> tuple[PlannedAction, Progress]:
+def ground_move(step: MoveStep, places: Places, progress: MotionState) -> tuple[PlannedAction, MotionState]:
     """Move the tool; a held thing is carried such that its centre arrives at the place."""
     spot, gripping = _tool_goal(step, places, progress)
     tool = _at_height(step, spot, gripping, places, progress)
@@ -42,7 +42,7 @@ def ground_move(step: MoveStep, places: Places, progress: Progress) -> tuple[Pla
     return planned, replace(progress, tool=tool, height=step.height, over=step.to.target)
 
 
-def _tool_goal(step: MoveStep, places: Places, progress: Progress) -> tuple[Spot, bool]:
+def _tool_goal(step: MoveStep, places: Places, progress: MotionState) -> tuple[ResolvedPoint, bool]:
     """Where the tool goes, still on the surface, and whether it goes there to grip a thing."""
     held = progress.held
     if held is None:
@@ -54,15 +54,17 @@ def _tool_goal(step: MoveStep, places: Places, progress: Progress) -> tuple[Spot
         resting = held.support_z_m
         tool = progress.tool
         if tool.position_m is None:
-            return Spot(tool.px, None, f"over where {held.target} was gripped"), False
+            return ResolvedPoint(tool.px, None, f"over where {held.target} was gripped"), False
         x, y, _ = tool.position_m
-        return Spot(tool.px, np.array([x, y, resting]), f"where the tool holds {held.target}"), False
+        return ResolvedPoint(tool.px, np.array([x, y, resting]), f"where the tool holds {held.target}"), False
     yaw_rad = progress.yaw_rad - held.yaw_rad
     goal = places.destination(step.to, progress, held.target, yaw_rad)
     return put_spot(held.tool, held.centre, goal, yaw_rad, held.target), False
 
 
-def _at_height(step: MoveStep, spot: Spot, gripping: bool, places: Places, progress: Progress) -> Spot:
+def _at_height(
+    step: MoveStep, spot: ResolvedPoint, gripping: bool, places: Places, progress: MotionState
+) -> ResolvedPoint:
     if spot.position_m is None:
         return spot
     x, y, surface = (float(value) for value in spot.position_m)
@@ -76,10 +78,10 @@ def _at_height(step: MoveStep, spot: Spot, gripping: bool, places: Places, progr
             z, rule = above_z_m(surface, places.limits, hanging), "just above"
         case "clear":
             z, rule = clear_z_m([surface, *_surfaces(places)], places.limits, hanging), "clear of everything"
-    return Spot(spot.px, np.array([x, y, z]), f"{spot.how}; z = {z:.3f} m, {rule}")
+    return ResolvedPoint(spot.px, np.array([x, y, z]), f"{spot.how}; z = {z:.3f} m, {rule}")
 
 
-def _support_now(places: Places, name: str, progress: Progress) -> float:
+def _support_now(places: Places, name: str, progress: MotionState) -> float:
     resting = places.resting(name, progress).position_m
     assert resting is not None
     return float(resting[2])
@@ -96,7 +98,7 @@ def _surfaces(places: Places) -> list[float]:
     return heights
 
 
-def ground_close(step: CloseStep, places: Places, progress: Progress) -> tuple[PlannedAction, Progress]:
+def ground_close(step: CloseStep, places: Places, progress: MotionState) -> tuple[PlannedAction, MotionState]:
     """Close the gripper; what it was moved down to is held from now on."""
     planned = PlannedAction(step, Gripper("tight" if step.tight else "close"))
     name = progress.over
@@ -112,11 +114,11 @@ def ground_close(step: CloseStep, places: Places, progress: Progress) -> tuple[P
     return planned, replace(progress, held=held)
 
 
-def _support_z_m(places: Places, name: str, progress: Progress) -> float:
+def _support_z_m(places: Places, name: str, progress: MotionState) -> float:
     return 0.0 if places.lift.camera is None else _support_now(places, name, progress)
 
 
-def ground_open(step: OpenStep, places: Places, progress: Progress) -> tuple[PlannedAction, Progress]:
+def ground_open(step: OpenStep, places: Places, progress: MotionState) -> tuple[PlannedAction, MotionState]:
     """Open the gripper; what it held lies where the tool is now."""
     planned = PlannedAction(step, Gripper("open"))
     held, tool = progress.held, progress.tool
@@ -133,13 +135,13 @@ def ground_open(step: OpenStep, places: Places, progress: Progress) -> tuple[Pla
     return planned, replace(progress.with_move(held.target, moved), held=None)
 
 
-def ground_rotate(step: RotateGripperStep, places: Places, progress: Progress) -> tuple[PlannedAction, Progress]:
+def ground_rotate(step: RotateGripperStep, places: Places, progress: MotionState) -> tuple[PlannedAction, MotionState]:
     """Turn the gripper; later moves keep the turn."""
     yaw_rad = yaw_of(step.rotate_deg)
     return PlannedAction(step, RotateGripper(yaw_rad)), replace(progress, yaw_rad=progress.yaw_rad + yaw_rad)
 
 
-def ground_follow(step: FollowStep, places: Places, progress: Progress) -> tuple[PlannedAction, Progress]:
+def ground_follow(step: FollowStep, places: Places, progress: MotionState) -> tuple[PlannedAction, MotionState]:
     """Follow a path: along the surface after the tool was moved down to something, else at the clearance."""
     if step.function not in places.paths:
         known = ", ".join(places.paths) or "none"
@@ -162,19 +164,19 @@ def ground_follow(step: FollowStep, places: Places, progress: Progress) -> tuple
         touching = progress.height == "at"
         z = surface + hanging if touching else clear_z_m([surface, *_surfaces(places)], places.limits, hanging)
         rule = "on the surface" if touching else "clear of everything"
-        spots.append(Spot(px, np.array([x, y, z]), f"{seen.how}; z = {z:.3f} m, {rule}"))
+        spots.append(ResolvedPoint(px, np.array([x, y, z]), f"{seen.how}; z = {z:.3f} m, {rule}"))
     positions = [spot.position_m for spot in spots if spot.position_m is not None]
     action = Trajectory(np.array(positions)) if positions and len(positions) == len(spots) else None
     planned = PlannedAction(step, action, tuple(source("waypoint", step.function, spot) for spot in spots))
     return planned, replace(progress, tool=spots[-1] if spots else progress.tool, over=None)
 
 
-def ground_home(step: HomeStep, places: Places, progress: Progress) -> tuple[PlannedAction, Progress]:
+def ground_home(step: HomeStep, places: Places, progress: MotionState) -> tuple[PlannedAction, MotionState]:
     """Go home; the gripper keeps what it holds, at no place of the picture."""
     return PlannedAction(step, Home()), replace(progress, tool=None, height="clear", over=None)
 
 
-def ground_navigate(step: NavigateStep, places: Places, progress: Progress) -> tuple[PlannedAction, Progress]:
+def ground_navigate(step: NavigateStep, places: Places, progress: MotionState) -> tuple[PlannedAction, MotionState]:
     """Drive straight to a place on the floor."""
     spot = places.destination(step.to, progress, None)
     action = None if spot.position_m is None else Navigate(spot.position_m[None, :2])

@@ -20,12 +20,12 @@ from wonderful_team.core.actions import (
 from wonderful_team.core.pictures import Point
 from wonderful_team.core.values import GroundedTarget, Limits, PlannedAction, View
 from wonderful_team.motion import arm
-from wonderful_team.motion.lift import Lift
+from wonderful_team.motion.deprojector import Deprojector
 from wonderful_team.motion.pick_place import ground_pick_place
 from wonderful_team.motion.places import Places
-from wonderful_team.motion.progress import Progress
 from wonderful_team.motion.push import ground_push
 from wonderful_team.motion.sharing import shared_places
+from wonderful_team.motion.state import MotionState
 
 
 def ground_actions(
@@ -56,8 +56,8 @@ def ground_actions(
         PlanError: A step needs a target, point, box or path that is not there, or a place with no room; names the
             step.
     """
-    places = Places(grounded, Lift(view), limits, {} if paths is None else paths, shares=shared_places(steps))
-    progress = Progress()
+    places = Places(grounded, Deprojector(view), limits, {} if paths is None else paths, shares=shared_places(steps))
+    progress = MotionState()
     planned = []
     for number, step in enumerate(steps, start=1):
         action, progress = _ground(step, replace(places, step=number), progress)
@@ -65,7 +65,7 @@ def ground_actions(
     return tuple(planned)
 
 
-def _ground(step: Step, places: Places, progress: Progress) -> tuple[PlannedAction, Progress]:
+def _ground(step: Step, places: Places, progress: MotionState) -> tuple[PlannedAction, MotionState]:
     match step:
         case PickPlaceStep():
             return ground_pick_place(step, places, progress)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from wonderful_team.core.values import Limits
-from wonderful_team.motion.lift import TABLE_Z_M
+from wonderful_team.motion.deprojector import TABLE_Z_M
 
 ABOVE_M = 0.08
 """Free space between a thing and the tool just above it [m]."""

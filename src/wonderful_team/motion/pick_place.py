@@ -7,14 +7,14 @@ import numpy as np
 from wonderful_team.core.actions import PickPlace, PickPlaceStep
 from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.values import PlannedAction
-from wonderful_team.motion.lift import Spot
+from wonderful_team.motion.deprojector import ResolvedPoint
 from wonderful_team.motion.places import TO_PICK, Places
-from wonderful_team.motion.progress import Moved, Progress
 from wonderful_team.motion.sources import source
+from wonderful_team.motion.state import MotionState, Moved
 from wonderful_team.motion.turns import turned_m, turned_px, yaw_of
 
 
-def ground_pick_place(step: PickPlaceStep, places: Places, progress: Progress) -> tuple[PlannedAction, Progress]:
+def ground_pick_place(step: PickPlaceStep, places: Places, progress: MotionState) -> tuple[PlannedAction, MotionState]:
     """The action for one step.
 
     A robot that picks at P and puts down at Q moves the thing's centre C to Q + R(yaw)(C - P). So Q is chosen such that
@@ -35,27 +35,29 @@ def ground_pick_place(step: PickPlaceStep, places: Places, progress: Progress) -
         action,
         (
             source("pick", step.pick, pick),
-            source("place", step.place.target, Spot(goal.px, put.position_m, put.how + turned)),
+            source("place", step.place.target, ResolvedPoint(goal.px, put.position_m, put.how + turned)),
         ),
     )
     return planned, progress.with_move(step.pick, moved)
 
 
-def put_spot(tool: Spot, centre: Spot, goal: Spot, yaw_rad: float, name: str) -> Spot:
+def put_spot(
+    tool: ResolvedPoint, centre: ResolvedPoint, goal: ResolvedPoint, yaw_rad: float, name: str
+) -> ResolvedPoint:
     """Where the tool has to end so that the thing's centre ends at `goal`; heights are left to the caller's goal."""
     dx, dy = turned_px((centre.px[0] - tool.px[0], centre.px[1] - tool.px[1]), yaw_rad)
     px = (goal.px[0] - dx, goal.px[1] - dy)
     if tool.position_m is None or centre.position_m is None or goal.position_m is None:
-        return Spot(px, None, goal.how)
+        return ResolvedPoint(px, None, goal.how)
     shift = -turned_m(centre.position_m - tool.position_m, yaw_rad)
     position = goal.position_m + np.array([shift[0], shift[1], 0.0])
     how = goal.how
     if np.hypot(shift[0], shift[1]) > 5e-4:
         how += f"; shifted ({shift[0]:+.3f}, {shift[1]:+.3f}) m so that the centre of {name} lands there"
-    return Spot(px, position, how)
+    return ResolvedPoint(px, position, how)
 
 
-def _on_support(pick: Spot, places: Places, name: str, progress: Progress) -> Array | None:
+def _on_support(pick: ResolvedPoint, places: Places, name: str, progress: MotionState) -> Array | None:
     """The pick point at the height of what the thing stands on now."""
     if pick.position_m is None:
         return None

@@ -14,9 +14,9 @@ from wonderful_team.core.pictures import Point
 from wonderful_team.core.values import GroundedTarget, Limits, PointRole
 from wonderful_team.errors import PlanError
 from wonderful_team.motion.beside import beside_px, half_extents
-from wonderful_team.motion.lift import Lift, Spot
-from wonderful_team.motion.progress import Progress
+from wonderful_team.motion.deprojector import Deprojector, ResolvedPoint
 from wonderful_team.motion.sharing import Share, share_px
+from wonderful_team.motion.state import MotionState
 
 TO_PICK: tuple[PointRole, ...] = ("pick", "grasp")
 TO_PLACE: tuple[PointRole, ...] = ("place", "push_end", "pick", "grasp")
@@ -38,7 +38,7 @@ class Places:
     """
 
     grounded: Mapping[str, GroundedTarget]
-    lift: Lift
+    lift: Deprojector
     limits: Limits
     paths: Mapping[str, tuple[Point, ...]]
     step: int = 1
@@ -95,7 +95,7 @@ class Places:
             raise self.fail(f"target {name!r} has no box, which a place beside it or a push needs")
         return box
 
-    def spot(self, name: str, roles: tuple[PointRole, ...], progress: Progress) -> tuple[PointRole, Spot]:
+    def spot(self, name: str, roles: tuple[PointRole, ...], progress: MotionState) -> tuple[PointRole, ResolvedPoint]:
         """Where the target's chosen point lies now, on the surface that is seen there."""
         role, px = self.point(name, roles)
         return role, progress.carry(name, self.lift.surface(px, f"{name} {role} point"), self.lift)
@@ -104,7 +104,7 @@ class Places:
         """Height of what the target stood on in the picture [m]."""
         return self.lift.support_z_m(self.target(name).box, self._top_z_m(name) + EVEN_M)
 
-    def centre(self, name: str, progress: Progress) -> Spot:
+    def centre(self, name: str, progress: MotionState) -> ResolvedPoint:
         """Where the target's centre lies now: that of its box, at the height of the point chosen on it.
 
         Without a box it is the point itself, without a point the surface at the box's centre.
@@ -120,20 +120,20 @@ class Places:
                 seen = self.lift.at_height(found.box.centre, z_m, f"centre of {name}'s box")
         return progress.carry(name, seen, self.lift)
 
-    def origin(self, name: str) -> Spot:
+    def origin(self, name: str) -> ResolvedPoint:
         """Where the target's centre stood at first, at the height of what it stood on."""
-        spot = self.centre(name, Progress())
+        spot = self.centre(name, MotionState())
         how = f"origin of {name}: {spot.how}"
         if spot.position_m is None:
-            return Spot(spot.px, None, how)
+            return ResolvedPoint(spot.px, None, how)
         x, y, _ = spot.position_m
-        return Spot(spot.px, np.array([x, y, self.support_z_m(name)]), how)
+        return ResolvedPoint(spot.px, np.array([x, y, self.support_z_m(name)]), how)
 
-    def resting(self, name: str, progress: Progress) -> Spot:
+    def resting(self, name: str, progress: MotionState) -> ResolvedPoint:
         """Where the target's centre is now, at the height of what it stands on now."""
         return progress.carry(name, self.origin(name), self.lift)
 
-    def box_now(self, name: str, progress: Progress) -> Box:
+    def box_now(self, name: str, progress: MotionState) -> Box:
         """The target's box in view pixels, after the moves so far."""
         box = self.box(name)
         if not progress.moved.get(name):
@@ -142,7 +142,9 @@ class Places:
         centre = self.centre(name, progress).px
         return Box.around(centre, 2 * half[0], 2 * half[1])
 
-    def destination(self, place: Place, progress: Progress, thing: str | None, yaw_rad: float = 0.0) -> Spot:
+    def destination(
+        self, place: Place, progress: MotionState, thing: str | None, yaw_rad: float = 0.0
+    ) -> ResolvedPoint:
         """Where the centre of `thing` is to be put; its height is the surface it will rest on.
 
         Args:
@@ -163,7 +165,7 @@ class Places:
             case Beside():
                 return self._beside(place, progress, thing, yaw_rad)
 
-    def _shared(self, name: str, spot: Spot) -> Spot:
+    def _shared(self, name: str, spot: ResolvedPoint) -> ResolvedPoint:
         """This step's part of a place that several things share; the place's own point for one thing alone."""
         share = self.shares.get(self.step)
         if share is None:
@@ -177,7 +179,7 @@ class Places:
         how = f"{spot.how}; part {share.index + 1} of {len(share.things)} that go there"
         return self.lift.at_height(px, 0.0 if spot.position_m is None else float(spot.position_m[2]), how)
 
-    def _beside(self, place: Beside, progress: Progress, thing: str | None, yaw_rad: float) -> Spot:
+    def _beside(self, place: Beside, progress: MotionState, thing: str | None, yaw_rad: float) -> ResolvedPoint:
         half = (0.0, 0.0)
         if thing is not None:
             half = half_extents(self.target(thing).box, progress.turn_of(thing) + yaw_rad)
@@ -188,7 +190,7 @@ class Places:
         spot = self.lift.surface(px, f"{place.side} of {place.target}'s box")
         return self._freed(spot, progress, thing, place.target)
 
-    def _freed(self, spot: Spot, progress: Progress, thing: str | None, place: str) -> Spot:
+    def _freed(self, spot: ResolvedPoint, progress: MotionState, thing: str | None, place: str) -> ResolvedPoint:
         """The same spot, but at the height of the support where the picture shows a thing that will have left it."""
         for name in (*progress.moved, *([thing] if thing is not None else [])):
             box = self.target(name).box if name != place else None

@@ -8,15 +8,15 @@ from wonderful_team.core.actions import At, Place, Push, PushStep
 from wonderful_team.core.pictures import Point
 from wonderful_team.core.values import NO_WORKSPACE, PlannedAction, PointRole
 from wonderful_team.motion.beside import behind_px
-from wonderful_team.motion.lift import Spot
+from wonderful_team.motion.deprojector import ResolvedPoint
 from wonderful_team.motion.places import Places
-from wonderful_team.motion.progress import Moved, Progress
 from wonderful_team.motion.sources import source
+from wonderful_team.motion.state import MotionState, Moved
 
 _TO_END: tuple[PointRole, ...] = ("push_end", "place", "pick", "grasp")
 
 
-def ground_push(step: PushStep, places: Places, progress: Progress) -> tuple[PlannedAction, Progress]:
+def ground_push(step: PushStep, places: Places, progress: MotionState) -> tuple[PlannedAction, MotionState]:
     """The action for one step: along the surface that the thing stands on.
 
     A chosen push_start or push_end point is used as it is. Otherwise the start is computed behind the thing's box and
@@ -59,7 +59,7 @@ def ground_push(step: PushStep, places: Places, progress: Progress) -> tuple[Pla
     return planned, progress.with_move(thing, moved)
 
 
-def _given_start(step: PushStep, places: Places, progress: Progress) -> Point | None:
+def _given_start(step: PushStep, places: Places, progress: MotionState) -> Point | None:
     """The start that was chosen or named; None when it has to be computed."""
     if isinstance(step.start, At):
         target = places.target(step.start.target)
@@ -70,7 +70,7 @@ def _given_start(step: PushStep, places: Places, progress: Progress) -> Point | 
     return places.destination(step.start, progress, None).px
 
 
-def _end(step: PushStep, places: Places, progress: Progress) -> tuple[Point, bool]:
+def _end(step: PushStep, places: Places, progress: MotionState) -> tuple[Point, bool]:
     """The end, and whether it is meant for the tool itself rather than for the thing."""
     if isinstance(step.end, At):
         roles = ("push_end",) if step.end.target == step.start.target else _TO_END
@@ -83,7 +83,7 @@ def _named(place: Place) -> str:
     return f"the place {place.target}"
 
 
-def _reachable(start: Spot, places: Places) -> bool:
+def _reachable(start: ResolvedPoint, places: Places) -> bool:
     """Whether the robot's workspace is known and holds a point.
 
     A tool that comes down behind a thing at the picture's edge may do so just outside of the picture, where the workspace reaches.
@@ -94,7 +94,7 @@ def _reachable(start: Spot, places: Places) -> bool:
     return all(low[k] <= start.position_m[k] <= high[k] for k in (0, 1))
 
 
-def _check_inside(places: Places, thing: str, spots: Mapping[str, Spot]) -> None:
+def _check_inside(places: Places, thing: str, spots: Mapping[str, ResolvedPoint]) -> None:
     width, height = places.lift.view.size_px
     for name, spot in spots.items():
         if not places.lift.inside(spot.px):

@@ -13,7 +13,7 @@ from wonderful_team.core.geometry import Box
 from wonderful_team.core.pictures import Point
 from wonderful_team.core.values import GroundedTarget
 from wonderful_team.motion.beside import LEAST_GAP_PX, half_extents
-from wonderful_team.motion.lift import Lift
+from wonderful_team.motion.deprojector import Deprojector
 from wonderful_team.motion.turns import yaw_of
 
 LEVEL_M = 0.006
@@ -73,7 +73,9 @@ def _together(stays: list[tuple[int, int, str, float]]) -> list[list[tuple[int, 
     return [group for group in groups if len(group) > 1]
 
 
-def parts_of(place: GroundedTarget, centre: Point, sizes: Sequence[tuple[float, float]], lift: Lift) -> list[Point]:
+def parts_of(
+    place: GroundedTarget, centre: Point, sizes: Sequence[tuple[float, float]], lift: Deprojector
+) -> list[Point]:
     """A point for each thing on a place, clear of the others; the one point for all where there is no room.
 
     Args:
@@ -99,7 +101,7 @@ def parts_of(place: GroundedTarget, centre: Point, sizes: Sequence[tuple[float, 
     return [centre] * len(sizes)
 
 
-def _rests(point: Point, radius_px: float, box: Box, centre: Point, lift: Lift) -> bool:
+def _rests(point: Point, radius_px: float, box: Box, centre: Point, lift: Deprojector) -> bool:
     """Whether a disc lies wholly on the floor of a place: at one height where that is seen, else within its outline."""
     spots = [point, *((point[0] + radius_px * x, point[1] + radius_px * y) for x, y in ROUND)]
     if not all(lift.inside(spot) and box.contains(spot) for spot in spots):
@@ -112,7 +114,9 @@ def _rests(point: Point, radius_px: float, box: Box, centre: Point, lift: Lift) 
     return all(np.hypot(*((np.array(spot) - box.centre) / half)) <= 1 for spot in spots)
 
 
-def share_px(share: Share, place: GroundedTarget, boxes: Sequence[Box | None], centre: Point, lift: Lift) -> Point:
+def share_px(
+    share: Share, place: GroundedTarget, boxes: Sequence[Box | None], centre: Point, lift: Deprojector
+) -> Point:
     """Where the centre of one of several things goes that share a place [px]."""
     sizes = [half_extents(box, yaw) for box, yaw in zip(boxes, share.yaws_rad, strict=True)]
     return parts_of(place, centre, sizes, lift)[share.index]

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from wonderful_team.core.values import NumberSource
-from wonderful_team.motion.lift import Spot
+from wonderful_team.motion.deprojector import ResolvedPoint
 
 
-def source(role: str, target: str, spot: Spot) -> NumberSource:
+def source(role: str, target: str, spot: ResolvedPoint) -> NumberSource:
     """The record of one point of an action."""
     position = None
     if spot.position_m is not None:

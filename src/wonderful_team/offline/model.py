@@ -5,7 +5,7 @@ from __future__ import annotations
 from wonderful_team.core.caps import Estimate
 from wonderful_team.core.values import Answer, Request, Usage
 from wonderful_team.errors import ModelOutputError, UnsupportedQuestion
-from wonderful_team.models.reshown import with_pictures
+from wonderful_team.models.image_corruption import with_pictures
 from wonderful_team.offline.answers import ANSWERS, SAMPLED
 from wonderful_team.offline.vision import NotSeen, in_plain_light
 
@@ -40,6 +40,6 @@ class OfflineModel:
             value = ANSWERS[kind](question, request.sample) if kind in SAMPLED else ANSWERS[kind](question)
         except NotSeen as error:
             raise ModelOutputError(f"model 'offline' could not answer {request.contract}: {error}") from error
-        value, repairs = request.question.settle(value)
+        value, repairs = request.question.validate(value)
         usage = Usage(calls=1, pictures=len(request.pictures), usd=0.0)
         return Answer(value, usage, MODEL_ID, value.model_dump_json(), 1, "offline", repairs)

@@ -1,6 +1,6 @@
 """The loops of the team: plan and check, ground, act, remember, replan."""
 
-from wonderful_team.planning.config import SETTINGS, Bounds, Members, TeamConfig
-from wonderful_team.planning.team import UNTIL, Team, Until
+from wonderful_team.planning.config import ABLATIONS, Bounds, Members, TeamConfig
+from wonderful_team.planning.team import UNTIL, TeamPolicy, Until
 
-__all__ = ["SETTINGS", "UNTIL", "Bounds", "Members", "Team", "TeamConfig", "Until"]
+__all__ = ["ABLATIONS", "Bounds", "Members", "TeamConfig", "TeamPolicy", "UNTIL", "Until"]

@@ -8,21 +8,21 @@ from dataclasses import replace
 from wonderful_team.contracts import PlanReview, ReviewSteps, StepList, WriteSteps
 from wonderful_team.core.actions import Step
 from wonderful_team.core.pictures import BoxMark, PathMark, Picture, Point, PointMark
-from wonderful_team.core.values import Doubt, GroundedTarget, PlannedAction, View
+from wonderful_team.core.values import Critique, GroundedTarget, PlannedAction, View
 from wonderful_team.motion import ground_actions
-from wonderful_team.planning.desk import Desk
 from wonderful_team.planning.plan_loop import PlanState
 from wonderful_team.planning.scene import SceneShown
+from wonderful_team.planning.session import AgentSession
 
 
 async def write_steps(
-    desk: Desk, scene: SceneShown, state: PlanState, functions: Sequence[str], doubt: str = ""
+    session: AgentSession, scene: SceneShown, state: PlanState, functions: Sequence[str], doubt: str = ""
 ) -> tuple[Step, ...]:
     """The Supervisor's steps."""
     question = WriteSteps(
         scene.task, scene.vocabulary.step_kinds, state.subgoals, state.targets, tuple(functions), doubt
     )
-    written: StepList = await desk.ask(question, stage="act")
+    written: StepList = await session.ask(question, stage="act")
     return written.to_steps()
 
 
@@ -37,7 +37,7 @@ def compute(
 
 
 async def check_steps(
-    desk: Desk,
+    session: AgentSession,
     scene: SceneShown,
     state: PlanState,
     steps: tuple[Step, ...],
@@ -48,20 +48,20 @@ async def check_steps(
     checked: list[str] = []
     while True:
         actions = compute(scene, steps, grounded, paths)
-        if not desk.members.verification:
+        if not session.members.verification:
             return state, steps, actions
         shown = overview_picture(scene, grounded, actions)
-        answer = await desk.ask_whole(
+        answer = await session.ask_whole(
             ReviewSteps(scene.task, state.subgoals, state.targets, steps, shown, tuple(checked)), stage="act"
         )
         review: PlanReview = answer.value
         if review.doubt is None:
             return state, steps, actions
-        if len(state.questions) >= desk.config.bounds.questions:
-            desk.warn(f"Verification still doubts the steps: {review.doubt.question}")
+        if len(state.questions) >= session.config.bounds.questions:
+            session.warn(f"Verification still doubts the steps: {review.doubt.question}")
             return replace(state, verified=False), steps, actions
-        revised = await write_steps(desk, scene, state, tuple(paths), review.doubt.question)
-        doubt = Doubt(
+        revised = await write_steps(session, scene, state, tuple(paths), review.doubt.question)
+        doubt = Critique(
             f"step {review.doubt.about}",
             review.doubt.kind,
             review.doubt.question,

@@ -24,8 +24,8 @@ from wonderful_team.core.geometry import Box
 from wonderful_team.core.pictures import Axes, BoxMark, Picture, Point
 from wonderful_team.core.values import Answer, GroundingEvent, Provenance, Target
 from wonderful_team.images import crop, edge_strips
-from wonderful_team.planning.desk import Desk
 from wonderful_team.planning.scene import SceneShown
+from wonderful_team.planning.session import AgentSession
 from wonderful_team.planning.together import together
 
 BoxFate: TypeAlias = Literal["accepted", "rejected", "exhausted"]
@@ -40,7 +40,7 @@ class Job:
         avoid: Centres that were tried and rejected, in view pixels.
     """
 
-    desk: Desk
+    session: AgentSession
     scene: SceneShown
     target: Target
     number: int
@@ -84,10 +84,12 @@ class Job:
 async def first_judgement(job: Job, box: Box) -> tuple[BoxVerdict, PresenceAnswer | None]:
     """The Checker's first word; in `paper` the edge strips are read at the same time."""
     crop_shown = job.crop_with("crop", box, box, "target")
-    ask_judge = job.desk.ask_whole(JudgeBox(job.target, crop_shown, job.examples), stage="ground", branch=job.target.id)
+    ask_judge = job.session.ask_whole(
+        JudgeBox(job.target, crop_shown, job.examples), stage="ground", branch=job.target.id
+    )
     presence: PresenceAnswer | None = None
-    if job.desk.config.way == "paper":
-        ask_strips = job.desk.ask_whole(
+    if job.session.config.mode == "paper":
+        ask_strips = job.session.ask_whole(
             Presence(job.target, job.strips(box), job.examples), stage="ground", branch=job.target.id
         )
         judged, strips = await together([ask_judge, ask_strips])
@@ -102,7 +104,7 @@ async def first_judgement(job: Job, box: Box) -> tuple[BoxVerdict, PresenceAnswe
 
 async def refine(job: Job, box: Box) -> tuple[BoxFate, Box]:
     """Judge a first box and improve it. Returns its fate and the best box so far, in view pixels."""
-    members = job.desk.members
+    members = job.session.members
     problem, presence = "", None
     if members.checker:
         verdict, presence = await first_judgement(job, box)
@@ -117,7 +119,7 @@ async def refine(job: Job, box: Box) -> tuple[BoxFate, Box]:
 
 async def _move_until_right(job: Job, box: Box, problem: str, presence: PresenceAnswer | None) -> tuple[BoxFate, Box]:
     lines = [_presence_line(presence)] if presence else []
-    for _ in range(job.desk.config.bounds.refinements):
+    for _ in range(job.session.config.bounds.refinements):
         move, after = await _propose(job, box, problem, tuple(lines))
         if move.action == "stop":
             job.tell("verdict", "Mover: it is right as it is", box)
@@ -125,7 +127,7 @@ async def _move_until_right(job: Job, box: Box, problem: str, presence: Presence
         if after is None:
             lines.append(f"{_move_line(move)}: would leave the picture")
             continue
-        if not job.desk.members.checker:
+        if not job.session.members.checker:
             box = after
             lines.append(_move_line(move))
             continue
@@ -135,17 +137,19 @@ async def _move_until_right(job: Job, box: Box, problem: str, presence: Presence
             box, problem = after, ""
         if decision == "take_after_stop":
             return "accepted", box
-    job.tell("verdict", f"not settled after {job.desk.config.bounds.refinements} revisions", box)
+    job.tell("verdict", f"not settled after {job.session.config.bounds.refinements} revisions", box)
     # Without a Checker nobody calls the box wrong: the Mover's last one stands.
-    return ("exhausted" if job.desk.members.checker else "accepted"), box
+    return ("exhausted" if job.session.members.checker else "accepted"), box
 
 
 async def _propose(job: Job, box: Box, problem: str, lines: tuple[str, ...]) -> tuple[BoxMove, Box | None]:
     # The Mover answers in pixels of the crop, so here the axes are labelled in these.
     shown = crop(job.scene.view, box, "crop")
     shown = shown.marked(Axes(), BoxMark(shown.frame.box_to_picture(box)))
-    question = MoveBox(job.target, shown, job.strips(box), problem, lines, not job.desk.members.checker, job.examples)
-    answer: Answer = await job.desk.ask_whole(question, stage="ground", branch=job.target.id)
+    question = MoveBox(
+        job.target, shown, job.strips(box), problem, lines, not job.session.members.checker, job.examples
+    )
+    answer: Answer = await job.session.ask_whole(question, stage="ground", branch=job.target.id)
     move: BoxMove = answer.value
     after = shown.frame.box_to_view(move.apply(question.box)).intersection(job.view_box)
     if move.action != "stop" and after is not None:
@@ -163,7 +167,7 @@ async def _judge_revision(job: Job, before: Box, after: Box) -> str:
         job.crop_with("after", both, after, "after"),
         job.examples,
     )
-    answer = await job.desk.ask_whole(question, stage="ground", branch=job.target.id)
+    answer = await job.session.ask_whole(question, stage="ground", branch=job.target.id)
     verdict: RevisionVerdict = answer.value
     said = {"keep_before": "keep the box before", "take_after_go_on": "better, go on", "take_after_stop": "right, stop"}
     kept = before if verdict.decision == "keep_before" else after

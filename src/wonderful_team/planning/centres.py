@@ -17,8 +17,8 @@ async def propose(job: Job, purpose: Literal["centre", "place"]) -> list[Point]:
     question = LocatePoints(job.target, purpose, job.plan, view, job.scene.views[1:], job.examples, count=1)
     samples: list[Points] = await together(
         [
-            job.desk.ask(question, stage="ground", branch=job.target.id, sample=number)
-            for number in range(job.desk.config.bounds.samples)
+            job.session.ask(question, stage="ground", branch=job.target.id, sample=number)
+            for number in range(job.session.config.bounds.samples)
         ]
     )
     found = [view.frame.point_to_view(point.as_tuple) for sample in samples for point in sample.points]
@@ -33,7 +33,7 @@ async def choose(job: Job, proposals: list[Point], purpose: Literal["centre", "p
     """The best of the proposals, in view pixels; None when none is on the target."""
     view = job.scene.labelled
     marked = view.marked(Candidates(tuple(view.frame.point_to_picture(point) for point in proposals)))
-    choice: MarkChoice = await job.desk.ask(
+    choice: MarkChoice = await job.session.ask(
         ChooseMark(job.target, purpose, job.plan, marked, job.examples), stage="ground", branch=job.target.id
     )
     if choice.number is None:
@@ -47,7 +47,7 @@ async def give_box(job: Job, centre: Point) -> Box | None:
     """A first box round a centre, in view pixels; None when the Manager finds nothing there."""
     view = with_avoided(job)
     marked = view.marked(PointMark(view.frame.point_to_picture(centre), "centre"))
-    answer = await job.desk.ask_whole(
+    answer = await job.session.ask_whole(
         GiveBox(job.target, job.plan, marked, job.examples), stage="ground", branch=job.target.id
     )
     given: BoxAnswer = answer.value

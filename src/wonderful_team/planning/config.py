@@ -8,7 +8,7 @@ from typing import Literal, TypeAlias
 from wonderful_team.agents import Prompts
 from wonderful_team.errors import ConfigError, UnknownNameError
 
-Way: TypeAlias = Literal["lean", "paper"]
+Mode: TypeAlias = Literal["lean", "paper"]
 
 
 @dataclass(frozen=True)
@@ -36,7 +36,7 @@ class Members:
         )
 
 
-SETTINGS: dict[str, Members] = {
+ABLATIONS: dict[str, Members] = {
     "full": Members(),
     "s1": Members(verification=False),
     "s2": Members(checker=False),
@@ -76,8 +76,8 @@ class TeamConfig:
     """Configuration of a Team.
 
     Attributes:
-        way: `lean` (fewest waiting rounds) or `paper` (the algorithms as published).
-        setting: A name of SETTINGS.
+        mode: `lean` (fewest waiting rounds) or `paper` (the algorithms as published).
+        ablation: A name of SETTINGS.
         strict: A plan that Verification did not approve is refused.
         axes: Label the axes of whole views in `lean` too (for models that point badly).
 
@@ -86,19 +86,19 @@ class TeamConfig:
         ConfigError: No such way of working.
     """
 
-    way: Way = "lean"
-    setting: str = "full"
+    mode: Mode = "lean"
+    ablation: str = "full"
     strict: bool = False
     axes: bool = False
     bounds: Bounds = field(default_factory=Bounds)
     prompts: Prompts = field(default_factory=Prompts.default)
 
     def __post_init__(self) -> None:
-        if self.way not in ("lean", "paper"):
-            raise ConfigError(f"way of working {self.way!r}: valid are lean, paper")
-        if self.setting not in SETTINGS:
-            raise UnknownNameError("setting", self.setting, SETTINGS)
+        if self.mode not in ("lean", "paper"):
+            raise ConfigError(f"way of working {self.mode!r}: valid are lean, paper")
+        if self.ablation not in ABLATIONS:
+            raise UnknownNameError("setting", self.ablation, ABLATIONS)
 
     @property
     def members(self) -> Members:
-        return SETTINGS[self.setting]
+        return ABLATIONS[self.ablation]

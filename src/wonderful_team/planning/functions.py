@@ -12,14 +12,14 @@ from wonderful_team.contracts import FunctionCode, PathReview, ReviewPath, Write
 from wonderful_team.core.pictures import BoxMark, PathMark, Point
 from wonderful_team.core.values import GroundedTarget, Subgoal
 from wonderful_team.errors import PlanError
-from wonderful_team.planning.desk import Desk
 from wonderful_team.planning.scene import SceneShown
+from wonderful_team.planning.session import AgentSession
 from wonderful_team.planning.together import together
 from wonderful_team.sandbox import SandboxError, run_path
 
 
 async def write_functions(
-    desk: Desk, scene: SceneShown, subgoals: Sequence[Subgoal], grounded: Mapping[str, GroundedTarget]
+    session: AgentSession, scene: SceneShown, subgoals: Sequence[Subgoal], grounded: Mapping[str, GroundedTarget]
 ) -> dict[str, tuple[Point, ...]]:
     """A path in view pixels for every subgoal that asks for one.
 
@@ -28,14 +28,14 @@ async def write_functions(
     """
     asking = [subgoal for subgoal in subgoals if subgoal.function]
     if asking and "follow" not in scene.vocabulary.step_kinds:
-        desk.warn(f"subgoal {asking[0].id} asks for a helper function, but this world follows no paths")
+        session.warn(f"subgoal {asking[0].id} asks for a helper function, but this world follows no paths")
         return {}
-    paths = await together([_write_one(desk, scene, subgoal, grounded) for subgoal in asking])
+    paths = await together([_write_one(session, scene, subgoal, grounded) for subgoal in asking])
     return {subgoal.id: path for subgoal, path in zip(asking, paths, strict=True)}
 
 
 async def _write_one(
-    desk: Desk, scene: SceneShown, subgoal: Subgoal, grounded: Mapping[str, GroundedTarget]
+    session: AgentSession, scene: SceneShown, subgoal: Subgoal, grounded: Mapping[str, GroundedTarget]
 ) -> tuple[Point, ...]:
     view = scene.labelled
     boxes = {
@@ -45,8 +45,8 @@ async def _write_one(
     }
     shown = view.marked(*(BoxMark(box, "target", name) for name, box in boxes.items()))
     error, code = "", ""
-    for _ in range(desk.config.bounds.functions):
-        written: FunctionCode = await desk.ask(
+    for _ in range(session.config.bounds.functions):
+        written: FunctionCode = await session.ask(
             WriteFunction(subgoal, shown, boxes, error, code), stage="act", branch=subgoal.id
         )
         code = written.code
@@ -55,14 +55,14 @@ async def _write_one(
         except SandboxError as problem:
             error = str(problem)
             continue
-        review: PathReview = await desk.ask(
+        review: PathReview = await session.ask(
             ReviewPath(subgoal, view.marked(PathMark(path, subgoal.id))), stage="act", branch=subgoal.id
         )
         if review.accepted:
             return tuple(view.frame.point_to_view(point) for point in path)
         error = f"the path was drawn and refused: {review.problem}"
     raise PlanError(
-        f"no helper function for {subgoal.id} was accepted in {desk.config.bounds.functions} versions; "
+        f"no helper function for {subgoal.id} was accepted in {session.config.bounds.functions} versions; "
         f"the last problem: {error}",
         stage="function",
     )

@@ -17,9 +17,9 @@ from wonderful_team.core.pictures import Point
 from wonderful_team.core.values import GroundedTarget, Provenance, Subgoal, Target
 from wonderful_team.planning.boxes import Job, refine
 from wonderful_team.planning.centres import choose, give_box, propose
-from wonderful_team.planning.desk import Desk
 from wonderful_team.planning.points import choose_points
 from wonderful_team.planning.scene import SceneShown, plan_lines
+from wonderful_team.planning.session import AgentSession
 from wonderful_team.planning.together import together
 
 Fate: TypeAlias = Literal["found", "absent", "gave_up"]
@@ -27,10 +27,14 @@ MOVED_SHARE = 0.15
 """When refining moved a box's centre by more than this share of its size, a point read with the old box is stale."""
 
 
-def make_jobs(desk: Desk, scene: SceneShown, targets: Sequence[Target], subgoals: Sequence[Subgoal]) -> list[Job]:
+def make_jobs(
+    session: AgentSession, scene: SceneShown, targets: Sequence[Target], subgoals: Sequence[Subgoal]
+) -> list[Job]:
     """One job per target."""
     lines = plan_lines(subgoals)
-    return [Job(desk, scene, target, number, lines, scene.examples([target])) for number, target in enumerate(targets)]
+    return [
+        Job(session, scene, target, number, lines, scene.examples([target])) for number, target in enumerate(targets)
+    ]
 
 
 async def ground_paper(jobs: Sequence[Job]) -> dict[str, GroundedTarget]:
@@ -48,7 +52,7 @@ async def _ground_one(job: Job) -> GroundedTarget:
 async def ground_object(job: Job) -> GroundedTarget:
     """Centres, choice, box, Checker and Mover; fresh centres when a box is rejected."""
     best: Box | None = None
-    for _ in range(1 + job.desk.config.bounds.new_centres):
+    for _ in range(1 + job.session.config.bounds.new_centres):
         proposals = await propose(job, "centre")
         if not proposals:
             return _end(job, "absent" if best is None else "gave_up", best)
@@ -71,7 +75,7 @@ async def ground_object(job: Job) -> GroundedTarget:
 
 async def ground_area(job: Job) -> GroundedTarget:
     """Points proposed several times, and one chosen."""
-    for _ in range(1 + job.desk.config.bounds.new_centres):
+    for _ in range(1 + job.session.config.bounds.new_centres):
         proposals = await propose(job, "place")
         if not proposals:
             return _end(job, "absent", None)
@@ -84,11 +88,11 @@ async def ground_area(job: Job) -> GroundedTarget:
 
 async def read_scene(jobs: Sequence[Job]) -> tuple[SceneReading, Provenance]:
     """`lean`, first round: boxes and points of all targets in one answer."""
-    desk, scene = jobs[0].desk, jobs[0].scene
+    session, scene = jobs[0].session, jobs[0].scene
     targets = tuple(job.target for job in jobs)
-    view = scene.labelled if desk.config.axes else scene.views[0]
+    view = scene.labelled if session.config.axes else scene.views[0]
     question = ReadScene(targets, jobs[0].plan, view, scene.views[1:], scene.examples(targets))
-    answer = await desk.ask_whole(question, stage="ground")
+    answer = await session.ask_whole(question, stage="ground")
     return answer.value, answer.provenance
 
 
@@ -126,7 +130,7 @@ async def ground_by_supervisor(jobs: Sequence[Job]) -> dict[str, GroundedTarget]
     async def one(job: Job) -> GroundedTarget:
         view = job.scene.labelled
         question = LocatePoints(job.target, "centre", job.plan, view, job.scene.views[1:], job.examples, count=1)
-        answer: Points = await job.desk.ask(question, stage="ground", branch=job.target.id, role="supervisor")
+        answer: Points = await job.session.ask(question, stage="ground", branch=job.target.id, role="supervisor")
         if not answer.points:
             job.tell("absent", "the Supervisor says it is not in the picture")
             return _end(job, "absent", None)
@@ -143,7 +147,7 @@ def _end(job: Job, status: Fate, box: Box | None, points: Mapping[str, Point] | 
 
 def _remember(job: Job, grounded: GroundedTarget) -> None:
     said = job.history[-1].text if job.history else ""
-    job.desk.remember(
+    job.session.remember(
         "manager",
         "ground",
         f"Where is {job.target.id}: {job.target.words}?",

@@ -9,12 +9,12 @@ from wonderful_team.agents import step_words
 from wonderful_team.contracts import Advice, JudgeOutcome, Outcome, Replan
 from wonderful_team.core.values import Observation, Plan, StepReport, SubgoalRun, Verdict
 from wonderful_team.planning.acting import mark_targets
-from wonderful_team.planning.desk import Desk
 from wonderful_team.planning.scene import SceneShown, show_views
+from wonderful_team.planning.session import AgentSession
 
 
 async def judge_outcome(
-    desk: Desk, scene: SceneShown, plan: Plan, now: Observation, executed: Sequence[SubgoalRun]
+    session: AgentSession, scene: SceneShown, plan: Plan, now: Observation, executed: Sequence[SubgoalRun]
 ) -> tuple[Verdict, ...]:
     """A verdict per subgoal of the plan. `scene` is the one the plan was made from."""
     before = mark_targets(scene.views[0], scene.view, plan.grounded)
@@ -27,14 +27,14 @@ async def judge_outcome(
         show_views(now),
         measured_lines(executed),
     )
-    outcome: Outcome = await desk.ask(question, stage="replan")
+    outcome: Outcome = await session.ask(question, stage="replan")
     verdicts = outcome.to_verdicts()
-    desk.stage("judge", ", ".join(f"{v.subgoal} {v.status.replace('_', ' ')}" for v in verdicts))
+    session.stage("judge", ", ".join(f"{v.subgoal} {v.status.replace('_', ' ')}" for v in verdicts))
     return verdicts
 
 
 async def advise(
-    desk: Desk,
+    session: AgentSession,
     scene_now: SceneShown,
     plan: Plan,
     verdicts: tuple[Verdict, ...],
@@ -42,16 +42,16 @@ async def advise(
     replans_left: int,
 ) -> Advice:
     """Whether to stop, and what the next plan should do differently."""
-    desk.remember(
+    session.remember(
         "replanner",
         "replan",
         "What became of the subgoals?",
         "; ".join(f"{v.subgoal} {v.status}" + (f" ({v.cause})" if v.cause else "") for v in verdicts),
     )
-    await desk.memory.border()
+    await session.memory.barrier()
     question = Replan(scene_now.task, plan.subgoals, verdicts, measured_lines(executed), replans_left)
-    advice: Advice = await desk.ask(question, stage="replan")
-    desk.stage("replan", f"{advice.decision.replace('_', ' ')}: {advice.cause or 'all subgoals are done'}")
+    advice: Advice = await session.ask(question, stage="replan")
+    session.stage("replan", f"{advice.decision.replace('_', ' ')}: {advice.cause or 'all subgoals are done'}")
     return advice
 
 

@@ -53,7 +53,7 @@ class SystemMemory:
         """Start an update; `order` is (stage, target) and decides where its entry will stand."""
         self._pending.append((order, asyncio.ensure_future(job)))
 
-    async def border(self) -> None:
+    async def barrier(self) -> None:
         """Wait for all updates under way and make their entries visible, in order."""
         pending, self._pending = sorted(self._pending, key=lambda item: item[0]), []
         try:

@@ -20,10 +20,10 @@ from wonderful_team.contracts import (
     TargetList,
 )
 from wonderful_team.core.text import counted
-from wonderful_team.core.values import Answer, Doubt, Subgoal, Target
+from wonderful_team.core.values import Answer, Critique, Subgoal, Target
 from wonderful_team.errors import NeedsClarification
-from wonderful_team.planning.desk import Desk
 from wonderful_team.planning.scene import SceneShown
+from wonderful_team.planning.session import AgentSession
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,37 +35,37 @@ class PlanState:
     mode: Literal["full", "one_step"]
     first_draft: tuple[Subgoal, ...]
     verified: bool = False
-    questions: tuple[Doubt, ...] = ()
+    questions: tuple[Critique, ...] = ()
 
 
-async def draft(desk: Desk, scene: SceneShown, advice: Sequence[str] = ()) -> PlanState:
+async def draft(session: AgentSession, scene: SceneShown, advice: Sequence[str] = ()) -> PlanState:
     """The Supervisor's first draft.
 
     Raises:
         NeedsClarification: Neither picture nor instruction settles what is meant.
     """
-    with_targets = desk.config.way == "lean"
+    with_targets = session.config.mode == "lean"
     question = DraftPlan(scene.task, scene.vocabulary.step_kinds, with_targets, tuple(advice))
-    written: PlanDraft = await desk.ask(question, stage="plan")
+    written: PlanDraft = await session.ask(question, stage="plan")
     if written.clarification is not None:
         raise NeedsClarification(written.clarification.question, written.clarification.choices)
     subgoals = written.to_subgoals()
     state = PlanState(subgoals, written.to_targets() if with_targets else (), written.mode, subgoals)
-    desk.stage("draft", _count(state))
+    session.stage("draft", _count(state))
     return state
 
 
-async def verify(desk: Desk, scene: SceneShown, state: PlanState) -> PlanState:
+async def verify(session: AgentSession, scene: SceneShown, state: PlanState) -> PlanState:
     """Verification's loop; with Verification switched off, the draft as it is."""
-    if not desk.members.verification:
-        desk.stage("checked", "not checked: Verification is switched off")
+    if not session.members.verification:
+        session.stage("checked", "not checked: Verification is switched off")
         return state
     checked: list[str] = []
     passed: set[str] = set()
     overruled = False
     while True:
         under_check = _next_subgoal(state, passed)
-        review = await desk.ask_whole(
+        review = await session.ask_whole(
             ReviewPlan(
                 scene.task, scene.vocabulary.step_kinds, state.subgoals, state.targets, under_check, tuple(checked)
             ),
@@ -81,24 +81,26 @@ async def verify(desk: Desk, scene: SceneShown, state: PlanState) -> PlanState:
                     continue
             state = replace(state, verified=True)
             break
-        if len(state.questions) >= desk.config.bounds.questions:
-            desk.warn(
+        if len(state.questions) >= session.config.bounds.questions:
+            session.warn(
                 f"Verification still doubts after {counted(len(state.questions), 'question')}: {verdict.doubt.question}"
             )
             break
-        doubt = Doubt(verdict.doubt.about, verdict.doubt.kind, verdict.doubt.question, provenance=review.provenance)
-        state, answered = await _resolve(desk, scene, state, doubt)
+        doubt = Critique(verdict.doubt.about, verdict.doubt.kind, verdict.doubt.question, provenance=review.provenance)
+        state, answered = await _resolve(session, scene, state, doubt)
         checked.append(f"asked about {doubt.about}: {doubt.question} Answer: {answered.answer}")
         # A revised plan is a new plan: each of its subgoals may be checked once more.
         overruled = not answered.changed
         passed = set() if answered.changed else passed | ({under_check} if under_check else set())
-    desk.stage("checked", _told(state))
+    session.stage("checked", _told(state))
     return state
 
 
-async def _resolve(desk: Desk, scene: SceneShown, state: PlanState, doubt: Doubt) -> tuple[PlanState, Doubt]:
-    with_targets = desk.config.way == "lean"
-    reply: Answer = await desk.ask_whole(
+async def _resolve(
+    session: AgentSession, scene: SceneShown, state: PlanState, doubt: Critique
+) -> tuple[PlanState, Critique]:
+    with_targets = session.config.mode == "lean"
+    reply: Answer = await session.ask_whole(
         RevisePlan(scene.task, scene.vocabulary.step_kinds, state.subgoals, state.targets, doubt, with_targets),
         stage="plan",
     )
@@ -120,11 +122,11 @@ async def _resolve(desk: Desk, scene: SceneShown, state: PlanState, doubt: Doubt
     )
 
 
-async def extract_targets(desk: Desk, scene: SceneShown, state: PlanState) -> PlanState:
+async def extract_targets(session: AgentSession, scene: SceneShown, state: PlanState) -> PlanState:
     """In `paper`: list the targets of the approved plan, and which subgoal needs which."""
-    if desk.config.way == "lean" or not state.subgoals:
+    if session.config.mode == "lean" or not state.subgoals:
         return state
-    listed: TargetList = await desk.ask(ExtractTargets(scene.task, state.subgoals), stage="plan")
+    listed: TargetList = await session.ask(ExtractTargets(scene.task, state.subgoals), stage="plan")
     needs = {need.subgoal: tuple(need.targets) for need in listed.needs}
     return replace(
         state,

@@ -52,7 +52,7 @@ async def _ask(
     job: Job, shown: Picture, shown_box: Box, candidates: tuple[Point, ...], role: PointRole, *, fine: bool
 ) -> Point:
     marked = shown.marked(job.view_axes, BoxMark(shown_box), Candidates(candidates))
-    choice: PointChoice = await job.desk.ask(
+    choice: PointChoice = await job.session.ask(
         ChoosePoint(job.target, role, job.plan, marked, fine, job.examples), stage="ground", branch=job.target.id
     )
     return shown.frame.point_to_view(candidates[choice.number - 1])

@@ -34,14 +34,14 @@ from wonderful_team.errors import (
     WonderfulTeamError,
 )
 from wonderful_team.models.budget import Budget
-from wonderful_team.models.door import Door
+from wonderful_team.models.client import ModelClient
 from wonderful_team.planning import acting, grounding, judging, plan_loop
 from wonderful_team.planning.config import TeamConfig
-from wonderful_team.planning.desk import Desk, settle
 from wonderful_team.planning.functions import write_functions
 from wonderful_team.planning.looking import first_part, is_uncertain, looking_lines
 from wonderful_team.planning.plan_loop import PlanState
 from wonderful_team.planning.scene import SceneShown
+from wonderful_team.planning.session import AgentSession, settle
 from wonderful_team.planning.together import both
 
 Until: TypeAlias = Literal["draft", "checked", "grounded", "actions"]
@@ -55,7 +55,7 @@ class _Progress:
     plan: Plan
 
 
-class Team:
+class TeamPolicy:
     """A team of agents over one model, or over one model per role.
 
     Args:
@@ -76,45 +76,45 @@ class Team:
         deadline_s: float = 300.0,
     ) -> None:
         self.config = config or TeamConfig()
-        self.name = "team" if self.config.way == "lean" else "team:paper"
-        if self.config.setting != "full":
-            self.name += f":{self.config.setting}"
+        self.name = "team" if self.config.mode == "lean" else "team:paper"
+        if self.config.ablation != "full":
+            self.name += f":{self.config.ablation}"
         self._caps = caps or Caps()
-        self._door = Door(
+        self._client = ModelClient(
             model,
             budget=Budget(self._caps),
             subscribers=subscribers,
             concurrency=concurrency,
             deadline_s=deadline_s,
         )
-        self._desk: Desk | None = None
+        self._session: AgentSession | None = None
         self._last: tuple[SceneShown, Plan] | None = None
         self._looking = False
 
     @property
     def usage_by_role(self) -> Mapping[str, Usage]:
         """What this trial cost so far."""
-        return dict(self._door.budget.by_role)
+        return dict(self._client.budget.by_role)
 
     @property
     def usage(self) -> Usage:
-        return self._door.budget.spent
+        return self._client.budget.spent
 
     @property
     def model_name(self) -> str:
         """Which model serves the team, or which role has which."""
-        return self._door.model_name
+        return self._client.model_name
 
     @property
     def setting(self) -> Mapping[str, str]:
         """How the team is set up, for the record."""
         config = self.config
-        return {"way": config.way, "members": config.setting, "prompts": config.prompts.hash}
+        return {"way": config.mode, "members": config.ablation, "prompts": config.prompts.hash}
 
     def reset(self) -> None:
         """Forget the trial: notebooks, memory, budget."""
-        self._door.budget = Budget(self._caps)
-        self._desk = self._last = None
+        self._client.budget = Budget(self._caps)
+        self._session = self._last = None
         self._looking = False
 
     async def make_plan(
@@ -138,14 +138,14 @@ class Team:
         if until not in UNTIL:
             raise ConfigError(f"until {until!r}: valid are {', '.join(UNTIL)}")
         scene = SceneShown(observation, instruction, vocabulary, limits)
-        desk = self._desk or Desk(self._door, self.config, instruction.text)
-        self._desk = desk
+        session = self._session or AgentSession(self._client, self.config, instruction.text)
+        self._session = session
         start = Plan(instruction, "failed", keep_out=tuple(keep_out), scene_hash=observation.hash, parent=parent)
         progress = _Progress(start)
         try:
-            plan = await self._plan(desk, scene, progress, until, tuple(advice))
+            plan = await self._plan(session, scene, progress, until, tuple(advice))
             # What Memory is still writing belongs to this plan: whether it is kept must not be a matter of luck.
-            await desk.memory.border()
+            await session.memory.barrier()
         except (
             PlanError,
             NotFoundError,
@@ -156,85 +156,85 @@ class Team:
         ) as error:
             plan = _failed(progress.plan, error)
         finally:
-            await settle(desk)
-        desk.attempt += 1
+            await settle(session)
+        session.attempt += 1
         self._last = (scene, plan)
-        self._door.tell("plan", plan.id, plan)
+        self._client.tell("plan", plan.id, plan)
         return plan
 
     async def _plan(
-        self, desk: Desk, scene: SceneShown, progress: _Progress, until: Until, advice: tuple[str, ...]
+        self, session: AgentSession, scene: SceneShown, progress: _Progress, until: Until, advice: tuple[str, ...]
     ) -> Plan:
         absent: list[GroundedTarget] = []
         for _ in range(1 + self.config.bounds.returns):
-            state = await plan_loop.draft(desk, scene, advice)
+            state = await plan_loop.draft(session, scene, advice)
             progress.plan = _with_state(progress.plan, state, "draft")
             if until == "draft":
                 return progress.plan
-            state = await plan_loop.verify(desk, scene, state)
+            state = await plan_loop.verify(session, scene, state)
             progress.plan = _with_state(progress.plan, state, "checked")
             if self.config.strict and not state.verified:
                 return _refused(progress.plan, "plan")
             if until == "checked":
                 return progress.plan
-            state = await plan_loop.extract_targets(desk, scene, state)
+            state = await plan_loop.extract_targets(session, scene, state)
             if absent and not _asks_anew(state, absent):
                 break
             progress.plan = _with_state(progress.plan, state, "checked")
-            self._remember_plan(desk, state)
+            self._remember_plan(session, state)
             if not state.subgoals:
                 return replace(
                     progress.plan, status="planned", message="nothing to do: the instruction is already fulfilled"
                 )
-            plan, absent = await self._ground_and_act(desk, scene, progress, state, until)
+            plan, absent = await self._ground_and_act(session, scene, progress, state, until)
             if not absent:
                 return plan
             advice = tuple(f"{item.target.id} ({item.target.words}) was not found in the picture." for item in absent)
-            desk.warn("; ".join(advice) + " The plan goes back to the Supervisor.")
+            session.warn("; ".join(advice) + " The plan goes back to the Supervisor.")
         raise NotFoundError("; ".join(f"{item.target.id} not found: {item.target.words}" for item in absent))
 
     async def _ground_and_act(
-        self, desk: Desk, scene: SceneShown, progress: _Progress, state: PlanState, until: Until
+        self, session: AgentSession, scene: SceneShown, progress: _Progress, state: PlanState, until: Until
     ) -> tuple[Plan, list[GroundedTarget]]:
-        jobs = grounding.make_jobs(desk, scene, state.targets, state.subgoals)
-        lean = self.config.way == "lean" and desk.members.manager
+        jobs = grounding.make_jobs(session, scene, state.targets, state.subgoals)
+        lean = self.config.mode == "lean" and session.members.manager
         needs_paths = any(subgoal.function for subgoal in state.subgoals)
         steps = None
         if lean:
             reading, provenance = await grounding.read_scene(jobs)
-            await desk.memory.border()
+            await session.memory.barrier()
             settling = grounding.settle_reading(jobs, reading, provenance)
             if until == "actions" and not needs_paths and all(item.found for item in reading.targets):
                 # Steps name targets, not numbers: they are written while the boxes are judged.
-                grounded, steps = await both(settling, acting.write_steps(desk, scene, state, ()))
+                grounded, steps = await both(settling, acting.write_steps(session, scene, state, ()))
             else:
                 grounded = await settling
-        elif desk.members.manager:
+        elif session.members.manager:
             grounded = await grounding.ground_paper(jobs)
         else:
             grounded = await grounding.ground_by_supervisor(jobs)
         progress.plan = replace(progress.plan, grounded=grounded, status="grounded")
-        desk.stage("grounded", "   ".join(f"{name} {_named(item)}" for name, item in grounded.items()))
+        session.stage("grounded", "   ".join(f"{name} {_named(item)}" for name, item in grounded.items()))
         absent = [item for item in grounded.values() if item.status != "found"]
         if absent or until == "grounded":
             return progress.plan, absent
         if not lean:
-            await desk.memory.border()
-        paths: dict[str, tuple[Point, ...]] = await write_functions(desk, scene, state.subgoals, grounded)
+            await session.memory.barrier()
+        paths: dict[str, tuple[Point, ...]] = await write_functions(session, scene, state.subgoals, grounded)
         if steps is None:
-            steps = await acting.write_steps(desk, scene, state, tuple(paths))
+            steps = await acting.write_steps(session, scene, state, tuple(paths))
         progress.plan = replace(progress.plan, steps=steps)
-        state, steps, actions = await acting.check_steps(desk, scene, state, steps, grounded, paths)
+        state, steps, actions = await acting.check_steps(session, scene, state, steps, grounded, paths)
         plan = replace(_with_state(progress.plan, state, "planned"), steps=steps, actions=actions)
         if self.config.strict and not state.verified:
             plan = _refused(plan, "steps")
         pixels = " (no camera given: pixels only)" if any(item.action is None for item in actions) else ""
-        desk.stage("actions", counted(len(actions), "action") + pixels)
+        session.stage("actions", counted(len(actions), "action") + pixels)
         return plan, []
 
-    def _remember_plan(self, desk: Desk, state: PlanState) -> None:
+    def _remember_plan(self, session: AgentSession, state: PlanState) -> None:
         plan = "; ".join(f"{subgoal.id}: {subgoal.text}" for subgoal in state.subgoals) or "nothing to do"
-        desk.remember("supervisor", "plan", "Which plan was approved?", plan)
+        session.remember("supervisor", "plan", "Which plan was approved?", plan)
 
     async def decide(self, situation: Situation) -> Decision:
         """Policy: plan at first; after execution judge, and replan while allowed."""
@@ -249,11 +249,11 @@ class Team:
         scene, plan = self._last
         if situation.refused is not None:
             return await self._after_refusal(situation, plan)
-        assert self._desk is not None
+        assert self._session is not None
         if looking and all(report.executed for run in situation.executed for report in run.reports):
             # Not judged first: the new plan holds what is left to do in the new picture.
             return await self._next_plan(situation, looking_lines(plan), plan)
-        verdicts = await judging.judge_outcome(self._desk, scene, plan, situation.observation, situation.executed)
+        verdicts = await judging.judge_outcome(self._session, scene, plan, situation.observation, situation.executed)
         if all(verdict.status == "done" for verdict in verdicts):
             return Done("every subgoal is done", verdicts)
         causes = "; ".join(
@@ -262,7 +262,7 @@ class Team:
         if situation.replans_left <= 0:
             return GaveUp(f"no replans left; {causes}", "execution", plan, verdicts)
         now = SceneShown(situation.observation, situation.instruction, situation.vocabulary, situation.limits)
-        advice = await judging.advise(self._desk, now, plan, verdicts, situation.executed, situation.replans_left)
+        advice = await judging.advise(self._session, now, plan, verdicts, situation.executed, situation.replans_left)
         if advice.decision == "done":
             return Done(advice.reasoning, verdicts)
         if advice.decision == "give_up":
@@ -279,7 +279,7 @@ class Team:
         return await self._next_plan(situation, tuple(f"The safety gate refused: {reason}" for reason in reasons), plan)
 
     def _take_over(self, situation: Situation, plan: Plan) -> Decision:
-        self._desk = Desk(self._door, self.config, situation.instruction.text, attempt=1)
+        self._session = AgentSession(self._client, self.config, situation.instruction.text, attempt=1)
         scene = SceneShown(situation.observation, situation.instruction, situation.vocabulary, situation.limits)
         self._last = (scene, plan)
         return Act(plan.actions, plan)
@@ -304,11 +304,11 @@ class Team:
             return GaveUp(plan.message, plan.stage or "plan", plan, verdicts)
         if not plan.actions:
             return Done(plan.message, verdicts)
-        if situation.looks_left > 0 and is_uncertain(plan):
+        if situation.reobserve_left > 0 and is_uncertain(plan):
             self._looking = True
             first = first_part(plan)
             self._last = None if self._last is None else (self._last[0], first)
-            return Act(first.actions, first, verdicts, look=True)
+            return Act(first.actions, first, verdicts, reobserve=True)
         return Act(plan.actions, plan, verdicts)
 
 

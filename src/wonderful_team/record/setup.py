@@ -11,7 +11,9 @@ from wonderful_team.core.values import NO_WORKSPACE, KeepOut, Limits, Target
 from wonderful_team.errors import ConfigError
 from wonderful_team.record.values_file import decode, encode
 
-LATER: Mapping[str, Any] = {"looks": 0}
+RENAMED = {"looks": "reobserve"}
+"""Fields that records of earlier releases call otherwise."""
+LATER: Mapping[str, Any] = {"reobserve": 0}
 """Fields that records of earlier releases lack, and what those runs did."""
 
 
@@ -35,7 +37,7 @@ class Setup:
     scene: str = ""
     seed: int | None = None
     replans: int = 0
-    looks: int = 0
+    reobserve: int = 0
     plan: str | None = None
     scored: bool = True
 
@@ -64,7 +66,7 @@ def read_setup(record: Mapping[str, Any], where: str) -> Setup:
     if told is None:
         raise ConfigError(f"{where}: this record does not say how it was called, so it cannot be run again")
     try:
-        setup = decode({**LATER, **told}, Setup)
+        setup = decode({**LATER, **{RENAMED.get(key, key): value for key, value in told.items()}}, Setup)
     except (ValueError, ConfigError) as error:
         raise ConfigError(f"{where}: the set-up in the record cannot be read: {error}") from error
     assert isinstance(setup, Setup)

@@ -40,7 +40,7 @@ def situations(folder: Path, record: Record, setup: Setup) -> Iterator[Situation
             executed=tuple(_runs(folder, record, before, now)),
             refused=_refusal(record["planner"]["gates"][before["gates"] : now["gates"]]),
             plan=recorded_plan(folder, record, setup.plan) if number == 0 and setup.plan is not None else None,
-            looks_left=asked["looks_left"],
+            reobserve_left=asked["looks_left"],
             advice=asked.get("advice", ""),
         )
         before = now
@@ -56,14 +56,14 @@ def _asked(record: Record, setup: Setup) -> list[dict[str, Any]]:
         ended = record["state"] == "finished" and (record["outcome"] or {}).get("stage") not in ("interrupted", "crash")
         return list(planner["asked"] if ended else planner["asked"][: len(planner["decisions"])])
     found: list[dict[str, Any]] = []
-    attempt, looks = 0, setup.looks
+    attempt, reobserve = 0, setup.reobserve
     for decision in planner["decisions"]:
         where = planner["observations"][decision["so_far"]["observations"] - 1]["where"]
         if found and where == "look":
-            looks -= 1
+            reobserve -= 1
         elif found:
             attempt += 1
-        counts = {"attempt": attempt, "replans_left": setup.replans - attempt, "looks_left": looks}
+        counts = {"attempt": attempt, "replans_left": setup.replans - attempt, "looks_left": reobserve}
         found.append({**counts, "so_far": decision["so_far"]})
     return found
 

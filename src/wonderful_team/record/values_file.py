@@ -16,6 +16,9 @@ from PIL import Image
 
 from wonderful_team.core.values import View
 
+WRITTEN = {"Critique": "Doubt"}
+"""Classes that files call by the name of an earlier release."""
+
 
 def encode(value: Any) -> Any:
     """A JSON-ready copy. A View keeps its pixels as PNG text; its depth and camera are left out.
@@ -44,10 +47,16 @@ def encode(value: Any) -> Any:
             }
     if is_dataclass(value):
         return {
-            "type": type(value).__name__,
+            "type": written_name(type(value)),
             **{item.name: encode(getattr(value, item.name)) for item in fields(value)},
         }
     raise TypeError(f"no JSON form for {type(value).__name__}")
+
+
+def written_name(kind: Any) -> str:
+    """What files call a class."""
+    name = str(getattr(kind, "__name__", ""))
+    return WRITTEN.get(name, name)
 
 
 def decode(value: Any, hint: Any, where: str = "") -> Any:
@@ -106,7 +115,7 @@ def _decode_union(value: Any, arguments: tuple[Any, ...], place: str) -> Any:
         return None
     named = value.get("type") if isinstance(value, Mapping) else None
     for option in arguments:
-        if is_dataclass(option) and getattr(option, "__name__", "") == named:
+        if is_dataclass(option) and written_name(option) == named:
             return decode(value, option, place)
     errors = []
     for option in arguments:
@@ -129,7 +138,7 @@ def _decode_tuple(value: Any, arguments: tuple[Any, ...], place: str) -> tuple[A
 
 
 def _decode_dataclass(value: Any, kind: Any, place: str) -> Any:
-    name = kind.__name__
+    name = written_name(kind)
     _require(isinstance(value, Mapping) and value.get("type") == name, value, place, f"an object of type {name!r}")
     hints = _hints(kind)
     names = [item.name for item in fields(kind)]

@@ -1,6 +1,6 @@
 """Names to things: models, methods, worlds and tasks. The only place where a string picks an implementation."""
 
-from wonderful_team.registry.methods import METHODS, SETTINGS, TeamWay, load_method, team_way
+from wonderful_team.registry.methods import ABLATIONS, METHODS, TeamMode, load_method, team_mode
 from wonderful_team.registry.models import DEFAULT_ROLE, MODEL_FORMS, MODELS, make_model, make_models, model_label
 from wonderful_team.registry.worlds import (
     WORLDS,
@@ -15,12 +15,12 @@ from wonderful_team.registry.worlds import (
 )
 
 __all__ = [
+    "ABLATIONS",
     "DEFAULT_ROLE",
     "METHODS",
     "MODELS",
     "MODEL_FORMS",
-    "SETTINGS",
-    "TeamWay",
+    "TeamMode",
     "WORLDS",
     "check_ready",
     "load_method",
@@ -34,5 +34,5 @@ __all__ = [
     "task_made_of",
     "task_names",
     "task_partitions",
-    "team_way",
+    "team_mode",
 ]

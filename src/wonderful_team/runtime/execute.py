@@ -22,11 +22,11 @@ from wonderful_team.core.values import (
 from wonderful_team.errors import ConfigError
 from wonderful_team.runtime.approval import Approval, Approver, Declined, Proposal
 from wonderful_team.runtime.course import Stage, stages_of
-from wonderful_team.runtime.freshness import freshness_checks, touched, watched
 from wonderful_team.runtime.gate import check_gate
-from wonderful_team.runtime.progress import Ending, Progress
 from wonderful_team.runtime.read_plan_checks import read_plan_checks
+from wonderful_team.runtime.rollout_log import RolloutEnd, RolloutLog
 from wonderful_team.runtime.seen_checks import still_free_checks
+from wonderful_team.runtime.staleness import staleness_checks, touched, watched
 
 
 class Execution:
@@ -48,7 +48,7 @@ class Execution:
     def __init__(
         self,
         world: World,
-        progress: Progress,
+        progress: RolloutLog,
         approval: Approval | Approver | None,
         max_age_s: float | None,
         page: Callable[[], Path | None] | None = None,
@@ -66,7 +66,7 @@ class Execution:
 
     def run(
         self, decision: Act, then: Observation | None, horizon: int | None, *, read: ReadPlan | None = None
-    ) -> Ending | None:
+    ) -> RolloutEnd | None:
         """Gate and execute; None when all actions ran, else why not. `final` when no further attempt makes sense.
 
         Args:
@@ -85,15 +85,15 @@ class Execution:
         self._progress.observed("before", now)
         return self._run_all(decision, then or now, now, horizon, read)
 
-    def _refused_ending(self, report: GateReport, read: ReadPlan | None) -> Ending:
+    def _refused_ending(self, report: GateReport, read: ReadPlan | None) -> RolloutEnd:
         if self.declined is not None and not (self.declined.because and read is None):
             by = f" ({self.declined.by})" if self.declined.by else ""
             why = f": {self.declined.because}" if self.declined.because else ""
-            return Ending("failure", "gate", f"you declined{by}{why}; nothing moved", final=True)
+            return RolloutEnd("failure", "gate", f"you declined{by}{why}; nothing moved", final=True)
         # A consent that was given beforehand is to one plan: no other plan could be admitted.
         final = read is not None or (isinstance(self._approval, Approval) and _only_consent(report))
         reason = "refused by the safety gate: " + "; ".join(report.reasons)
-        return Ending("failure", "gate", reason, final=final)
+        return RolloutEnd("failure", "gate", reason, final=final)
 
     def _gate(self, decision: Act, then: Observation | None, read: ReadPlan | None) -> tuple[Observation, GateReport]:
         """The scene just before motion, and what the gate says."""
@@ -146,31 +146,31 @@ class Execution:
 
     def _run_all(
         self, decision: Act, then: Observation, now: Observation, horizon: int | None, read: ReadPlan | None
-    ) -> Ending | None:
+    ) -> RolloutEnd | None:
         actions, plan = decision.actions, decision.plan
-        excused: list[Box] = []
+        expected_change: list[Box] = []
         stages = stages_of(actions, plan, now.main, self._world.limits)
         last = before = now
         reports: list[StepReport] = []
         for index, planned in enumerate(actions):
             if horizon is not None and self._progress.executed >= horizon:
                 self._close(actions[index - 1], before, last, reports)
-                return Ending(
+                return RolloutEnd(
                     None, "execution", f"the world's horizon of {counted(horizon, 'action')} is reached", final=True
                 )
-            if index > 0 and not self._still_fresh(planned, index, plan, then, last, excused, stages[index]):
+            if index > 0 and not self._still_fresh(planned, index, plan, then, last, expected_change, stages[index]):
                 self._close(actions[index - 1], before, last, reports)
-                return Ending("failure", "gate", "; ".join(self._refused().reasons), final=read is not None)
+                return RolloutEnd("failure", "gate", "; ".join(self._refused().reasons), final=read is not None)
             report = self._execute(planned, before, reports)
             seen = self._world.observe()
-            excused += touched(planned, plan, last.main, seen.main)
+            expected_change += touched(planned, plan, last.main, seen.main)
             last = seen
             ends = index + 1 == len(actions) or actions[index + 1].step.subgoal != planned.step.subgoal
             if ends or not report.executed:
                 self._close(planned, before, last, reports)
                 before, reports = last, []
             if not report.executed:
-                return Ending(
+                return RolloutEnd(
                     None, "execution", f"action {index + 1} did not run: {report.fault or 'the robot gave no reason'}"
                 )
         return None
@@ -196,7 +196,7 @@ class Execution:
         plan: Plan | None,
         then: Observation,
         last: Observation,
-        excused: Sequence[Box],
+        expected_change: Sequence[Box],
         stage: Stage,
     ) -> bool:
         """Compare with the plan's picture outside of what the plan itself changed, and with the last step's picture.
@@ -205,8 +205,8 @@ class Execution:
         """
         now = self._world.observe()
         regions = watched((planned,), plan, now.main, first=index)
-        checks = freshness_checks(then, now, regions, excused=excused, max_age_s=self._age_limit_s)
-        checks += freshness_checks(last, now, regions, max_age_s=self._max_age_s)
+        checks = staleness_checks(then, now, regions, expected_change=expected_change, max_age_s=self._age_limit_s)
+        checks += staleness_checks(last, now, regions, max_age_s=self._max_age_s)
         found = still_free_checks(planned, stage, now.main, self._world.limits)
         report = GateReport((*checks, *(replace(check, action=index) for check in found)))
         self._progress.passed_gate(f"before action {index + 1}", report)

@@ -22,9 +22,9 @@ from wonderful_team.images.keep_out import table_height_m
 from wonderful_team.runtime.agreement import agreement_checks, class_checks, form_checks
 from wonderful_team.runtime.approval import Approval, Declined, approval_checks, approved_id
 from wonderful_team.runtime.course import Course, Stage
-from wonderful_team.runtime.freshness import MAX_AGE_S, freshness_checks, watched
 from wonderful_team.runtime.keep_out_checks import keep_out_checks, keep_out_px_checks
 from wonderful_team.runtime.seen_checks import height_checks, place_checks, way_checks
+from wonderful_team.runtime.staleness import MAX_AGE_S, staleness_checks, watched
 from wonderful_team.runtime.sweep import Sweep, carry_height_m, sweep_of, swept_path_px
 
 TOOL_RADIUS_M = 0.01
@@ -46,7 +46,7 @@ def check_gate(
     page: str = "",
     expected_plan_id: str | None = None,
     must_run: bool = False,
-    excused: Sequence[Box] = (),
+    expected_change: Sequence[Box] = (),
     max_age_s: float | None = MAX_AGE_S,
     tool_radius_m: float = TOOL_RADIUS_M,
     measured_heights: bool = False,
@@ -65,7 +65,7 @@ def check_gate(
         page: Hash of the page that shows the plan; a consent must name it.
         expected_plan_id: Id of the plan that was read; another plan is refused.
         must_run: Refuse actions that have no metres; otherwise a plan in pixels is checked in pixels.
-        excused: Parts of the main view [px] that the plan's own earlier actions changed.
+        expected_change: Parts of the main view [px] that the plan's own earlier actions changed.
         max_age_s: Oldest picture that may be acted upon [s]; None for no limit.
         tool_radius_m: Half-width of what moves, kept clear of keep-out regions [m].
         measured_heights: Refuse heights that no depth shows, for a camera without depth; a world whose robot finds
@@ -90,12 +90,12 @@ def check_gate(
             # What such an action does, and where the tool is after it, nobody knows.
             passage.lost()
         checks += [replace(check, action=index) for check in found]
-    checks += freshness_checks(
+    checks += staleness_checks(
         then,
         now,
         watched(actions, plan, now.main) if then is not None else (),
         scene_hash=plan.scene_hash if plan is not None else None,
-        excused=excused,
+        expected_change=expected_change,
         max_age_s=max_age_s,
     )
     return GateReport(tuple(checks))

@@ -18,10 +18,10 @@ from wonderful_team.errors import (
 )
 from wonderful_team.runtime.approval import Approval, Approver
 from wonderful_team.runtime.execute import Execution
-from wonderful_team.runtime.freshness import MAX_AGE_S
 from wonderful_team.runtime.loop import Caller
 from wonderful_team.runtime.optional import ChunkPolicy, Horizon
-from wonderful_team.runtime.progress import Ending, Progress
+from wonderful_team.runtime.rollout_log import RolloutEnd, RolloutLog
+from wonderful_team.runtime.staleness import MAX_AGE_S
 from wonderful_team.runtime.user_code import GuardedScorer, GuardedWorld, decision_of
 
 NOBODY_JUDGED = "; nobody judged the result: there is no scorer, and a method judges only where it may replan"
@@ -39,7 +39,7 @@ def rollout(
     plan: Plan | ReadPlan | None = None,
     plan_observation: Observation | None = None,
     replans: int = 0,
-    looks: int = 0,
+    reobserve: int = 0,
     scorer: Privileged | None = None,
     subscribers: Sequence[Subscriber] = (),
     approval: Approval | Approver | None = None,
@@ -59,7 +59,7 @@ def rollout(
             moves and the trial ends. Once they ran, replans go on as asked for.
         plan_observation: The picture that plan was made from; without it the scene must be pixel for pixel the same.
         replans: How often the policy may answer with new actions after its first ones ran or were refused.
-        looks: How often the policy may run only the first actions of its plan and be asked again with a new picture, which is
+        reobserve: How often the policy may run only the first actions of its plan and be asked again with a new picture, which is
             not a replan. 0: every plan runs whole (open loop). A plan that was read beforehand always runs whole.
         scorer: Judges the outcome after the trial, and only then; None leaves it unscored.
         subscribers: Told of every event, in order.
@@ -81,22 +81,22 @@ def rollout(
     """
     if replans < 0:
         raise ConfigError(f"replans must be 0 or more, got {replans}")
-    if looks < 0:
-        raise ConfigError(f"looks must be 0 or more, got {looks}")
-    if looks and (plan is not None or isinstance(approval, Approval)):
+    if reobserve < 0:
+        raise ConfigError(f"reobserve must be 0 or more, got {reobserve}")
+    if reobserve and (plan is not None or isinstance(approval, Approval)):
         raise ConfigError(
-            f"looks is {looks}, but the plan was read (or approved) beforehand: it runs as it is, so looks must be 0"
+            f"reobserve is {reobserve}, but the plan was read (or approved) beforehand: it runs as it is, so reobserve must be 0"
         )
     world = cast(World, GuardedWorld(world))
-    progress = Progress(policy, scene, seed, tuple(subscribers))
-    setup = {"method": policy.name, "seed": seed, "replans": replans, "looks": looks, **(configuration or {})}
+    progress = RolloutLog(policy, scene, seed, tuple(subscribers))
+    setup = {"method": policy.name, "seed": seed, "replans": replans, "looks": reobserve, **(configuration or {})}
     progress.tell("run", scene, {**setup, "task": world.instruction, "limits": world.limits})
     execution = Execution(world, progress, approval, max_age_s, page, strict)
     read = ReadPlan(plan, plan_observation) if isinstance(plan, Plan) else plan
     try:
         with Caller() as caller:
             try:
-                ending = _attempts(policy, world, caller, execution, progress, read, replans, looks)
+                ending = _attempts(policy, world, caller, execution, progress, read, replans, reobserve)
             except BaseException:
                 # First of all, before anything is waited for.
                 _halt(world, progress)
@@ -111,11 +111,11 @@ def _attempts(
     world: World,
     caller: Caller,
     execution: Execution,
-    progress: Progress,
+    progress: RolloutLog,
     read: ReadPlan | None,
     replans: int,
-    looks: int,
-) -> Ending:
+    reobserve: int,
+) -> RolloutEnd:
     """Ask, gate, execute, until the policy or a bound ends it."""
     chunks = offers(policy, ChunkPolicy) and policy.chunks
     horizon = world.horizon if offers(world, Horizon) else None
@@ -137,7 +137,7 @@ def _attempts(
             executed=told,
             refused=refused,
             plan=read.plan if read is not None else None,
-            looks_left=looks,
+            reobserve_left=reobserve,
             advice=advice,
         )
         progress.asking(situation)
@@ -155,36 +155,36 @@ def _attempts(
             return halted
         read, refused = None, execution.refusal
         advice = execution.declined.because if execution.declined is not None else ""
-        looking = decision.look and looks > 0 and halted is None
+        looking = decision.reobserve and reobserve > 0 and halted is None
         if advice:
             advised += 1
             if advised > MAX_ADVICE:
-                return Ending("failure", "gate", f"{MAX_ADVICE} plans were declined with advice; nothing moved")
-        looks -= looking
+                return RolloutEnd("failure", "gate", f"{MAX_ADVICE} plans were declined with advice; nothing moved")
+        reobserve -= looking
         replanning = not (looking or advice or (chunks and refused is None))
         attempt += not (looking or (chunks and refused is None))
         if replanning and left == 0 and (replans == 0 or refused is not None):
             return halted or _ran_out()
         observation = progress.observe(world, "look" if looking else f"attempt {attempt}")
-    return Ending("failure", "budget", f"the policy was asked {MAX_DECISIONS} times")
+    return RolloutEnd("failure", "budget", f"the policy was asked {MAX_DECISIONS} times")
 
 
-def _said(decision: Done | GaveUp | Any, progress: Progress) -> Ending:
+def _said(decision: Done | GaveUp | Any, progress: RolloutLog) -> RolloutEnd:
     match decision:
         case Done():
-            return Ending(None, None, decision.reason or "the method believes that it is done")
+            return RolloutEnd(None, None, decision.reason or "the method believes that it is done")
         case GaveUp():
             if decision.plan is not None:
                 progress.add_plan(decision.plan)
-            return Ending("failure", decision.stage, decision.reason)
+            return RolloutEnd("failure", decision.stage, decision.reason)
     raise ConfigError(f"decide must return Act, Done or GaveUp; it returned {type(decision).__name__}")
 
 
-def _ran_out() -> Ending:
-    return Ending(None, None, "the plan's actions ran out")
+def _ran_out() -> RolloutEnd:
+    return RolloutEnd(None, None, "the plan's actions ran out")
 
 
-def _halt(world: World, progress: Progress) -> None:
+def _halt(world: World, progress: RolloutLog) -> None:
     """Stop what moves. That it cannot be stopped is told, and hides nothing of what happened before."""
     try:
         world.stop()
@@ -193,40 +193,40 @@ def _halt(world: World, progress: Progress) -> None:
         progress.traced(worse)
 
 
-def _stop(progress: Progress, error: BaseException) -> Trial:
+def _stop(progress: RolloutLog, error: BaseException) -> Trial:
     """End a trial that an exception cut short; raises what is neither the method's, the provider's nor the robot's."""
     if isinstance(error, WonderfulTeamError):
         progress.traced(error)
     match error:
         case RobotFaultError() | SafetyStopError():
             progress.tell("warning", "halt", f"{error}. The run is halted; a person should look before it goes on.")
-            return progress.finish(Ending("failure", error.stage or "execution", str(error)))
+            return progress.finish(RolloutEnd("failure", error.stage or "execution", str(error)))
         case ModelUnavailableError() | WorldUnavailableError():
-            return progress.finish(Ending("error", error.stage or "model", str(error)))
+            return progress.finish(RolloutEnd("error", error.stage or "model", str(error)))
         case WonderfulTeamError() if not isinstance(error, ConfigError):
-            return progress.finish(Ending("failure", error.stage or "plan", str(error)))
+            return progress.finish(RolloutEnd("failure", error.stage or "plan", str(error)))
     interrupted = isinstance(error, KeyboardInterrupt)
     reason = str(error) or "interrupted" if interrupted else f"{type(error).__name__}: {error}"
     progress.tell("warning", "interrupted" if interrupted else "crash", reason)
-    progress.finish(Ending("error", "interrupted" if interrupted else "crash", reason))
+    progress.finish(RolloutEnd("error", "interrupted" if interrupted else "crash", reason))
     raise error
 
 
-def _scored(progress: Progress, ending: Ending, scorer: Privileged | None) -> Trial:
+def _scored(progress: RolloutLog, ending: RolloutEnd, scorer: Privileged | None) -> Trial:
     """Let truth decide, now that nothing can learn from it any more."""
     if scorer is None:
         unjudged = NOBODY_JUDGED if ending.outcome is None and progress.unasked else ""
-        return progress.finish(Ending(ending.outcome or "unscored", ending.stage, f"{ending.reason}{unjudged}"))
+        return progress.finish(RolloutEnd(ending.outcome or "unscored", ending.stage, f"{ending.reason}{unjudged}"))
     try:
         score = GuardedScorer(scorer).score()
     except WonderfulTeamError as error:
         progress.traced(error)
-        return progress.finish(Ending("error", error.stage or "world", str(error)))
+        return progress.finish(RolloutEnd("error", error.stage or "world", str(error)))
     match score.success:
         case True:
-            return progress.finish(Ending("success", None, score.reason or ending.reason))
+            return progress.finish(RolloutEnd("success", None, score.reason or ending.reason))
         case False:
             said = "; ".join(text for text in (ending.reason, score.reason) if text)
-            return progress.finish(Ending("failure", ending.stage or score.stage or "execution", said))
+            return progress.finish(RolloutEnd("failure", ending.stage or score.stage or "execution", said))
     said = score.reason or "the scorer could not judge"
-    return progress.finish(Ending(ending.outcome or "unscored", ending.stage, said))
+    return progress.finish(RolloutEnd(ending.outcome or "unscored", ending.stage, said))

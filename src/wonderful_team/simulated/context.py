@@ -12,11 +12,11 @@ from wonderful_team.contracts import ShownSlot, ShownTask
 from wonderful_team.core.geometry import Box
 from wonderful_team.core.pictures import Picture
 from wonderful_team.core.protocols import SceneTruth
-from wonderful_team.core.values import Instruction, Subgoal, Target, TrueSight, TrueThing
+from wonderful_team.core.values import GroundTruthView, Instruction, Subgoal, Target, TrueThing
 from wonderful_team.errors import UnsupportedQuestion
 from wonderful_team.simulated.draft import Meaning, Names, Written, write
+from wonderful_team.simulated.error_sampler import ErrorSampler
 from wonderful_team.simulated.finding import meaning_of
-from wonderful_team.simulated.luck import Luck
 from wonderful_team.simulated.naming import unique_words
 from wonderful_team.simulated.plan import Move, Shove, moves_of
 from wonderful_team.simulated.profiles import PROFILES, Profile
@@ -54,8 +54,8 @@ class Context:
     ) -> None:
         self.truth, self.instruction, self.name, self.profile = truth, instruction, name, profile
         self.eyes = Eyes(truth)
-        self.luck: Luck | None = None
-        self._plans: tuple[TrueSight, Written, Written] | None = None
+        self.sampler: ErrorSampler | None = None
+        self._plans: tuple[GroundTruthView, Written, Written] | None = None
 
     def task(self, shown: ShownTask) -> Task | None:
         """The task as its pictures show it; None when one of them is missing, untrue or out of date.
@@ -112,7 +112,7 @@ class Context:
         for name, slot in {}.items() if self.instruction is None else self.instruction.slots.items():
             if slot.kind == "object":
                 view = next(iter(slot.views.values()))
-                for sight in self.truth.sights(view.id):
+                for sight in self.truth.observation_log(view.id):
                     found.update({thing: name for thing in (sight.things or sight.masks) if thing in things})
         return found
 

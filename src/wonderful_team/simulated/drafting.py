@@ -22,7 +22,7 @@ from wonderful_team.contracts import (
     WriteSteps,
     step_list_type,
 )
-from wonderful_team.contracts.review_plan import DoubtDraft
+from wonderful_team.contracts.review_plan import CritiqueDraft
 from wonderful_team.core.actions import Step, places_of
 from wonderful_team.core.values import Subgoal, Target
 from wonderful_team.errors import UnsupportedQuestion
@@ -142,7 +142,7 @@ def answer_review(context: Context, question: ReviewPlan) -> PlanReview:
     if task.plan.is_plan(question.subgoals):
         text = "Does this plan really lead to what is asked, and in this order?"
         known = any(text in line for line in question.checked)
-        if known or (context.luck is not None and context.luck.draws(context.profile.overlooks, "plan")):
+        if known or (context.sampler is not None and context.sampler.draws(context.profile.overlooks, "plan")):
             return approved("Nothing in it looks wrong.")
         return doubt(about, "missing_prerequisite", text)
     if not question.targets:
@@ -189,5 +189,5 @@ def approved(reasoning: str) -> PlanReview:
 
 def doubt(about: str, kind: str, question: str) -> PlanReview:
     """One doubt."""
-    raised = DoubtDraft.model_validate({"about": about, "kind": kind, "question": question})
+    raised = CritiqueDraft.model_validate({"about": about, "kind": kind, "question": question})
     return PlanReview(reasoning=question, approved=False, doubt=raised)

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 
 from wonderful_team.core.geometry import Box
 from wonderful_team.core.values import Target, TrueThing
+from wonderful_team.simulated.appearance import fit, known, lightness, tokens
 from wonderful_team.simulated.draft import Meaning
-from wonderful_team.simulated.looks import fit, known, lightness, tokens
 from wonderful_team.simulated.naming import ORDINALS
 from wonderful_team.simulated.plan import stands_at
 from wonderful_team.simulated.seeing import Seen

@@ -48,17 +48,17 @@ def find(
 
 def _erring(context: Context, right: Meaning | None, seen: Seen, target: Target) -> Meaning | None:
     """What the target is taken for, with the errors of the profile."""
-    luck = context.luck
-    if luck is None:
+    sampler = context.sampler
+    if sampler is None:
         return right
-    profile, names = luck.profile, seen.names
+    profile, names = sampler.profile, seen.names
     if right is None or (right.thing is not None and right.thing not in names):
-        imagines = bool(names) and luck.draws(profile.imagined, f"imagined {target.id}")
-        return Meaning(luck.other("", names, f"which {target.id}")) if imagines else right
-    if luck.draws(profile.missed, f"missed {target.id}"):
+        imagines = bool(names) and sampler.draws(profile.imagined, f"imagined {target.id}")
+        return Meaning(sampler.other("", names, f"which {target.id}")) if imagines else right
+    if sampler.draws(profile.missed, f"missed {target.id}"):
         return None
-    if right.thing is not None and luck.draws(profile.wrong_thing, f"wrong {target.id}"):
-        return Meaning(luck.other(right.thing, names, f"which {target.id}"))
+    if right.thing is not None and sampler.draws(profile.wrong_thing, f"wrong {target.id}"):
+        return Meaning(sampler.other(right.thing, names, f"which {target.id}"))
     return right
 
 

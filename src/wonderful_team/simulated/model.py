@@ -32,7 +32,7 @@ from wonderful_team.core.values import Answer, Instruction, Request, Usage
 from wonderful_team.errors import UnsupportedQuestion
 from wonderful_team.simulated import crops, drafting, grounding, outcome
 from wonderful_team.simulated.context import Context
-from wonderful_team.simulated.luck import Luck
+from wonderful_team.simulated.error_sampler import ErrorSampler
 from wonderful_team.simulated.profiles import PROFILES, Profile
 
 ANSWERS: dict[type[Question], Callable[[Context, Any], Any]] = {
@@ -89,10 +89,10 @@ class SimulatedModel:
         kind = type(request.question)
         if kind not in ANSWERS:
             raise UnsupportedQuestion(self.name, request.contract, "the truth of a table knows no programs")
-        luck = Luck(self.profile, request) if self.profile.errs else None
+        sampler = ErrorSampler(self.profile, request) if self.profile.errs else None
         # Nothing is awaited here: a question is answered whole before the next one begins.
-        self._context.luck = luck
+        self._context.sampler = sampler
         value = ANSWERS[kind](self._context, request.question)
-        value, repairs = request.question.settle(value if luck is None else luck.spoil(value, request))
+        value, repairs = request.question.validate(value if sampler is None else sampler.perturb(value, request))
         usage = Usage(calls=1, pictures=len(request.pictures), usd=0.0)
         return Answer(value, usage, self.name, value.model_dump_json(), 1, "simulated", repairs)

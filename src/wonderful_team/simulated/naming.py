@@ -6,14 +6,14 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from wonderful_team.core.values import TrueSight, TrueThing
+from wonderful_team.core.values import GroundTruthView, TrueThing
 
 ORDINALS = ("first", "second", "third", "fourth", "fifth", "sixth", "seventh", "eighth", "ninth", "tenth")
 TALLER = 1.3
 """A thing this many times as high as another of the same words is called the taller one."""
 
 
-def unique_words(sight: TrueSight, things: Mapping[str, TrueThing]) -> dict[str, str]:
+def unique_words(sight: GroundTruthView, things: Mapping[str, TrueThing]) -> dict[str, str]:
     """Words for everything in a view: what it is; where several share these, also its place from the left.
 
     Args:
@@ -38,7 +38,7 @@ def unique_words(sight: TrueSight, things: Mapping[str, TrueThing]) -> dict[str,
     return words
 
 
-def _across(sight: TrueSight, thing: TrueThing) -> tuple[float, float]:
+def _across(sight: GroundTruthView, thing: TrueThing) -> tuple[float, float]:
     """Where a thing's centre lies in the view, from the left, then from the top [px]."""
     camera = sight.view.camera
     if camera is not None:

@@ -17,7 +17,7 @@ from wonderful_team.core.geometry import wrap_angle
 from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.geometry.cameras import Camera
 from wonderful_team.core.protocols import SceneTruth
-from wonderful_team.core.values import Instruction, TrueSight, TrueThing
+from wonderful_team.core.values import GroundTruthView, Instruction, TrueThing
 
 SAME_M = 0.02
 """Two centres this close are the same place [m]."""
@@ -226,15 +226,15 @@ def _pictured(
         if slot.kind not in PICTURED:
             continue
         view = next(iter(slot.views.values()))
-        looks = truth.sights(view.camera_name)
-        for sight in truth.sights(view.id):
+        looks = truth.observation_log(view.camera_name)
+        for sight in truth.observation_log(view.id):
             camera = sight.view.camera or (looks[0].view.camera if looks else None)
             places = {thing: stands_at(sight, thing, camera) for thing in sight.masks}
             found.append((name, {thing: at for thing, at in places.items() if at is not None}))
     return found
 
 
-def stands_at(sight: TrueSight, name: str, camera: Camera | None) -> tuple[float, float] | None:
+def stands_at(sight: GroundTruthView, name: str, camera: Camera | None) -> tuple[float, float] | None:
     """Where a thing stands in a picture [m]: as the sight says, else in the middle of the pixels that show it."""
     thing = sight.things.get(name)
     if thing is not None:

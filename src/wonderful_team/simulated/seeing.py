@@ -17,7 +17,7 @@ from wonderful_team.core.geometry import Box, Frame
 from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.pictures import Picture, Point
 from wonderful_team.core.protocols import SceneTruth
-from wonderful_team.core.values import TrueSight, TrueThing
+from wonderful_team.core.values import GroundTruthView, TrueThing
 from wonderful_team.simulated.agreement import difference, expected
 
 LEAST_PX = 8
@@ -34,8 +34,8 @@ class Seen:
     """
 
     picture: Picture
-    sight: TrueSight
-    newest: TrueSight
+    sight: GroundTruthView
+    newest: GroundTruthView
     truth: SceneTruth
 
     @cached_property
@@ -141,10 +141,10 @@ class _Known:
 
     pixels: weakref.ref[Array]
     frame: Frame
-    sight: TrueSight | None
-    newest: TrueSight
+    sight: GroundTruthView | None
+    newest: GroundTruthView
 
-    def holds(self, picture: Picture, newest: TrueSight) -> bool:
+    def holds(self, picture: Picture, newest: GroundTruthView) -> bool:
         same = self.frame is picture.frame or (
             self.frame.view_id == picture.frame.view_id
             and np.array_equal(self.frame.T_view_picture, picture.frame.T_view_picture)
@@ -161,19 +161,19 @@ class Eyes:
 
     def see(self, picture: Picture) -> Seen | None:
         """What a picture shows; None when its pixels are not those of any look at its view."""
-        sights = self.truth.sights(picture.frame.view_id)
-        if not sights:
+        observation_log = self.truth.observation_log(picture.frame.view_id)
+        if not observation_log:
             return None
-        sight = self._match(picture, sights)
-        return None if sight is None else Seen(picture, sight, sights[0], self.truth)
+        sight = self._match(picture, observation_log)
+        return None if sight is None else Seen(picture, sight, observation_log[0], self.truth)
 
-    def _match(self, picture: Picture, sights: Sequence[TrueSight]) -> TrueSight | None:
+    def _match(self, picture: Picture, observation_log: Sequence[GroundTruthView]) -> GroundTruthView | None:
         key = id(picture.rgb)
         known = self._known.get(key)
-        if known is not None and known.holds(picture, sights[0]):
+        if known is not None and known.holds(picture, observation_log[0]):
             return known.sight
         found, least = None, float("inf")
-        for sight in sights:
+        for sight in observation_log:
             right = expected(sight.view.rgb, picture.frame)
             apart = None if right is None else difference(picture.rgb, right, picture.frame.scale)
             if apart is not None and apart < least:
@@ -181,11 +181,11 @@ class Eyes:
             if least == 0.0:
                 break
         forget = weakref.ref(picture.rgb, lambda _: self._known.pop(key, None))
-        self._known[key] = _Known(forget, picture.frame, found, sights[0])
+        self._known[key] = _Known(forget, picture.frame, found, observation_log[0])
         return found
 
 
-def _alike(one: TrueSight, other: TrueSight) -> bool:
+def _alike(one: GroundTruthView, other: GroundTruthView) -> bool:
     return one.masks.keys() == other.masks.keys() and all(
         np.array_equal(mask, other.masks[name]) for name, mask in one.masks.items()
     )

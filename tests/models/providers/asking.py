@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from tests.servers.brains import Brain, Desk, Tapped, typed_brain
+from tests.servers.brains import AgentSession, Brain, Tapped, typed_brain
 from tests.servers.server import WireServer
 from tests.servers.speech import Speech
 from tests.servers.wiring import Wire
@@ -18,8 +18,8 @@ from wonderful_team.contracts.read_scene import SceneReading
 from wonderful_team.core.values import Answer, Request, Target, View
 from wonderful_team.errors import WonderfulTeamError
 from wonderful_team.images import whole
-from wonderful_team.models.agreeable import agreeable_script
-from wonderful_team.models.door import Door
+from wonderful_team.models.client import ModelClient
+from wonderful_team.models.stub_model import stub_script
 
 TARGETS = (Target("T1", "object", "the red cube"), Target("T2", "area", "the free corner"))
 
@@ -40,13 +40,13 @@ def question(name: str = "0/ground/main/ReadScene/1") -> Request:
 
 def right_answer(request: Request) -> SceneReading:
     """What the brain says, before anything is done to it."""
-    value = agreeable_script()["ReadScene"](request)
+    value = stub_script()["ReadScene"](request)
     return SceneReading.model_validate(value)
 
 
-def known_brain(desk: Desk, speech: Speech) -> Brain:
+def known_brain(desk: AgentSession, speech: Speech) -> Brain:
     """Knows the right answer to every question."""
-    script = agreeable_script()
+    script = stub_script()
     return typed_brain(desk, lambda request: script[request.contract](request), speech)
 
 
@@ -67,7 +67,7 @@ class Asked:
 class Asking:
     """Asks one server, again and again, over connections that live as long as this."""
 
-    def __init__(self, server: WireServer, desk: Desk, wire: Wire) -> None:
+    def __init__(self, server: WireServer, desk: AgentSession, wire: Wire) -> None:
         self.server, self.desk, self.wire = server, desk, wire
         self._runner = asyncio.Runner()
         self._providers: dict[tuple[tuple[str, Any], ...], Any] = {}
@@ -86,13 +86,13 @@ class Asking:
         key = tuple(sorted(options.items()))
         if key not in self._providers:
             self._providers[key] = self.wire.provider(self.server, **options)
-        door = Door(Tapped(self._providers[key], self.desk))
+        client = ModelClient(Tapped(self._providers[key], self.desk))
         answer, error = None, None
         try:
-            answer = self._runner.run(door.ask(question()))
+            answer = self._runner.run(client.ask(question()))
         except WonderfulTeamError as failed:
             error = failed
-        return Asked(answer, error, len(self.server.log) - before, door.budget.spent.calls)
+        return Asked(answer, error, len(self.server.log) - before, client.budget.spent.calls)
 
 
 def largest_gap_px(answer: Answer, request: Request) -> float:

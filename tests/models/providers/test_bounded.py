@@ -20,7 +20,7 @@ import pytest
 from tests.models.wire.scenes import picture, reading
 from wonderful_team.errors import ModelServerError, ModelUnavailableError, UnknownModelError
 from wonderful_team.lab.server_facts import context_length
-from wonderful_team.models.door import Door
+from wonderful_team.models.client import ModelClient
 from wonderful_team.models.providers import make_provider
 from wonderful_team.models.providers.bounded import FACTS_BYTES, ReplyTooLargeError, fetch_json, limit_replies
 from wonderful_team.models.providers.listing import server_models
@@ -186,7 +186,7 @@ def test_a_models_reply_has_a_size_limit_and_is_not_asked_for_again(send: Send) 
     with answering(counted) as url:
         model = make_provider(f"{url}#m", deadline_s=20)
         with pytest.raises(ModelServerError, match="the reply (has more than|is packed as|cannot be unpacked)"):
-            asyncio.run(Door(model).ask(reading(picture(), ())))
+            asyncio.run(ModelClient(model).ask(reading(picture(), ())))
     assert len(asked) == 1
     assert memory_mb() - before < 200
 

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import pytest
 
 from tests.models.providers.asking import Asking, known_brain, largest_gap_px, question
-from tests.servers.brains import Desk
+from tests.servers.brains import AgentSession
 from tests.servers.faults import ALL, Fault
 from tests.servers.server import KEY, Rules, WireServer
 from tests.servers.wiring import WIRES
@@ -51,7 +51,7 @@ SPECIAL = ("filtered", "quota", "too_many_pictures", "absent")
 
 @pytest.fixture(scope="module", params=WIRES)
 def asking(request: pytest.FixtureRequest) -> Iterator[Asking]:
-    desk = Desk()
+    desk = AgentSession()
     wire = WIRES[request.param]
     server = WireServer(known_brain(desk, wire.speech), Rules(local=not wire.vendor))
     with server, Asking(server, desk, wire) as asking:

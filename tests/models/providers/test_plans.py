@@ -7,12 +7,12 @@ from typing import Any
 
 import pytest
 
-from tests.servers.brains import Desk, Tapped, offline_brain
+from tests.servers.brains import AgentSession, Tapped, offline_brain
 from tests.servers.server import Rules, WireServer
 from tests.servers.wiring import OTHER_FAMILIES, WIRES, Wire
 from wonderful_team.core.values import Plan
 from wonderful_team.offline import OfflineModel
-from wonderful_team.planning import Team
+from wonderful_team.planning import TeamPolicy
 from wonderful_team.sims.tabletop import make_world
 
 COARSEST_PX = 0.6
@@ -30,7 +30,7 @@ def scene() -> Any:
 
 def planned(model: Any, scene: Any) -> Plan:
     async def plan() -> Plan:
-        return await Team(model).make_plan(*scene)
+        return await TeamPolicy(model).make_plan(*scene)
 
     return asyncio.run(plan())
 
@@ -42,7 +42,7 @@ def right(scene: Any) -> Plan:
 
 
 def planned_over(wire: Wire, rules: Rules, scene: Any, fault: str = "", **options: Any) -> tuple[Plan, WireServer]:
-    desk = Desk()
+    desk = AgentSession()
     with WireServer(offline_brain(desk, wire.speech), rules) as server:
         if fault:
             server.always(fault)

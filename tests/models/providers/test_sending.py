@@ -15,7 +15,7 @@ from typing import Any
 import pytest
 
 from tests.models.wire.scenes import answer_px, picture, reading
-from tests.servers.brains import Desk, Tapped, scripted_brain, typed_brain
+from tests.servers.brains import AgentSession, Tapped, scripted_brain, typed_brain
 from tests.servers.faults import Fault
 from tests.servers.server import KEY, Rules, WireServer
 from tests.servers.wiring import WIRES, Wire
@@ -32,7 +32,7 @@ from wonderful_team.errors import (
     WonderfulTeamError,
 )
 from wonderful_team.models.budget import Budget
-from wonderful_team.models.door import Door
+from wonderful_team.models.client import ModelClient
 from wonderful_team.models.prices import GivenPrice
 from wonderful_team.models.profiles import Profile
 from wonderful_team.models.providers import make_provider
@@ -42,21 +42,21 @@ VIEW = picture()
 REQUEST = reading(VIEW, (picture((300, 200), "front"),))
 
 
-def serve(wire: Wire, desk: Desk, **rules: Any) -> WireServer:
+def serve(wire: Wire, desk: AgentSession, **rules: Any) -> WireServer:
     return WireServer(typed_brain(desk, lambda _: answer_px(VIEW), wire.speech), Rules(local=not wire.vendor, **rules))
 
 
-def ask(model: Any, desk: Desk, **door: Any) -> Answer:
-    return asyncio.run(Door(Tapped(model, desk), **door).ask(REQUEST))
+def ask(model: Any, desk: AgentSession, **client: Any) -> Answer:
+    return asyncio.run(ModelClient(Tapped(model, desk), **client).ask(REQUEST))
 
 
 @pytest.fixture
-def desk() -> Desk:
-    return Desk()
+def desk() -> AgentSession:
+    return AgentSession()
 
 
 @pytest.mark.parametrize("name", WIRES)
-def test_a_request_is_answered_and_booked(name: str, desk: Desk) -> None:
+def test_a_request_is_answered_and_booked(name: str, desk: AgentSession) -> None:
     with serve(WIRES[name], desk) as server:
         answer = ask(WIRES[name].provider(server, price=GivenPrice(2, 10)), desk)
     (heard,) = server.heard
@@ -74,7 +74,7 @@ def test_a_request_is_answered_and_booked(name: str, desk: Desk) -> None:
 
 
 @pytest.mark.parametrize("name", WIRES)
-def test_the_estimate_is_on_the_careful_side(name: str, desk: Desk) -> None:
+def test_the_estimate_is_on_the_careful_side(name: str, desk: AgentSession) -> None:
     with serve(WIRES[name], desk) as server:
         provider = WIRES[name].provider(server)
         estimate = provider.estimate(REQUEST)
@@ -84,7 +84,7 @@ def test_the_estimate_is_on_the_careful_side(name: str, desk: Desk) -> None:
 
 
 @pytest.mark.parametrize("name", WIRES)
-def test_a_repair_goes_on_from_the_same_prefix_and_shows_the_last_answer(name: str, desk: Desk) -> None:
+def test_a_repair_goes_on_from_the_same_prefix_and_shows_the_last_answer(name: str, desk: AgentSession) -> None:
     with serve(WIRES[name], desk) as server:
         server.strike(Fault("wrong_schema"))
         answer = ask(WIRES[name].provider(server), desk)
@@ -98,7 +98,7 @@ def test_a_repair_goes_on_from_the_same_prefix_and_shows_the_last_answer(name: s
 
 
 @pytest.mark.parametrize("name", WIRES)
-def test_thinking_is_switched_in_each_services_own_way(name: str, desk: Desk) -> None:
+def test_thinking_is_switched_in_each_services_own_way(name: str, desk: AgentSession) -> None:
     wire = WIRES[name]
     with serve(wire, desk) as server:
         for thinking in ("off", "low", "high"):
@@ -127,7 +127,7 @@ def test_thinking_is_switched_in_each_services_own_way(name: str, desk: Desk) ->
             assert high["reasoning_effort"] == "high"
 
 
-def test_a_server_that_takes_fewer_pictures_gets_one_sheet_from_then_on(desk: Desk) -> None:
+def test_a_server_that_takes_fewer_pictures_gets_one_sheet_from_then_on(desk: AgentSession) -> None:
     wire = WIRES["server"]
     with serve(wire, desk, max_pictures=1) as server:
         provider = wire.provider(server)
@@ -137,7 +137,7 @@ def test_a_server_that_takes_fewer_pictures_gets_one_sheet_from_then_on(desk: De
     assert first.value.targets[0].box.as_box.as_tuple == pytest.approx((64, 96, 192, 288), abs=1)
 
 
-def test_a_server_that_refuses_schemas_is_told_them_in_words(desk: Desk) -> None:
+def test_a_server_that_refuses_schemas_is_told_them_in_words(desk: AgentSession) -> None:
     wire = WIRES["openai-chat"]
     with serve(wire, desk, schemas="refused") as server:
         provider = wire.provider(server)
@@ -147,7 +147,7 @@ def test_a_server_that_refuses_schemas_is_told_them_in_words(desk: Desk) -> None
     assert "JSON schema" in server.heard[1].words
 
 
-def test_a_profile_takes_the_place_of_what_the_name_suggests(desk: Desk) -> None:
+def test_a_profile_takes_the_place_of_what_the_name_suggests(desk: AgentSession) -> None:
     wire = replace(WIRES["server"], model="my-planner-v3", speech=WIRES["google"].speech)
     convention = make_provider("google:gemini-3", api_key="x").convention
     with serve(wire, desk, max_pictures=1) as server:
@@ -162,7 +162,7 @@ def test_a_profile_takes_the_place_of_what_the_name_suggests(desk: Desk) -> None
     assert (weak.convention.name, weak.weak_pointing) == ("pixels", True)
 
 
-def test_waits_that_are_too_long_are_not_waited(desk: Desk) -> None:
+def test_waits_that_are_too_long_are_not_waited(desk: AgentSession) -> None:
     wire = WIRES["openai-chat"]
     with serve(wire, desk) as server:
         server.always(Fault("rate_limit", 120))
@@ -173,19 +173,19 @@ def test_waits_that_are_too_long_are_not_waited(desk: Desk) -> None:
     assert len(server.log) == 1
 
 
-def test_retry_after_is_waited_for_and_every_try_is_counted(desk: Desk) -> None:
+def test_retry_after_is_waited_for_and_every_try_is_counted(desk: AgentSession) -> None:
     wire = WIRES["anthropic"]
     with serve(wire, desk) as server:
         server.strike(Fault("rate_limit", 0.4), Fault("error_500"))
-        door = Door(Tapped(wire.provider(server), desk))
-        answer = asyncio.run(door.ask(REQUEST))
+        client = ModelClient(Tapped(wire.provider(server), desk))
+        answer = asyncio.run(client.ask(REQUEST))
     assert server.log[1].at_s - server.log[0].at_s >= 0.4
-    assert answer.usage.calls == door.budget.spent.calls == len(server.log) == 3
+    assert answer.usage.calls == client.budget.spent.calls == len(server.log) == 3
 
 
 @pytest.mark.parametrize("fault", ["hang", "drip"])
 @pytest.mark.parametrize("name", WIRES)
-def test_the_deadline_holds_for_the_whole_request(name: str, fault: str, desk: Desk) -> None:
+def test_the_deadline_holds_for_the_whole_request(name: str, fault: str, desk: AgentSession) -> None:
     with serve(WIRES[name], desk) as server:
         server.always(Fault(fault, 0.02))
         provider = WIRES[name].provider(server, deadline_s=0.8)
@@ -195,7 +195,7 @@ def test_the_deadline_holds_for_the_whole_request(name: str, fault: str, desk: D
     assert time.monotonic() - started < 2.5
 
 
-def test_retries_stop_at_the_cap_on_calls(desk: Desk) -> None:
+def test_retries_stop_at_the_cap_on_calls(desk: AgentSession) -> None:
     wire = WIRES["google"]
     with serve(wire, desk) as server:
         server.always("error_500")
@@ -204,7 +204,7 @@ def test_retries_stop_at_the_cap_on_calls(desk: Desk) -> None:
     assert len(server.log) == 2
 
 
-def test_an_answer_is_held_to_what_the_cap_leaves(desk: Desk) -> None:
+def test_an_answer_is_held_to_what_the_cap_leaves(desk: AgentSession) -> None:
     wire = WIRES["openai-chat"]
     with serve(wire, desk) as server:
         provider = wire.provider(server)
@@ -216,7 +216,7 @@ def test_an_answer_is_held_to_what_the_cap_leaves(desk: Desk) -> None:
     assert server.heard[0].body["max_completion_tokens"] == 700
 
 
-def test_one_provider_serves_several_event_loops_and_leaves_no_connection_open(desk: Desk) -> None:
+def test_one_provider_serves_several_event_loops_and_leaves_no_connection_open(desk: AgentSession) -> None:
     wire = WIRES["server"]
     with serve(wire, desk) as server:
         provider = wire.provider(server)
@@ -226,7 +226,11 @@ def test_one_provider_serves_several_event_loops_and_leaves_no_connection_open(d
 @pytest.mark.parametrize("fault", ["unauthorized", "error_500", None])
 @pytest.mark.parametrize("name", WIRES)
 def test_the_key_is_nowhere(
-    name: str, fault: str | None, desk: Desk, caplog: pytest.LogCaptureFixture, capfd: pytest.CaptureFixture[str]
+    name: str,
+    fault: str | None,
+    desk: AgentSession,
+    caplog: pytest.LogCaptureFixture,
+    capfd: pytest.CaptureFixture[str],
 ) -> None:
     caplog.set_level(logging.DEBUG)
     seen, causes = "", []
@@ -248,7 +252,7 @@ def test_the_key_is_nowhere(
     assert causes in ([], [None])
 
 
-def test_openrouter_speaks_as_the_maker_of_its_model(desk: Desk) -> None:
+def test_openrouter_speaks_as_the_maker_of_its_model(desk: AgentSession) -> None:
     wire = Wire("openrouter", "/v1", "google/gemini-2.5-pro", WIRES["google"].speech)
     with WireServer(typed_brain(desk, lambda _: answer_px(VIEW), wire.speech), Rules(local=True)) as server:
         answer = ask(wire.provider(server), desk)
@@ -305,7 +309,7 @@ def test_an_unknown_thinking_level_is_refused() -> None:
         make_provider("openai:gpt-5", api_key="x", thinking="max")  # type: ignore[arg-type]
 
 
-def test_a_wrong_key_is_exit_2_and_names_the_variable(desk: Desk) -> None:
+def test_a_wrong_key_is_exit_2_and_names_the_variable(desk: AgentSession) -> None:
     wire = WIRES["google"]
     with serve(wire, desk) as server, pytest.raises(ModelAuthError, match="refused the key"):
         ask(wire.provider(server, api_key="another-key-altogether"), desk)

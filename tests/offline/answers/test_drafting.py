@@ -6,7 +6,7 @@ import pytest
 
 from tests.offline.answers.tables import KINDS, ask, draft, slot, table, task
 from wonderful_team.contracts import DraftPlan, ExtractTargets, PlanDraft, PlanRevision, RevisePlan, TargetList
-from wonderful_team.core.values import Doubt, Subgoal
+from wonderful_team.core.values import Critique, Subgoal
 from wonderful_team.errors import NotUnderstoodError
 
 SCENE = table(
@@ -117,7 +117,7 @@ def test_targets_are_extracted_from_anyones_subgoals() -> None:
 def test_a_right_doubt_changes_the_plan_and_a_wrong_one_does_not() -> None:
     shown = task("put the green star onto the blue square", SCENE)
     plan = draft("put the green star onto the blue square", SCENE)
-    doubt = Doubt("G1", "wrong_target", "Is it the right thing?")
+    doubt = Critique("G1", "wrong_target", "Is it the right thing?")
     kept = ask(RevisePlan(shown, KINDS, plan.to_subgoals(), plan.to_targets(), doubt, True))
     assert isinstance(kept, PlanRevision)
     assert kept.decision == "keep"

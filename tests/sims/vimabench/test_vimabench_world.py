@@ -176,20 +176,20 @@ def test_sights_are_what_was_seen_newest_first(open_world: Open) -> None:
     before = world.observe()
     world.execute(world.privileged.oracle()[0])
     world.execute(pick(world, "ruby cube", (0.7, 0.4)))
-    sights = world.privileged.sights("top")
-    assert [sight.view.hash for sight in sights] == [look.main.hash for look in reversed(world.looks)]
-    assert sights[-1].view.hash == before.main.hash
-    for sight in (sights[0], sights[-1]):
+    observation_log = world.privileged.observation_log("top")
+    assert [sight.view.hash for sight in observation_log] == [look.main.hash for look in reversed(world.looks)]
+    assert observation_log[-1].view.hash == before.main.hash
+    for sight in (observation_log[0], observation_log[-1]):
         rows, columns = np.nonzero(sight.masks["ruby cube"])
         assert (sight.view.rgb[rows, columns] == (200, 30, 30)).all()
     thing = world.privileged.things()["ruby cube"]
     seen = world.observe().main.camera.project([thing.position_m])[0]  # type: ignore[union-attr]
-    rows, columns = np.nonzero(sights[0].masks["ruby cube"])
+    rows, columns = np.nonzero(observation_log[0].masks["ruby cube"])
     assert seen == pytest.approx((columns.mean() + 0.5, rows.mean() + 0.5), abs=1.0)
-    (slot,) = world.privileged.sights("slot:dragged_obj:front")
+    (slot,) = world.privileged.observation_log("slot:dragged_obj:front")
     assert slot.view.id == "slot:dragged_obj:front"
     assert slot.masks["ruby cube"].sum() == 28 * 28
-    assert world.privileged.sights("slot:other:top") == ()
+    assert world.privileged.observation_log("slot:other:top") == ()
 
 
 def test_a_grasp_point_lies_on_what_is_seen(open_world: Open) -> None:

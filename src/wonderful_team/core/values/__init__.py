@@ -1,11 +1,11 @@
 """The values that flow through the system: frozen, checked once when built, arrays read-only."""
 
 from wonderful_team.core.values.content import content_hash, file_hash
-from wonderful_team.core.values.ground_truth import TrueSight, TrueThing
+from wonderful_team.core.values.ground_truth import GroundTruthView, TrueThing
 from wonderful_team.core.values.limits import NO_WORKSPACE, KeepOut, Limits
 from wonderful_team.core.values.observation import Instruction, Observation, RobotState, Slot, SlotKind, View
 from wonderful_team.core.values.plan import (
-    Doubt,
+    Critique,
     GroundedTarget,
     GroundingEvent,
     NumberSource,
@@ -22,9 +22,10 @@ from wonderful_team.core.values.result import GateCheck, GateReport, StepReport,
 
 __all__ = [
     "Answer",
-    "Doubt",
+    "Critique",
     "GateCheck",
     "GateReport",
+    "GroundTruthView",
     "GroundedTarget",
     "GroundingEvent",
     "Instruction",
@@ -49,7 +50,6 @@ __all__ = [
     "SubgoalRun",
     "Target",
     "Trial",
-    "TrueSight",
     "TrueThing",
     "Usage",
     "Verdict",

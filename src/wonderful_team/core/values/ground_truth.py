@@ -42,7 +42,7 @@ class TrueThing:
 
 
 @dataclass(frozen=True, eq=False)
-class TrueSight:
+class GroundTruthView:
     """One view or instruction picture as it really was when it was drawn.
 
     Attributes:

@@ -102,7 +102,7 @@ class Subgoal:
 
 
 @dataclass(frozen=True)
-class Doubt:
+class Critique:
     """One question that Verification raised about one subgoal (or step), and what came of it."""
 
     about: str
@@ -166,7 +166,7 @@ class Plan:
     grounded: Mapping[str, GroundedTarget] = field(default_factory=dict)
     actions: tuple[PlannedAction, ...] = ()
     keep_out: tuple[KeepOut, ...] = ()
-    questions: tuple[Doubt, ...] = ()
+    questions: tuple[Critique, ...] = ()
     first_draft: tuple[Subgoal, ...] = ()
     scene_hash: str = ""
     parent: str | None = None

@@ -46,7 +46,7 @@ def trial_record(row: Row) -> dict[str, Any]:
         "perturb": condition.perturb,
         "replans": condition.replans,
         "how": condition.how,
-        "looks": condition.looks,
+        "looks": condition.reobserve,
     }
     flat |= {name: None if result is None else getattr(result, name) for name in _RESULT}
     flat["provenance"] = None if result is None else " ".join(result.provenance)
@@ -88,7 +88,7 @@ def condition_json(cell: Cell) -> dict[str, Any]:
         "perturb": cell.condition.perturb,
         "replans": cell.condition.replans,
         "how": cell.condition.how,
-        "looks": cell.condition.looks,
+        "looks": cell.condition.reobserve,
         "successes": rate.successes,
         "scored": rate.n,
         "success": rate.share,

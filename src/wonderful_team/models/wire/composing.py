@@ -13,7 +13,7 @@ from pydantic import BaseModel
 from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.pictures import Axes, Picture
 from wonderful_team.core.values import Request, Words
-from wonderful_team.images.telling import axes_words, size_words
+from wonderful_team.images.captions import axes_words, size_words
 from wonderful_team.models.conventions import PIXELS, Convention
 from wonderful_team.models.wire.form import Form, box_keys, point_keys
 from wonderful_team.models.wire.png import fast_png

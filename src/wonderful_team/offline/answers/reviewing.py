@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from wonderful_team.contracts import DoubtDraft, PlanReview, ReviewPlan
+from wonderful_team.contracts import CritiqueDraft, PlanReview, ReviewPlan
 from wonderful_team.contracts.shown import ShownTask
 from wonderful_team.core.values import Subgoal, Target
 from wonderful_team.errors import NotUnderstoodError
@@ -294,7 +294,7 @@ def answer_review(question: ReviewPlan) -> PlanReview:
     return PlanReview(
         reasoning=f"Derived again from words and picture, {scope} differs: {first.kind} in {first.about}.",
         approved=False,
-        doubt=DoubtDraft(about=first.about, kind=first.kind, question=first.question),
+        doubt=CritiqueDraft(about=first.about, kind=first.kind, question=first.question),
     )
 
 

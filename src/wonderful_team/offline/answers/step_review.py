@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import TypeAlias
 
-from wonderful_team.contracts import DoubtDraft, PlanReview, ReviewSteps
+from wonderful_team.contracts import CritiqueDraft, PlanReview, ReviewSteps
 from wonderful_team.core.actions import (
     SIDES,
     At,
@@ -63,7 +63,7 @@ def answer_review_steps(question: ReviewSteps) -> PlanReview:
     return PlanReview(
         reasoning=f"Step {number} does not do what its subgoal says.",
         approved=False,
-        doubt=DoubtDraft(about=str(number), kind=kind, question=text),
+        doubt=CritiqueDraft(about=str(number), kind=kind, question=text),
     )
 
 

@@ -20,13 +20,13 @@ from wonderful_team.offline.language.clause_parts import PLACES, VERBS, Unclear
 from wonderful_team.offline.language.commands import Command, Understood
 from wonderful_team.offline.language.conditions import open_conditions
 from wonderful_team.offline.language.framing import without_frames
-from wonderful_team.offline.language.gists import gist_of_gathering
 from wonderful_team.offline.language.grammar import parse
 from wonderful_team.offline.language.meaning import Meaning
 from wonderful_team.offline.language.ordering import in_order
-from wonderful_team.offline.language.plain_speech import put_plainly
 from wonderful_team.offline.language.references import with_noun, with_nouns
-from wonderful_team.offline.language.slots import gist_of_matching, read_clauses
+from wonderful_team.offline.language.rewrites import put_plainly
+from wonderful_team.offline.language.slots import matching_template, read_clauses
+from wonderful_team.offline.language.templates import gathering_template
 from wonderful_team.offline.language.tokens import Token, refusal, tokenise
 from wonderful_team.offline.language.turns_of_phrase import turned
 from wonderful_team.offline.language.vocabulary import nearest_words
@@ -105,7 +105,7 @@ def _with_what_is_shared(
     lost = [command for command in many if _goes_anywhere(command)]
     if not lost or not _SHARED.search(words):
         return commands
-    gist = gist_of_matching(tokens)
+    gist = matching_template(tokens)
     if gist is None:
         raise NotUnderstoodError(_no_sentence(text, tokens, "which things share a colour"))
     return (gist,)
@@ -124,14 +124,14 @@ def _goes_anywhere(command: Command) -> bool:
 
 def _commands(tokens: list[Token], words: str, text: str) -> tuple[Command, ...]:
     """Commands clause by clause; by the gist where all says "matching"."""
-    gathered = gist_of_gathering(tokens)
+    gathered = gathering_template(tokens)
     if gathered is not None:
         return (gathered,)
     try:
         every = _joined(
             tokenise(re.sub(r"\b(?:if|when|whenever|wherever|provided)\b", " ", words, flags=re.IGNORECASE))
         )
-        gist = gist_of_matching(every)
+        gist = matching_template(every)
         if gist is not None:
             return (gist,)
     except NotUnderstoodError:
@@ -139,7 +139,7 @@ def _commands(tokens: list[Token], words: str, text: str) -> tuple[Command, ...]
     try:
         commands = read_clauses(tokens, Meaning())
     except (Unclear, NotUnderstoodError) as error:
-        matching = gist_of_matching(tokens)
+        matching = matching_template(tokens)
         if matching is not None:
             return (matching,)
         raise NotUnderstoodError(_no_sentence(text, tokens, str(error))) from error

@@ -20,8 +20,8 @@ from wonderful_team.offline.language.clause_meaning import (
 )
 from wonderful_team.offline.language.clause_parts import PLACES, STARTS, VERBS, Unclear, parts_of
 from wonderful_team.offline.language.commands import Command, Destination
-from wonderful_team.offline.language.gists import gist_of_gathering
 from wonderful_team.offline.language.meaning import Meaning
+from wonderful_team.offline.language.templates import gathering_template
 from wonderful_team.offline.language.tokens import Token
 from wonderful_team.offline.language.wording import render
 
@@ -94,7 +94,7 @@ def read_clauses(tokens: Sequence[Token], meaning: Meaning) -> tuple[Command, ..
 
 
 def _read(clause: Sequence[Token], meaning: Meaning) -> None:
-    gathered = gist_of_gathering(clause)
+    gathered = gathering_template(clause)
     if gathered is not None:
         assert gathered.to is not None  # it goes into something
         meaning.put(gathered.thing, gathered.to)
@@ -119,7 +119,7 @@ def _read(clause: Sequence[Token], meaning: Meaning) -> None:
         read_put(parts, meaning)
 
 
-def gist_of_matching(tokens: Sequence[Token]) -> Command | None:
+def matching_template(tokens: Sequence[Token]) -> Command | None:
     """The rule "each A to the B that shares its colour", however it is put; None when the words say more or less.
 
     It holds where only two kinds of thing are named, one to be moved and one to receive, something is said to match, and

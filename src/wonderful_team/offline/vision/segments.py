@@ -8,8 +8,8 @@ import cv2
 import numpy as np
 
 from wonderful_team.core.geometry.arrays import Array
+from wonderful_team.offline.vision.occlusion import part_overlaid
 from wonderful_team.offline.vision.outlines import filled
-from wonderful_team.offline.vision.overlaid import part_overlaid
 from wonderful_team.offline.vision.pieces import joined_pieces
 from wonderful_team.offline.vision.splitting import components, kernel, placed, split_by_colour, window
 from wonderful_team.offline.vision.table import Table

@@ -8,8 +8,8 @@ import cv2
 import numpy as np
 
 from wonderful_team.core.geometry.arrays import Array
+from wonderful_team.offline.vision.background import room_distance
 from wonderful_team.offline.vision.fitting import least_squares
-from wonderful_team.offline.vision.room import room_distance
 
 _FLOOR = np.array([1.7, 1.3, 1.3])
 """Least standard deviation assumed for the table in L, a, b: sensor noise and rounding."""

@@ -11,7 +11,7 @@ from wonderful_team.core.protocols import Score
 from wonderful_team.core.text import counted
 from wonderful_team.sims.tabletop.goals import Goal, Poses, Verdict
 from wonderful_team.sims.tabletop.model import Thing
-from wonderful_team.sims.tabletop.rules import Progress, Rules
+from wonderful_team.sims.tabletop.rules import Rules, RuleState
 from wonderful_team.sims.tabletop.suction import Picked
 
 MOVED_M = 0.004
@@ -23,7 +23,7 @@ class Happened:
     """One action and the truth after it; the first entry of a history has no action."""
 
     poses: Poses
-    progress: Progress
+    progress: RuleState
     action: PickPlace | Push | None = None
     picked: Picked | None = None
 

@@ -12,9 +12,9 @@ import shapely
 
 from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.sims.tabletop import textures
+from wonderful_team.sims.tabletop.appearance import Light, Look, plain_look
 from wonderful_team.sims.tabletop.cameras import SEEN_WIDTH_M, Lens
 from wonderful_team.sims.tabletop.engine import mj
-from wonderful_team.sims.tabletop.looks import Light, Look, plain_look
 from wonderful_team.sims.tabletop.shapes import Shape, shape
 from wonderful_team.sims.tabletop.solids import Mesh, extruded
 

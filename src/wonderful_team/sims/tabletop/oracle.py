@@ -15,7 +15,7 @@ from wonderful_team.core.geometry import Pose, wrap_angle
 from wonderful_team.sims.tabletop.cameras import TABLE_HIGH_M, TABLE_LOW_M
 from wonderful_team.sims.tabletop.goals import Goal, Poses, footprint_of
 from wonderful_team.sims.tabletop.model import Thing
-from wonderful_team.sims.tabletop.rules import Progress, Rules
+from wonderful_team.sims.tabletop.rules import Rules, RuleState
 
 SPACE_M = 0.006
 """Free space that is kept between things that are put on one area [m]."""
@@ -31,7 +31,7 @@ def grasp_point(thing: Thing, pose: Pose) -> tuple[float, float, float]:
     return float(x), float(y), float(z)
 
 
-def solve(rules: Rules, progress: Progress, poses: Poses, things: Mapping[str, Thing]) -> list[PickPlace]:
+def solve(rules: Rules, progress: RuleState, poses: Poses, things: Mapping[str, Thing]) -> list[PickPlace]:
     """One action per goal that is not met, phase after phase; a thing whose place is taken waits or steps aside."""
     believed = dict(poses)
     actions: list[PickPlace] = []

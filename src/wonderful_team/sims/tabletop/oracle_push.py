@@ -16,7 +16,7 @@ from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.sims.tabletop.cameras import TABLE_HIGH_M, TABLE_LOW_M
 from wonderful_team.sims.tabletop.goals import Count, Poses, footprint_at, footprint_of
 from wonderful_team.sims.tabletop.model import BLADE_HALF_M, Thing
-from wonderful_team.sims.tabletop.rules import Progress, Rules
+from wonderful_team.sims.tabletop.rules import Rules, RuleState
 
 BEHIND_M = 0.012
 """How far behind a thing the blade comes down [m]."""
@@ -55,7 +55,7 @@ class _Job:
     worth: Array
 
 
-def solve(rules: Rules, progress: Progress, poses: Poses, things: Mapping[str, Thing]) -> list[Push]:
+def solve(rules: Rules, progress: RuleState, poses: Poses, things: Mapping[str, Thing]) -> list[Push]:
     """Pushes until every count is right, as far as straight pushes find a way.
 
     Only the first is sure to do what is expected: friction decides where a thing ends.

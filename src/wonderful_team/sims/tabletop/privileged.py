@@ -12,12 +12,12 @@ from wonderful_team.core.actions import Action
 from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.jsonable import to_jsonable
 from wonderful_team.core.protocols import Score
-from wonderful_team.core.values import Observation, TrueSight, TrueThing
+from wonderful_team.core.values import GroundTruthView, Observation, TrueThing
 from wonderful_team.errors import UnknownNameError
 from wonderful_team.sims.tabletop import oracle as _oracle
 from wonderful_team.sims.tabletop import oracle_push
 from wonderful_team.sims.tabletop.judging import score_of
-from wonderful_team.sims.tabletop.sights import Sights, true_things
+from wonderful_team.sims.tabletop.observation_log import ObservationLog, true_things
 from wonderful_team.sims.tabletop.table import Table
 
 
@@ -26,7 +26,7 @@ class TabletopTruth:
 
     def __init__(self, table: Table) -> None:
         self._table = table
-        self._sights = Sights(table)
+        self._sights = ObservationLog(table)
 
     def things(self) -> Mapping[str, TrueThing]:
         """Everything on the table as it stands now, by name."""
@@ -36,7 +36,7 @@ class TabletopTruth:
         """The same, as it stood when the table was set."""
         return true_things(self._table.things, self._table.history[0].poses)
 
-    def sights(self, view_id: str) -> Sequence[TrueSight]:
+    def observation_log(self, view_id: str) -> Sequence[GroundTruthView]:
         """What really was in every look at a view so far, newest first; one for an instruction's picture; () for an unknown id.
 
         Their masks are drawn when they are first asked for.

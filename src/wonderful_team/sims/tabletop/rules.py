@@ -18,7 +18,7 @@ Distractors: TypeAlias = Literal["always", "at the end"]
 
 
 @dataclass(frozen=True)
-class Progress:
+class RuleState:
     """How far a history has come.
 
     Attributes:
@@ -73,14 +73,14 @@ class Rules:
         """Names of the things that some goal or count is about."""
         return frozenset({goal.thing for goal in self.goals} | {n for count in self.counts for n in count.things})
 
-    def start(self, poses: Poses, things: Mapping[str, Thing]) -> Progress:
+    def start(self, poses: Poses, things: Mapping[str, Thing]) -> RuleState:
         """Before the first action; what is right by then is not yet an achievement of a later phase."""
         met = self._met(poses, things)
         done = frozenset() if self.goals_last or not self.phases else met.intersection(self.phases[0])
-        empty = Progress(Verdict("open"), 0, tuple(frozenset() for _ in self.counts), met, done, met)
+        empty = RuleState(Verdict("open"), 0, tuple(frozenset() for _ in self.counts), met, done, met)
         return replace(empty, verdict=self._failed_at_rest(empty, poses) or self._reached(empty, poses))
 
-    def after(self, before: Progress, during: Sequence[Poses], poses: Poses, things: Mapping[str, Thing]) -> Progress:
+    def after(self, before: RuleState, during: Sequence[Poses], poses: Poses, things: Mapping[str, Thing]) -> RuleState:
         """After one action: `during` are poses on the way, `poses` those at rest. A failure stays a failure."""
         if before.verdict.state == "failure":
             return before
@@ -101,7 +101,7 @@ class Rules:
             now = replace(now, phase=phase + 1, done=begun)
         return replace(now, verdict=verdict)
 
-    def unmet(self, progress: Progress) -> str:
+    def unmet(self, progress: RuleState) -> str:
         """What is still missing, in words."""
         later = self.phases[progress.phase :]
         missing = [
@@ -116,7 +116,7 @@ class Rules:
     def _met(self, poses: Poses, things: Mapping[str, Thing]) -> frozenset[Goal]:
         return frozenset(goal for goal in self.goals if goal.met(poses, things))
 
-    def _done(self, before: Progress, met: frozenset[Goal]) -> frozenset[Goal]:
+    def _done(self, before: RuleState, met: frozenset[Goal]) -> frozenset[Goal]:
         """The goals of the phase that count as reached."""
         due = frozenset(self.phases[before.phase]) if self.phases else frozenset[Goal]()
         return due & (met | before.done if self.goals_last else met)
@@ -144,7 +144,7 @@ class Rules:
                 return counted, Verdict("failure", reason)
         return counted, None
 
-    def _wrong_order(self, before: Progress, now: Progress) -> Verdict | None:
+    def _wrong_order(self, before: RuleState, now: RuleState) -> Verdict | None:
         if self.order == "free":
             return None
         due = self.phases[before.phase]
@@ -158,7 +158,7 @@ class Rules:
                 return Verdict("failure", f"{goal.thing} reached a later goal before the next one")
         return None
 
-    def _failed_at_rest(self, now: Progress, poses: Poses) -> Verdict | None:
+    def _failed_at_rest(self, now: RuleState, poses: Poses) -> Verdict | None:
         remaining = {goal.thing for goals in self.phases[now.phase :] for goal in goals if goal not in now.done}
         remaining |= {name for count in self.counts for name in count.things}.difference(*now.counted)
         for name in sorted(remaining):
@@ -168,7 +168,7 @@ class Rules:
         reason = self._disturbed(poses) if self.distractors_matter == "always" else ""
         return Verdict("failure", reason) if reason else None
 
-    def _reached(self, now: Progress, poses: Poses) -> Verdict:
+    def _reached(self, now: RuleState, poses: Poses) -> Verdict:
         counts = zip(self.counts, now.counted, strict=True)
         last = now.phase >= len(self.phases) - 1
         if not last or not all(len(inside) == count.exactly for count, inside in counts):

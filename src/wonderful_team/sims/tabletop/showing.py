@@ -9,10 +9,10 @@ from typing import Any
 from wonderful_team.core.geometry import Pose
 from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.values import Slot, SlotKind, View
+from wonderful_team.sims.tabletop.appearance import PLAIN_LIGHT
 from wonderful_team.sims.tabletop.cameras import CAMERA_NAMES
 from wonderful_team.sims.tabletop.drawing import open_renderer
 from wonderful_team.sims.tabletop.engine import mj
-from wonderful_team.sims.tabletop.looks import PLAIN_LIGHT
 from wonderful_team.sims.tabletop.model import BuiltModel, Thing, build
 from wonderful_team.sims.tabletop.moving import put_body
 from wonderful_team.sims.tabletop.renderer import Renderer

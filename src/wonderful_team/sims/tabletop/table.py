@@ -14,11 +14,11 @@ from wonderful_team.core.geometry import Pose
 from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.values import Instruction
 from wonderful_team.errors import ConfigError
+from wonderful_team.sims.tabletop.appearance import look_of
 from wonderful_team.sims.tabletop.drawing import open_renderer
 from wonderful_team.sims.tabletop.engine import mj
 from wonderful_team.sims.tabletop.goals import Poses
 from wonderful_team.sims.tabletop.judging import Happened
-from wonderful_team.sims.tabletop.looks import look_of
 from wonderful_team.sims.tabletop.model import Thing, ToolName, build
 from wonderful_team.sims.tabletop.moving import put_body, settle
 from wonderful_team.sims.tabletop.options import Tiers

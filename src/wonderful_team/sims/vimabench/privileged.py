@@ -11,7 +11,7 @@ import numpy as np
 from wonderful_team.core.actions import Action, Vocabulary
 from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.protocols import Score
-from wonderful_team.core.values import Instruction, Observation, TrueSight, TrueThing, View
+from wonderful_team.core.values import GroundTruthView, Instruction, Observation, TrueThing, View
 from wonderful_team.sims.vimabench.client import Simulator
 from wonderful_team.sims.vimabench.converting import pick_of, push_of
 from wonderful_team.sims.vimabench.judging import score_of
@@ -34,7 +34,7 @@ class VimaTruth:
     def __init__(self, simulator: Simulator, episode: Episode) -> None:
         self._simulator, self._episode = simulator, episode
         self._things: tuple[int, Mapping[str, TrueThing]] | None = None
-        self._sights: dict[tuple[str, int], TrueSight] = {}
+        self._sights: dict[tuple[str, int], GroundTruthView] = {}
 
     def score(self) -> Score:
         """The simulator's own word on success and failure within the horizon; the stage from what was touched."""
@@ -84,7 +84,7 @@ class VimaTruth:
         """The same, as it stood when the world was made."""
         return self._asked("start")
 
-    def sights(self, view_id: str) -> Sequence[TrueSight]:
+    def observation_log(self, view_id: str) -> Sequence[GroundTruthView]:
         """What really was in every look at a view so far, newest first; one for an instruction's picture; () for an unknown id."""
         if view_id.startswith("slot:"):
             found = [
@@ -99,7 +99,7 @@ class VimaTruth:
 
     def masks(self, camera: str = "top") -> dict[str, Array]:
         """Which pixels of a view show each thing now, shape (H, W) bool by name."""
-        return dict(self.sights(camera)[0].masks)
+        return dict(self.observation_log(camera)[0].masks)
 
     def oracle(self) -> Sequence[Action]:
         """Actions that solve the episode from here; [] when it is over. Of pushes the next one only: ask again after each."""
@@ -111,11 +111,11 @@ class VimaTruth:
         said, _ = self._simulator.ask("things", when=when)
         return {one["name"]: TrueThing(**one) for one in said["things"]}
 
-    def _sight(self, view: View, number: int, what: str, **which: Any) -> TrueSight:
+    def _sight(self, view: View, number: int, what: str, **which: Any) -> GroundTruthView:
         key = (view.id, number)
         if key not in self._sights:
             said, pictures = self._simulator.ask(what, camera=view.camera_name, **which)
             bodies = pictures["bodies"]
             masks = {str(name): np.asarray(bodies == int(body)) for body, name in said["names"].items()}
-            self._sights[key] = TrueSight(replace(view, depth_m=None), masks)
+            self._sights[key] = GroundTruthView(replace(view, depth_m=None), masks)
         return self._sights[key]

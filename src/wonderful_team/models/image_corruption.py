@@ -66,7 +66,7 @@ def with_pictures(value: Any, change: Callable[[Picture], Picture]) -> Any:
             return value
 
 
-class Reshown:
+class ImageCorruption:
     """Passes requests to `model` with every picture changed.
 
     Args:
@@ -77,7 +77,7 @@ class Reshown:
 
     def __init__(self, model: Model, change: Change, only: str = "") -> None:
         self.model, self._change, self._only = model, change, only
-        self.name = f"{getattr(model, 'name', type(model).__name__)}+reshown"
+        self.name = f"{getattr(model, 'name', type(model).__name__)}+image_corruption"
         self._made: dict[int, tuple[Array, Array]] = {}
 
     async def answer(self, request: Request) -> Any:

@@ -12,7 +12,7 @@ from wonderful_team.agents.request import role_for
 from wonderful_team.contracts import MemoryEntry, Question, Remember
 from wonderful_team.core.values import Answer, Note
 from wonderful_team.errors import ModelOutputError
-from wonderful_team.models.door import Door
+from wonderful_team.models.client import ModelClient
 from wonderful_team.planning.config import Members, TeamConfig
 from wonderful_team.planning.memory import Notebooks, SystemMemory
 
@@ -21,14 +21,14 @@ STAGES = ("plan", "ground", "act", "replan", "memory")
 
 
 @dataclass
-class Desk:
+class AgentSession:
     """Ask on behalf of the roles.
 
     Attributes:
         attempt: Number of the plan within the trial; part of every request's id.
     """
 
-    door: Door
+    client: ModelClient
     config: TeamConfig
     instruction: str
     notebooks: Notebooks = field(default_factory=Notebooks)
@@ -63,7 +63,7 @@ class Desk:
             prompts=self.config.prompts,
         )
         write_down = self.notebooks.begin(asker, branch)
-        answer = await self.door.ask(request)
+        answer = await self.client.ask(request)
         write_down(Note(question.contract, _short(answer.value), "notebook"))
         return answer
 
@@ -80,17 +80,17 @@ class Desk:
             value = await self.ask(question, stage="memory", branch=branch)
         except ModelOutputError as error:
             # A lost note must not lose the plan; the page shows the warning.
-            self.door.tell("warning", "memory", f"nothing remembered: {error}")
+            self.client.tell("warning", "memory", f"nothing remembered: {error}")
             return None
         assert isinstance(value, MemoryEntry)
         return value
 
     def stage(self, name: str, text: str) -> None:
         """Tell subscribers that a stage is finished, in one line."""
-        self.door.tell("stage", name, {"text": text, "attempt": self.attempt})
+        self.client.tell("stage", name, {"text": text, "attempt": self.attempt})
 
     def warn(self, text: str) -> None:
-        self.door.tell("warning", "planning", text)
+        self.client.tell("warning", "planning", text)
 
 
 def _short(value: Any) -> str:
@@ -99,6 +99,6 @@ def _short(value: Any) -> str:
     return json.dumps(content, ensure_ascii=False)[:400]
 
 
-async def settle(desk: Desk) -> None:
+async def settle(session: AgentSession) -> None:
     """Drop what is still under way when planning ends early."""
-    await asyncio.shield(desk.memory.cancel())
+    await asyncio.shield(session.memory.cancel())

@@ -22,7 +22,7 @@ _GATHER = _SAID | frozenset(
 _SAME = {"texture": "same_pattern", "colour": "same_colour", "shape": "same_shape"}
 
 
-def gist_of_gathering(tokens: Sequence[Token]) -> Command | None:
+def gathering_template(tokens: Sequence[Token]) -> Command | None:
     """The words "all that has the texture of {x} goes into it": one picture, many things, one aspect; None for others."""
     kinds = {token.kind for token in tokens}
     names = {str(token.value) for token in tokens if token.kind == "SLOT"}

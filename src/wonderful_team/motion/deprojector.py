@@ -24,7 +24,7 @@ _WINDOW_PER_PX = 1 / 150
 
 
 @dataclass(frozen=True, eq=False)
-class Spot:
+class ResolvedPoint:
     """A pixel of the main view, the point in the base frame that it stands for, and the rule that made it one.
 
     Attributes:
@@ -37,7 +37,7 @@ class Spot:
 
 
 @dataclass(frozen=True, eq=False)
-class Lift:
+class Deprojector:
     """Turns pixels of one view into points of the base frame."""
 
     view: View
@@ -51,10 +51,10 @@ class Lift:
         width, height = self.view.size_px
         return 0 <= px[0] <= width and 0 <= px[1] <= height
 
-    def surface(self, px: Point, name: str) -> Spot:
+    def surface(self, px: Point, name: str) -> ResolvedPoint:
         """The visible surface at a pixel: by depth where there is any near it, else on the table plane."""
         if self.camera is None:
-            return Spot(px, None, f"{name}, no camera: pixels only")
+            return ResolvedPoint(px, None, f"{name}, no camera: pixels only")
         depth_m = None if isinstance(self.camera, PlanarCamera) else self._depth_near(px)
         if depth_m is None:
             return self.at_height(px, self._plane_z_m, f"{name}, on the table plane (no depth there)")
@@ -62,13 +62,13 @@ class Lift:
         how = f"{name}, depth {depth_m:.3f} m"
         if TABLE_Z_M - DEPTH_NOISE_M <= position[2] < TABLE_Z_M:
             return self.at_height(px, TABLE_Z_M, f"{how}, on the table")
-        return Spot(px, position, how)
+        return ResolvedPoint(px, position, how)
 
-    def at_height(self, px: Point, z_m: float, how: str) -> Spot:
+    def at_height(self, px: Point, z_m: float, how: str) -> ResolvedPoint:
         """Where a pixel's ray meets a height."""
         if self.camera is None:
-            return Spot(px, None, how)
-        return Spot(px, np.asarray(self.camera.on_plane([px], z_m)[0]), how)
+            return ResolvedPoint(px, None, how)
+        return ResolvedPoint(px, np.asarray(self.camera.on_plane([px], z_m)[0]), how)
 
     def support_z_m(self, box: Box | None, below_m: float = math.inf) -> float:
         """Height of what a boxed thing stands on, measured just round its box; the table's without a box or depth.

@@ -29,7 +29,7 @@ T = TypeVar("T")
 LEAST_SIDE_PX = 2.0
 
 
-class Luck:
+class ErrorSampler:
     """Draws errors."""
 
     def __init__(self, profile: Profile, request: Request) -> None:
@@ -49,7 +49,7 @@ class Luck:
     def _rng(self, what: str) -> np.random.Generator:
         return np.random.default_rng([self.profile.seed, zlib.crc32(f"{self._key}|{what}".encode())])
 
-    def spoil(self, value: Any, request: Request) -> Any:
+    def perturb(self, value: Any, request: Request) -> Any:
         """A right answer with the profile's errors in its numbers, choices and verdicts."""
         question = request.question
         match value:

@@ -22,7 +22,7 @@ from wonderful_team.runtime.optional import Accounting, Configured, NamedModel, 
 
 
 @dataclass(frozen=True)
-class Ending:
+class RolloutEnd:
     """How it ended. `outcome` None leaves the word to the scorer; `final` forbids another attempt."""
 
     outcome: Literal["success", "failure", "error", "unscored"] | None
@@ -32,7 +32,7 @@ class Ending:
 
 
 @dataclass
-class Progress:
+class RolloutLog:
     """Collects the parts of a Trial while it runs."""
 
     policy: Policy
@@ -64,7 +64,7 @@ class Progress:
         told: dict[str, Any] = {
             "attempt": situation.attempt,
             "replans_left": situation.replans_left,
-            "looks_left": situation.looks_left,
+            "looks_left": situation.reobserve_left,
         }
         if situation.advice:
             told["advice"] = situation.advice
@@ -109,7 +109,7 @@ class Progress:
         """Whether actions were the method's last word: it was not asked what came of them."""
         return isinstance(self.last, Act)
 
-    def finish(self, ending: Ending) -> Trial:
+    def finish(self, ending: RolloutEnd) -> Trial:
         """The trial as it stands; told to subscribers as the last event."""
         policy = self.policy
         trial = Trial(

@@ -15,7 +15,7 @@ from wonderful_team.core.pictures import Picture
 from wonderful_team.core.values import Answer, Request, Subgoal, Usage, Words
 from wonderful_team.errors import ConfigError, ModelOutputError
 from wonderful_team.models.budget import Budget
-from wonderful_team.models.door import Door
+from wonderful_team.models.client import ModelClient
 from wonderful_team.models.scripted import ScriptedModel
 
 GOOD = {"reasoning": "", "accepted": True, "problem": ""}
@@ -43,7 +43,7 @@ class Heard:
 
 
 def ask(model, **options):
-    return asyncio.run(Door(model, **options).ask(request()))
+    return asyncio.run(ModelClient(model, **options).ask(request()))
 
 
 @pytest.mark.parametrize(
@@ -75,21 +75,21 @@ def test_three_invalid_answers_are_a_typed_failure_of_the_method():
 
 def test_each_role_may_have_its_own_model():
     one, rest = ScriptedModel({"ReviewPath": GOOD}), ScriptedModel({"ReviewPath": GOOD})
-    door = Door({"checker": one, "*": rest})
-    asyncio.run(door.ask(request("checker")))
-    asyncio.run(door.ask(request("supervisor")))
+    client = ModelClient({"checker": one, "*": rest})
+    asyncio.run(client.ask(request("checker")))
+    asyncio.run(client.ask(request("supervisor")))
     assert (len(one.requests), len(rest.requests)) == (1, 1)
-    assert set(door.budget.by_role) == {"checker", "supervisor"}
+    assert set(client.budget.by_role) == {"checker", "supervisor"}
 
 
 def test_a_role_without_a_model_is_a_configuration_error():
     with pytest.raises(ConfigError, match=r"no model for role 'supervisor'; models are set for: checker"):
-        asyncio.run(Door({"checker": ScriptedModel({})}).ask(request()))
+        asyncio.run(ModelClient({"checker": ScriptedModel({})}).ask(request()))
 
 
 def test_something_that_cannot_answer_is_refused_at_once():
     with pytest.raises(ConfigError, match="without answer"):
-        Door(object())
+        ModelClient(object())
 
 
 def test_plain_functions_run_beside_each_other():
@@ -104,13 +104,13 @@ def test_plain_functions_run_beside_each_other():
             time.sleep(0.1)
             return GOOD
 
-    async def two(door):
+    async def two(client):
         started = time.monotonic()
-        await asyncio.gather(door.ask(request()), door.ask(request(id="2")))
+        await asyncio.gather(client.ask(request()), client.ask(request(id="2")))
         return time.monotonic() - started
 
     model = Plain()
-    assert asyncio.run(two(Door(model))) < 0.19
+    assert asyncio.run(two(ModelClient(model))) < 0.19
     assert threading.get_ident() not in model.threads
 
 
@@ -125,25 +125,25 @@ def test_the_concurrency_limit_holds():
             self.running -= 1
             return GOOD
 
-    async def many(door):
-        await asyncio.gather(*(door.ask(request(id=str(n))) for n in range(12)))
+    async def many(client):
+        await asyncio.gather(*(client.ask(request(id=str(n))) for n in range(12)))
 
     model = Counting()
-    asyncio.run(many(Door(model, concurrency=3)))
+    asyncio.run(many(ModelClient(model, concurrency=3)))
     assert model.peak == 3
 
 
 def test_calls_in_flight_count_against_the_caps():
-    async def many(door):
-        return await asyncio.gather(*(door.ask(request(id=str(n))) for n in range(6)), return_exceptions=True)
+    async def many(client):
+        return await asyncio.gather(*(client.ask(request(id=str(n))) for n in range(6)), return_exceptions=True)
 
     model = ScriptedModel({"ReviewPath": Answer(GOOD, Usage(calls=1, tokens_in=100))}, delay_s=0.01)
-    results = asyncio.run(many(Door(model, budget=Budget(Caps(calls=4)))))
+    results = asyncio.run(many(ModelClient(model, budget=Budget(Caps(calls=4)))))
     assert len(model.requests) == 4
     assert sum(isinstance(r, Exception) for r in results) == 2
 
 
 def test_the_door_serves_several_event_loops_one_after_the_other():
-    door = Door(ScriptedModel({"ReviewPath": GOOD}), concurrency=1)
+    client = ModelClient(ScriptedModel({"ReviewPath": GOOD}), concurrency=1)
     for _ in range(3):
-        assert asyncio.run(door.ask(request())).value.accepted
+        assert asyncio.run(client.ask(request())).value.accepted

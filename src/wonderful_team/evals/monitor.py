@@ -13,7 +13,7 @@ from wonderful_team.evals.trials import SpendingCaps
 
 
 @dataclass(frozen=True)
-class Standing:
+class StudyStatus:
     """Where a study stands.
 
     Attributes:
@@ -43,11 +43,11 @@ class Standing:
         return f"{self.done}/{self.total}  {counts}  {counted(self.spent.calls, 'call')}  {money}  {rate}{left}"
 
 
-Report = Callable[[str, Standing | None], None]
+Report = Callable[[str, StudyStatus | None], None]
 """Told a message, or "" with where the study stands."""
 
 
-class Watch:
+class StudyMonitor:
     """Looks at a store and tells how far a study is."""
 
     def __init__(self, store: Store, study: str, report: Report) -> None:
@@ -57,9 +57,9 @@ class Watch:
         self._before = store.count(study, "done")
         self._told = self._began
 
-    def standing(self) -> Standing:
+    def status(self) -> StudyStatus:
         done = self.store.count(self.study, "done")
-        return Standing(
+        return StudyStatus(
             self._total,
             done,
             done - self._before,
@@ -72,7 +72,7 @@ class Watch:
         """Report at most once a second."""
         if time.monotonic() - self._told >= 1.0:
             self._told = time.monotonic()
-            self.report("", self.standing())
+            self.report("", self.status())
         return True
 
     @property

@@ -127,13 +127,13 @@ def _window(point: Point, held: Box | None, view: View) -> Box:
     return Box.around(point, side, side)
 
 
-def freshness_checks(
+def staleness_checks(
     then: Observation | None,
     now: Observation,
     regions: Sequence[Region],
     *,
     scene_hash: str | None = None,
-    excused: Sequence[Box] = (),
+    expected_change: Sequence[Box] = (),
     max_age_s: float | None = MAX_AGE_S,
 ) -> list[GateCheck]:
     """Compare the picture the plan was made from with the picture of now.
@@ -143,7 +143,7 @@ def freshness_checks(
         now: The scene just before motion.
         regions: What the coming actions rely on.
         scene_hash: The hash that the plan says its picture has; None for actions that come without a plan.
-        excused: Parts that the plan's own earlier actions changed.
+        expected_change: Parts that the plan's own earlier actions changed.
         max_age_s: Limit on the picture's age [s]; None for no limit.
     """
     if then is None:
@@ -163,7 +163,7 @@ def freshness_checks(
     checks.append(_age(then, now, max_age_s))
     same = then.hash == now.hash
     checks.append(GateCheck(None, "scene", True, "the same picture" if same else "changed somewhere", "regions decide"))
-    checks += [_region_check(then.main, now.main, region, same, excused) for region in regions]
+    checks += [_region_check(then.main, now.main, region, same, expected_change) for region in regions]
     return checks
 
 
@@ -175,14 +175,14 @@ def _age(then: Observation, now: Observation, max_age_s: float | None) -> GateCh
     return GateCheck(None, "picture age", ok, f"{age_s:.1f} s", f"0 to {max_age_s:.0f} s", f"{max_age_s - age_s:.1f} s")
 
 
-def _region_check(then: View, now: View, region: Region, same: bool, excused: Sequence[Box]) -> GateCheck:
+def _region_check(then: View, now: View, region: Region, same: bool, expected_change: Sequence[Box]) -> GateCheck:
     limit = f"change below {CHANGED:.2f} of 1"
     name = f"unchanged: {region.name}"
     if then.size_px != now.size_px:
         return GateCheck(region.action, name, False, f"picture of {now.size_px} px", f"{then.size_px} px as planned")
     if region.box.intersection(Box(0, 0, *now.size_px)) is None:
         return GateCheck(region.action, name, False, "outside the picture: it cannot be watched", limit)
-    if any(region.box.intersection(box) is not None for box in excused):
+    if any(region.box.intersection(box) is not None for box in expected_change):
         return GateCheck(region.action, name, True, "changed by this plan's own actions", limit, "excused")
     change = 0.0 if same else region_change(then.rgb, now.rgb, region.box)
     return GateCheck(region.action, name, change < CHANGED, f"{change:.2f}", limit, f"{CHANGED - change:+.2f}")

@@ -26,7 +26,7 @@ _TARGETS = [
 ]
 
 
-def agreeable_script() -> dict[str, Any]:
+def stub_script() -> dict[str, Any]:
     """A script for ScriptedModel: one subgoal, two targets, no doubt, every first box accepted."""
     answers: dict[str, Callable[[Request], Any]] = {
         "DraftPlan": lambda request: _draft(request.question.with_targets),
@@ -83,9 +83,9 @@ def agreeable_script() -> dict[str, Any]:
     return dict(answers)
 
 
-def agreeable_model(delay_s: float = 0.0) -> ScriptedModel:
+def stub_model(delay_s: float = 0.0) -> ScriptedModel:
     """A model that agrees with everything and takes a fixed time per answer."""
-    return ScriptedModel(agreeable_script(), delay_s=delay_s, name="agreeable")
+    return ScriptedModel(stub_script(), delay_s=delay_s, name="stub")
 
 
 def _draft(with_targets: bool) -> dict[str, Any]:

@@ -18,7 +18,7 @@ from shapely.geometry.base import BaseGeometry
 
 from wonderful_team.core.geometry import Pose
 from wonderful_team.core.geometry.arrays import Array
-from wonderful_team.core.values import Observation, TrueSight, TrueThing, View
+from wonderful_team.core.values import GroundTruthView, Observation, TrueThing, View
 from wonderful_team.sims.tabletop.goals import footprint_of
 from wonderful_team.sims.tabletop.model import Thing
 from wonderful_team.sims.tabletop.oracle import grasp_point
@@ -61,16 +61,16 @@ class Look:
     """One look: the state it was drawn from, and the sight of each camera."""
 
     state: Snapshot
-    sights: Mapping[str, TrueSight]
+    observation_log: Mapping[str, GroundTruthView]
 
 
-class Sights:
+class ObservationLog:
     """Keeps what was looked at; bounded, and without any drawing of its own until somebody asks."""
 
     def __init__(self, table: Table) -> None:
         self._table = table
         self._looks: deque[Look] = deque(maxlen=LOOKS)
-        self._slots: Mapping[str, TrueSight] | None = None
+        self._slots: Mapping[str, GroundTruthView] | None = None
         self._lock = threading.RLock()
 
     def keep(self, observation: Observation) -> None:
@@ -78,25 +78,25 @@ class Sights:
         state = self._table.snapshot()
         if self._looks and self._looks[-1].state.same_as(state):
             return
-        sights = {name: self._sight(view, state) for name, view in observation.views.items()}
-        self._looks.append(Look(state, sights))
+        observation_log = {name: self._sight(view, state) for name, view in observation.views.items()}
+        self._looks.append(Look(state, observation_log))
 
-    def of(self, view_id: str) -> Sequence[TrueSight]:
+    def of(self, view_id: str) -> Sequence[GroundTruthView]:
         """Every look at a view, newest first; one for a picture of the instruction; () for an unknown id."""
         if view_id.startswith("slot:"):
             found = self._of_slots().get(view_id)
             return () if found is None else (found,)
-        return tuple(look.sights[view_id] for look in reversed(self._looks) if view_id in look.sights)
+        return tuple(look.observation_log[view_id] for look in reversed(self._looks) if view_id in look.observation_log)
 
-    def _sight(self, view: View, state: Snapshot) -> TrueSight:
+    def _sight(self, view: View, state: Snapshot) -> GroundTruthView:
         table, camera = self._table, view.camera_name
-        return TrueSight(
+        return GroundTruthView(
             replace(view, depth_m=None),
             Lazily(lambda: self._drawn(lambda: table.masks_at(state, camera))),
             Lazily(lambda: true_things(table.things, table.poses_at(state))),
         )
 
-    def _of_slots(self) -> Mapping[str, TrueSight]:
+    def _of_slots(self) -> Mapping[str, GroundTruthView]:
         with self._lock:
             if self._slots is None:
                 self._slots = {
@@ -106,9 +106,9 @@ class Sights:
                 }
             return self._slots
 
-    def _slot_sight(self, name: str, view: View) -> TrueSight:
+    def _slot_sight(self, name: str, view: View) -> GroundTruthView:
         table = self._table
-        return TrueSight(
+        return GroundTruthView(
             view,
             Lazily(lambda: self._drawn(lambda: table.slot_masks(name, view.camera_name))),
             Lazily(lambda: {thing.name: true_thing(thing, pose) for thing, pose in table.slot_stands(name)}),

@@ -11,7 +11,7 @@ import numpy as np
 from wonderful_team.core.actions import Height
 from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.pictures import Point
-from wonderful_team.motion.lift import Lift, Spot
+from wonderful_team.motion.deprojector import Deprojector, ResolvedPoint
 from wonderful_team.motion.turns import turned_m, turned_px
 
 
@@ -31,14 +31,14 @@ class Moved:
     end_m: Array | None
     yaw_rad: float = 0.0
 
-    def carry(self, spot: Spot, lift: Lift) -> Spot:
+    def carry(self, spot: ResolvedPoint, lift: Deprojector) -> ResolvedPoint:
         """Where a spot of the thing lies after the move."""
         how = f"{spot.how}; moved along by step {self.step}"
         if spot.position_m is not None and self.start_m is not None and self.end_m is not None:
             position = self.end_m + turned_m(spot.position_m - self.start_m, self.yaw_rad)
-            return Spot(lift.to_px(position), position, how)
+            return ResolvedPoint(lift.to_px(position), position, how)
         dx, dy = turned_px((spot.px[0] - self.start_px[0], spot.px[1] - self.start_px[1]), self.yaw_rad)
-        return Spot((self.end_px[0] + dx, self.end_px[1] + dy), None, how)
+        return ResolvedPoint((self.end_px[0] + dx, self.end_px[1] + dy), None, how)
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,8 +53,8 @@ class Held:
     """
 
     target: str
-    tool: Spot
-    centre: Spot
+    tool: ResolvedPoint
+    centre: ResolvedPoint
     support_z_m: float
     yaw_rad: float
 
@@ -65,7 +65,7 @@ class Held:
 
 
 @dataclass(frozen=True, eq=False)
-class Progress:
+class MotionState:
     """The state between two steps.
 
     Attributes:
@@ -78,7 +78,7 @@ class Progress:
 
     moved: Mapping[str, tuple[Moved, ...]] = field(default_factory=dict)
     yaw_rad: float = 0.0
-    tool: Spot | None = None
+    tool: ResolvedPoint | None = None
     height: Height = "clear"
     over: str | None = None
     held: Held | None = None
@@ -86,11 +86,11 @@ class Progress:
     def __post_init__(self) -> None:
         object.__setattr__(self, "moved", MappingProxyType(dict(self.moved)))
 
-    def with_move(self, target: str, move: Moved) -> Progress:
+    def with_move(self, target: str, move: Moved) -> MotionState:
         """After a thing was moved once more."""
         return replace(self, moved={**self.moved, target: (*self.moved.get(target, ()), move)})
 
-    def carry(self, target: str, spot: Spot, lift: Lift) -> Spot:
+    def carry(self, target: str, spot: ResolvedPoint, lift: Deprojector) -> ResolvedPoint:
         """Where a spot of a target lies now, given where the picture showed it."""
         for move in self.moved.get(target, ()):
             spot = move.carry(spot, lift)

@@ -29,17 +29,17 @@ class Looker:
         if not self.moves:
             return Done("looks right")
         plan = make_plan(situation.observation, [self.moves.pop(0)])
-        return Act(plan.actions, plan, look=self.always or situation.looks_left > 0)
+        return Act(plan.actions, plan, reobserve=self.always or situation.reobserve_left > 0)
 
 
 def test_a_look_is_a_new_picture_and_no_replan():
     world, listener = SquaresWorld(), Listener()
     policy = Looker([(RED, MIDDLE), (MIDDLE, UP)])
-    trial = rollout(policy, world, looks=5, scorer=SquaresTruth(world, {"red": UP}), subscribers=[listener])
+    trial = rollout(policy, world, reobserve=5, scorer=SquaresTruth(world, {"red": UP}), subscribers=[listener])
     assert trial.outcome == "success"
     assert [situation.attempt for situation in policy.asked] == [0, 0, 0]
     assert [situation.replans_left for situation in policy.asked] == [0, 0, 0]
-    assert [situation.looks_left for situation in policy.asked] == [5, 4, 3]
+    assert [situation.reobserve_left for situation in policy.asked] == [5, 4, 3]
     assert [len(situation.executed) for situation in policy.asked] == [0, 1, 1]
     assert len({situation.observation.hash for situation in policy.asked}) == 3
     assert [event.name for event in listener.events if event.kind == "observe" and event.name == "look"]
@@ -48,7 +48,7 @@ def test_a_look_is_a_new_picture_and_no_replan():
 
 def test_looks_are_bounded():
     policy = Looker([(RED, MIDDLE), (MIDDLE, RED)] * 10, always=True)
-    trial = rollout(policy, SquaresWorld(), looks=3)
+    trial = rollout(policy, SquaresWorld(), reobserve=3)
     assert len(policy.asked) == 4
     assert len(trial.runs) == 4
     assert "ran out" in trial.reason
@@ -65,7 +65,7 @@ def test_without_looks_an_act_is_the_whole_attempt():
 
 def test_what_did_not_run_is_no_look():
     policy = Looker([((20.0, 20.0), UP), (RED, UP)])
-    trial = rollout(policy, SquaresWorld(), looks=5)
+    trial = rollout(policy, SquaresWorld(), reobserve=5)
     assert len(policy.asked) == 1
     assert "did not run" in trial.reason
 
@@ -74,10 +74,10 @@ def test_a_plan_that_was_read_or_approved_runs_as_it_is():
     world = SquaresWorld()
     seen = world.observe()
     plan = make_plan(seen, [(RED, UP)])
-    with pytest.raises(ConfigError, match="looks must be 0"):
-        rollout(Looker([]), world, plan=plan, plan_observation=seen, looks=2)
-    with pytest.raises(ConfigError, match="looks must be 0"):
-        rollout(Looker([]), world, approval=Approval(plan.id, "a person"), looks=2)
-    with pytest.raises(ConfigError, match="looks must be 0 or more"):
-        rollout(Looker([]), world, looks=-1)
+    with pytest.raises(ConfigError, match="reobserve must be 0"):
+        rollout(Looker([]), world, plan=plan, plan_observation=seen, reobserve=2)
+    with pytest.raises(ConfigError, match="reobserve must be 0"):
+        rollout(Looker([]), world, approval=Approval(plan.id, "a person"), reobserve=2)
+    with pytest.raises(ConfigError, match="reobserve must be 0 or more"):
+        rollout(Looker([]), world, reobserve=-1)
     assert world.ran == 0

@@ -42,7 +42,7 @@ DEFAULT = "*"
 """Key of the model that serves every role without one of its own."""
 
 
-class Door:
+class ModelClient:
     """Ask models questions.
 
     Args:
@@ -116,7 +116,7 @@ class Door:
             answer = await self._send(model, sent)
             total = total + answer.usage
             try:
-                value, repairs = settle_answer(sent, answer.value)
+                value, repairs = validate_answer(sent, answer.value)
             except (ValueError, RecursionError, OverflowError) as error:
                 text = _explain(error)
                 self.tell("invalid", sent.id, (sent, answer.raw or _as_text(answer.value), text))
@@ -255,7 +255,7 @@ def as_answer(result: Any, model: Model) -> Answer:
     return Answer(value=result, model_id=_name(model), raw=raw, usage=Usage(calls=1, usd=None))
 
 
-def settle_answer(request: Request, value: Any) -> tuple[Any, tuple[str, ...]]:
+def validate_answer(request: Request, value: Any) -> tuple[Any, tuple[str, ...]]:
     """Validate a value against the request's type and question. Raises ValueError with text for the model."""
     output: type[BaseModel] = request.output
     if isinstance(value, Unreadable):
@@ -265,7 +265,7 @@ def settle_answer(request: Request, value: Any) -> tuple[Any, tuple[str, ...]]:
     else:
         parsed = output.model_validate(_plain(value))
     question = request.question
-    return question.settle(parsed) if isinstance(question, Question) else (parsed, ())
+    return question.validate(parsed) if isinstance(question, Question) else (parsed, ())
 
 
 def _plain(value: Any) -> Any:

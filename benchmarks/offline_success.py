@@ -2,7 +2,7 @@
 
     python -m benchmarks.offline_success                          # seeds from 1000: 50 per VIMA task, 20 per fruit variation
     python -m benchmarks.offline_success --first 0 --seeds 10     # development seeds, only for working on it
-    python -m benchmarks.offline_success --tasks sweep_without_touching --looks 20   # a look after every push
+    python -m benchmarks.offline_success --tasks sweep_without_touching --reobserve 20   # a look after every push
     python -m benchmarks.offline_success --world vimabench --jobs 2                  # the user's own VIMA-Bench
 
 `offline` is classical vision and a grammar, not a vision-language model; the figures say nothing about any VLM.
@@ -174,7 +174,7 @@ def main() -> None:
     parser.add_argument("--world", default="tabletop", choices=["tabletop", "vimabench"])
     parser.add_argument("--partition", help="a generalisation level, such as L3")
     parser.add_argument("--replans", type=int, default=0, help="replans after the first attempt (0: single attempt)")
-    parser.add_argument("--looks", type=int, default=0, help="looks after pushes (0: open loop)")
+    parser.add_argument("--reobserve", type=int, default=0, help="looks after pushes (0: open loop)")
     parser.add_argument("--recolour", type=int, help="redraw every scene with other colours, from this seed")
     parser.add_argument("--jobs", "--workers", type=int, default=2, help="processes")
     parser.add_argument("--json", type=Path, help="write every result to this file")

@@ -1,7 +1,7 @@
 """How often the whole chain solves a task when the model makes no errors: subgoals, targets, frames, motion and gate.
 
 Run: python benchmarks/perfect.py [--world tabletop|vimabench] [--first 500] [--seeds 6] [--task NAME ...] [--way lean|paper]
-     [--replans N] [--looks N] [--show shifted|flipped|noised|blank] [--isolate planning|grounding] [--jobs N] [--model NAME]
+     [--replans N] [--reobserve N] [--show shifted|flipped|noised|blank] [--isolate planning|grounding] [--jobs N] [--model NAME]
 
 Every scene is run twice: by the oracle, which looks after every action, and by the team with `simulated:perfect`, which answers
 from truth as it is seen through the pictures that it is shown. Whatever the oracle solves and the team does not is listed
@@ -145,7 +145,7 @@ def main() -> None:
     parser.add_argument("--setting", choices=tuple(ABLATIONS), default="full", help="members switched off")
     parser.add_argument("--model", default="simulated:perfect")
     parser.add_argument("--replans", type=int, default=0)
-    parser.add_argument("--looks", type=int, help="default 0; for pushes the task's horizon, one after every push")
+    parser.add_argument("--reobserve", type=int, help="default 0; for pushes the task's horizon, one after every push")
     parser.add_argument(
         "--show", choices=tuple(CHANGES), default="", help="change every picture on its way to the model"
     )

@@ -107,8 +107,8 @@ def test_errors_are_kept_apart_and_retried_on_request(tmp_path: Path, monkeypatc
     again = run_study(toy_plan(10), path, runners.breaking, jobs=1)
     assert again.status.here == 0
     broken.unlink()
-    mended = run_study(toy_plan(10), path, runners.breaking, jobs=1, retry_errors=True)
-    assert "error" not in mended.status.outcomes
+    repaired = run_study(toy_plan(10), path, runners.breaking, jobs=1, retry_errors=True)
+    assert "error" not in repaired.status.outcomes
     with Store(path) as store:
         assert sum(row.discarded for row in store.rows()) == 8
         reasons = {row.result.reason for row in store.rows() if row.result is not None}

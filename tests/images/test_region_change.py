@@ -1,4 +1,4 @@
-"""The freshness measure: a nudge of a centimetre stands out, noise and light do not."""
+"""The staleness measure: a nudge of a centimetre stands out, noise and light do not."""
 
 from __future__ import annotations
 

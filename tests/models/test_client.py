@@ -1,4 +1,4 @@
-"""The door: validation, retries with the reason, deadlines, concurrency, and what subscribers hear."""
+"""The client: validation, retries with the reason, deadlines, concurrency, and what subscribers hear."""
 
 from __future__ import annotations
 

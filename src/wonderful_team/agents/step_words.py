@@ -44,7 +44,7 @@ def place_words(place: Place) -> str:
         case Beside():
             return f"the spot {_BESIDE[place.side]} {place.target}"
         case OriginOf():
-            return f"where {place.target} stood at first"
+            return f"where {place.target} stood at the start"
 
 
 def turn_words(rotate_deg: float) -> str:

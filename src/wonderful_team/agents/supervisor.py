@@ -72,7 +72,7 @@ Write the plan that fulfils the instruction in the scene that is shown.
 """
 
 REVISE = f"""
-Verification raised the doubt above about your plan. Look at the scene again with its eyes.
+Verification raised the doubt above about your plan. Look at the scene again with this in mind.
 - decision revise: the doubt is right. Give the whole new plan, not only the changed part, and say in `answer` what
   changed. Keep what was not in doubt as it was.
 - decision keep: the plan is right as it stands. Give null for the plan, and say in `answer` what in the pictures or
@@ -96,12 +96,12 @@ id and give no coordinates.
 - Each step names the subgoal it serves, and every subgoal is served. Use only what the robot can do, and no step that
   the plan does not need.
 - A place is "at" a target (the point chosen on it), "beside" a target (then give the side, as the main view shows it),
-  or the "origin" of a target (where it stood at first; for putting things back).
+  or the "origin" of a target (where it stood at the start; for putting things back).
 - rotate_deg: only what the instruction or its pictures state; clockwise seen from above is positive, anticlockwise
   negative; 0 when nothing is said.
 - With a gripper: open, move above, move at, close, move clear, then move above the place, move at, open, move clear.
 - A subgoal with a helper function is carried out with a follow step that names it.
-- If Verification asked about the last version, mend what it found and keep the rest.
+- If Verification asked about the last version, repair what it found and keep the rest.
 """
 
 FUNCTION = """
@@ -112,7 +112,7 @@ list of (x, y) in pixels of the picture, whose width and height are stated with 
 - Plain Python with functions, loops and the math module. Nothing else can be imported; there are no files, no input,
   no yield and no classes that inherit.
 - At least two points and at most as many as stated; all inside the picture. The first is where the path begins.
-- If an error or a criticism of the last version is shown, mend its cause and return the whole function again.
+- If an error or a criticism of the last version is shown, repair its cause and return the whole function again.
 """
 
 REVIEW_PATH = """

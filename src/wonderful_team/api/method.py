@@ -119,14 +119,14 @@ class Method:
         name = waiting(self._models)
         if name is not None:
             raise ConfigError(
-                f"model {name!r} answers from a simulator's truth, and a picture alone has none: hand the world over, as in "
+                f"model {name!r} answers from a simulator's truth, and a picture alone has none: pass the world, as in "
                 f"wt.Team(model={name!r}, world=world), or run it with wt.rollout(team, world)"
             )
 
     door = renamed_attribute("door", "client")
 
     def client(self, *subscribers: Subscriber) -> ModelClient:
-        """A door to the model for one run: capped, and told to subscribers."""
+        """A client of the model for one run: capped, and told to subscribers."""
         everyone = (*subscribers, *self.subscribers)
         return ModelClient(self._models, budget=Budget(self._caps), subscribers=everyone, concurrency=self.concurrency)
 

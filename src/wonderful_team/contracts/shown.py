@@ -96,7 +96,7 @@ class Question:
         """Check what the schema cannot, and clamp small overshoots.
 
         Returns:
-            The answer, perhaps clamped, and what was mended, in words.
+            The answer, perhaps clamped, and what was repaired, in words.
 
         Raises:
             ValueError: The answer does not fit the question; the text goes back to the model.

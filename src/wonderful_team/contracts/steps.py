@@ -18,7 +18,7 @@ class PlaceDraft(AnswerModel):
 
     target: str = Field(description="Id of a target.")
     how: Literal["at", "beside", "origin"] = Field(
-        description="at: its chosen point; beside: next to it, on `side`; origin: where it stood at first."
+        description="at: its chosen point; beside: next to it, on `side`; origin: where it stood at the start."
     )
     side: Side | None = Field(description="Only for beside: left, right, above (towards the picture's top), below.")
 

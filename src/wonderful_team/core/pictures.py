@@ -1,6 +1,6 @@
 """Pictures as they travel to a model: clean pixels, where they were cut from, and marks as data.
 
-Nothing is drawn here. The door draws marks for models that look at pixels; models that read data get the data.
+Nothing is drawn here. The client draws marks for models that look at pixels; models that read data get the data.
 All mark coordinates are pixels of the picture that carries them.
 """
 

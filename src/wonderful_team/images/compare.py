@@ -1,4 +1,4 @@
-"""How much a region of a view has changed: for the freshness check before something moves."""
+"""How much a region of a view has changed: for the staleness check before something moves."""
 
 from __future__ import annotations
 

@@ -107,7 +107,7 @@ class Bench:
         self._made.clear()
 
     async def ask(self, model: Model, request: Request) -> Answer:
-        """One answer through the door: capped, deadlined, its form checked."""
+        """One answer through the client: capped, deadlined, its form checked."""
         self._asked += 1
         wrapped = Priced(model) if hasattr(model, "estimate") else Plain(model)
         client = ModelClient(

@@ -1,1 +1,1 @@
-"""The door to models, and the models that need no key: offline, scripted, wrappers."""
+"""The client of models, and the models that need no key: offline, scripted, wrappers."""

@@ -63,7 +63,7 @@ _CURRENT: contextvars.ContextVar[Ticket | None] = contextvars.ContextVar("ticket
 
 
 def current_ticket() -> Ticket:
-    """The ticket of the call under way; without a door, one that knows no caps."""
+    """The ticket of the call under way; without a client, one that knows no caps."""
     return _CURRENT.get() or Ticket()
 
 

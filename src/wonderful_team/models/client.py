@@ -1,4 +1,4 @@
-"""The door: every question of every method goes through here to a model, and only valid answers come back.
+"""The client: every question of every method goes through here to a model, and only valid answers come back.
 
 It picks the role's model, enforces the budget and the concurrency limit, validates the answer against the question,
 sends the validation text back when it does not fit, and tells subscribers what happened.

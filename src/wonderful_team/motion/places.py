@@ -1,4 +1,4 @@
-"""Places that steps name, as spots: at a target, beside it, or where it stood at first."""
+"""Places that steps name, as spots: at a target, beside it, or where it stood at the start."""
 
 from __future__ import annotations
 
@@ -121,7 +121,7 @@ class Places:
         return progress.carry(name, seen, self.lift)
 
     def origin(self, name: str) -> ResolvedPoint:
-        """Where the target's centre stood at first, at the height of what it stood on."""
+        """Where the target's centre stood at the start, at the height of what it stood on."""
         spot = self.centre(name, MotionState())
         how = f"origin of {name}: {spot.how}"
         if spot.position_m is None:

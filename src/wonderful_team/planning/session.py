@@ -1,4 +1,4 @@
-"""The desk: where questions become requests. It holds one trial's notebooks and memory, and numbers what is sent."""
+"""The session: where questions become requests. It holds one trial's notebooks and memory, and numbers what is sent."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""One small question with a known answer, asked through the door, for tests of faults."""
+"""One small question with a known answer, asked through the client, for tests of faults."""
 
 from __future__ import annotations
 

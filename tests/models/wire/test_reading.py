@@ -11,7 +11,7 @@ KEYS = frozenset({"found", "points"})
 
 
 @pytest.mark.parametrize(
-    ("text", "mended"),
+    ("text", "repaired"),
     [
         (GOOD, None),
         (f"\ufeff {GOOD}\n", None),
@@ -27,10 +27,10 @@ KEYS = frozenset({"found", "points"})
         (f'{{"answer": {GOOD}}}', "the wrapper 'answer' round the answer dropped"),
     ],
 )
-def test_the_answer_is_found_and_what_was_mended_is_said(text: str, mended: str | None) -> None:
+def test_the_answer_is_found_and_what_was_mended_is_said(text: str, repaired: str | None) -> None:
     reading = read_json(text, KEYS)
     assert reading.value == {"found": True, "points": [[1, 2]]}
-    assert (mended in reading.repairs) if mended else (reading.repairs == ())
+    assert (repaired in reading.repairs) if repaired else (reading.repairs == ())
 
 
 @pytest.mark.parametrize(

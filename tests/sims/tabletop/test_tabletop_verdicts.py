@@ -40,7 +40,7 @@ def aside(truth: Truth) -> bool:
 PUT = [
     ("its place*", "a0 > goal", "success"),
     ("half-right: 14 cm away", "a0 > goal +14cm", "open"),
-    ("half-right, then mended", "a0 > goal +16cm; a0 > goal", "success"),
+    ("half-right, then repaired", "a0 > goal +16cm; a0 > goal", "success"),
     ("a missed pick is nothing*", "miss; a0 > goal", "success"),
     ("four misses and luck", "miss; miss; miss; miss; a0 > goal", "success"),
     ("too late", "miss; miss; miss; miss; miss; a0 > goal", "horizon of 5"),

@@ -129,7 +129,7 @@ class Answer:
 
     Attributes:
         value: An instance of the request's output type.
-        repairs: What was clamped or mended, in words.
+        repairs: What was clamped or repaired, in words.
     """
 
     value: Any

@@ -1,4 +1,4 @@
-"""The JSON in what a model said: fences, thinking and prose around it, and JSON inside JSON, are mended and said so."""
+"""The JSON in what a model said: fences, thinking and prose around it, and JSON inside JSON, are repaired and said so."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _MOST_DEPTH = 50
 
 @dataclass(frozen=True)
 class Reading:
-    """A JSON value and what had to be mended to get it."""
+    """A JSON value and what had to be repaired to get it."""
 
     value: Any
     repairs: tuple[str, ...] = ()

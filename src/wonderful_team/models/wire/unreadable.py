@@ -1,4 +1,4 @@
-"""An answer that could not be read as one: it stands as the value, and the door sends the problem back to the model."""
+"""An answer that could not be read as one: it stands as the value, and the client sends the problem back to the model."""
 
 from __future__ import annotations
 

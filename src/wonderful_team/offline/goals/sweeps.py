@@ -41,7 +41,7 @@ def swept_aims(command: Command, what: Description, things: list[Named], eyes: E
             assert seen is not None  # it was chosen from this scene
             who = words.get(order.number) or Named(unique_words(eyes, seen, "object"), order.number)
             spot = Named(Description(noun="area", name="free", text="free area"))
-            why = f"it bars the way into the {to.words}"
+            why = f"it blocks the way into the {to.words}"
             aims.append(Aim("push", who, "in", spot, after=before, why=why, off=to, legs=("away",)))
             continue
         legs = ("before",) * (len(way.stops) - 1) + ("inside",)

@@ -14,7 +14,7 @@ import pytest
 
 from tests.desk import read_record
 from tests.interrupting import listen
-from wonderful_team.interrupts import Interrupted, ends_on_signal, held
+from wonderful_team.core.interrupts import Interrupted, ends_on_signal, held
 
 PATIENCE_S = 60
 OWN = '''

@@ -17,6 +17,7 @@ from wonderful_team.api.results import PlanResult
 from wonderful_team.core import values
 from wonderful_team.core.actions import PICK_PLACE, VOCABULARIES, Vocabulary
 from wonderful_team.core.geometry import PlanarCamera
+from wonderful_team.core.interrupts import ends_on_signal, held
 from wonderful_team.core.protocols import Decision, Policy, Situation, Subscriber
 from wonderful_team.core.values import (
     NO_WORKSPACE,
@@ -29,7 +30,6 @@ from wonderful_team.core.values import (
     Usage,
 )
 from wonderful_team.errors import ConfigError, UnknownNameError, WonderfulTeamError
-from wonderful_team.interrupts import ends_on_signal, held
 from wonderful_team.planning import TeamPolicy as Planner
 from wonderful_team.planning import Until
 from wonderful_team.planning.ground_only import find

@@ -13,7 +13,7 @@ import click
 
 from wonderful_team._version import __version__
 from wonderful_team.cli.output import Document, say, wants_json
-from wonderful_team.interrupts import Interrupted, ends_on_signal, leave
+from wonderful_team.core.interrupts import Interrupted, ends_on_signal, leave
 
 if TYPE_CHECKING:
     from wonderful_team.errors import WonderfulTeamError

@@ -14,7 +14,7 @@ import click
 
 from wonderful_team.cli.options import PATH
 from wonderful_team.cli.output import finish
-from wonderful_team.interrupts import as_keyboard, exit_code
+from wonderful_team.core.interrupts import as_keyboard, exit_code
 
 if TYPE_CHECKING:
     from wonderful_team.evals.monitor import StudyStatus

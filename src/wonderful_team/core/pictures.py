@@ -7,9 +7,10 @@ All mark coordinates are pixels of the picture that carries them.
 from __future__ import annotations
 
 import hashlib
-from dataclasses import dataclass, field, replace
+from collections.abc import Callable
+from dataclasses import dataclass, field, fields, is_dataclass, replace
 from functools import cached_property
-from typing import Literal, TypeAlias
+from typing import Any, Literal, TypeAlias
 
 import numpy as np
 
@@ -169,3 +170,19 @@ class Picture:
     def mark(self, kind: type[Mark]) -> list[Mark]:
         """All marks of one kind, in order."""
         return [mark for mark in self.marks if isinstance(mark, kind)]
+
+
+def with_pictures(value: Any, change: Callable[[Picture], Picture]) -> Any:
+    """The same value with every picture in it changed; the value itself when none is."""
+    match value:
+        case Picture():
+            return change(value)
+        case tuple():
+            new_items = tuple(with_pictures(item, change) for item in value)
+            return new_items if any(new is not old for new, old in zip(new_items, value, strict=True)) else value
+        case _ if is_dataclass(value) and not isinstance(value, type):
+            held = {item.name: getattr(value, item.name) for item in fields(value) if item.init}
+            new = {name: with_pictures(item, change) for name, item in held.items()}
+            return replace(value, **new) if any(new[name] is not held[name] for name in held) else value
+        case _:
+            return value

@@ -26,7 +26,7 @@ from wonderful_team.core.values import Limits, PlannedAction
 from wonderful_team.errors import ConfigError
 from wonderful_team.evals.names import CONTROLS, NO_MODEL, NO_OP, ORACLE, RANDOM
 from wonderful_team.images.keep_out import table_height_m
-from wonderful_team.runtime.relief import Relief
+from wonderful_team.images.relief import Relief
 
 
 class OracleControl:

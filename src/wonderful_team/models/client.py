@@ -20,6 +20,7 @@ from typing import Any
 from pydantic import BaseModel, ValidationError
 
 from wonderful_team.contracts import Question
+from wonderful_team.core.interrupts import start_thread
 from wonderful_team.core.protocols import Event, Model, Subscriber
 from wonderful_team.core.values import Answer, Request, Usage
 from wonderful_team.errors import (
@@ -31,7 +32,6 @@ from wonderful_team.errors import (
     WonderfulTeamError,
     code_of,
 )
-from wonderful_team.interrupts import start_thread
 from wonderful_team.models.budget import Budget, Ticket, hand_over
 from wonderful_team.models.wire import chat as _chat  # noqa: F401  gives requests their messages()
 from wonderful_team.models.wire.unreadable import Unreadable

@@ -7,13 +7,13 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Callable, Mapping
-from dataclasses import fields, is_dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from wonderful_team.core.geometry.arrays import Array
-from wonderful_team.core.pictures import Picture
+from wonderful_team.core.pictures import Picture, with_pictures
 from wonderful_team.core.protocols import Model
 from wonderful_team.core.values import Request
 
@@ -48,22 +48,6 @@ def blank(rgb: Array) -> Array:
 
 
 CHANGES: Mapping[str, Change] = {"shifted": shifted, "flipped": flipped, "noised": noised, "blank": blank}
-
-
-def with_pictures(value: Any, change: Callable[[Picture], Picture]) -> Any:
-    """The same value with every picture in it changed; the value itself when none is."""
-    match value:
-        case Picture():
-            return change(value)
-        case tuple():
-            new_items = tuple(with_pictures(item, change) for item in value)
-            return new_items if any(new is not old for new, old in zip(new_items, value, strict=True)) else value
-        case _ if is_dataclass(value) and not isinstance(value, type):
-            held = {item.name: getattr(value, item.name) for item in fields(value) if item.init}
-            new = {name: with_pictures(item, change) for name, item in held.items()}
-            return replace(value, **new) if any(new[name] is not held[name] for name in held) else value
-        case _:
-            return value
 
 
 class ImageCorruption:

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from wonderful_team.core.caps import Estimate
+from wonderful_team.core.pictures import with_pictures
 from wonderful_team.core.values import Answer, Request, Usage
 from wonderful_team.errors import ModelOutputError, UnsupportedQuestion
-from wonderful_team.models.image_corruption import with_pictures
 from wonderful_team.offline.answers import ANSWERS, SAMPLED
 from wonderful_team.offline.vision import NotSeen, in_plain_light
 

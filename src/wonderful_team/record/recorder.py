@@ -12,6 +12,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any
 
+from wonderful_team.core.interrupts import held
 from wonderful_team.core.jsonable import to_jsonable
 from wonderful_team.core.protocols import Event
 from wonderful_team.core.text import counted, picture_names, spoken, visible
@@ -19,7 +20,6 @@ from wonderful_team.core.values import GateCheck, GateReport, Instruction, Limit
 from wonderful_team.errors import ActionRefusedError, WonderfulTeamError
 from wonderful_team.images import Ticks, action_arrows, overview, to_png
 from wonderful_team.images.keep_out import outlines
-from wonderful_team.interrupts import held
 from wonderful_team.record import entries
 from wonderful_team.record.picture_store import PictureStore
 from wonderful_team.record.plan_file import plan_to_json

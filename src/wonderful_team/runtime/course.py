@@ -24,7 +24,7 @@ from wonderful_team.core.geometry import Box
 from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.values import GroundedTarget, Limits, Plan, PlannedAction, View
 from wonderful_team.images.keep_out import table_height_m
-from wonderful_team.runtime.relief import RAISED_M, Relief, covered, outline
+from wonderful_team.images.relief import RAISED_M, Relief, covered, outline
 from wonderful_team.runtime.sweep import sweep_of
 
 RING_SHARE, LEAST_RING_PX = 0.15, 2.0

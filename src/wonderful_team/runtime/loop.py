@@ -9,7 +9,7 @@ from collections.abc import Awaitable
 from types import TracebackType
 from typing import Any
 
-from wonderful_team.interrupts import start_thread
+from wonderful_team.core.interrupts import start_thread
 
 CLOSE_S = 10.0
 """Longest wait for what the loop still has to end [s]."""

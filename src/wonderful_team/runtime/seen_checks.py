@@ -11,8 +11,8 @@ from shapely import LineString, Point
 from wonderful_team.core.actions import Action, MoveTo, PickPlace, Push, Trajectory
 from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.values import GateCheck, Limits, PlannedAction, View
+from wonderful_team.images.relief import Relief, covered, outline
 from wonderful_team.runtime.course import Stage
-from wonderful_team.runtime.relief import Relief, covered, outline
 from wonderful_team.runtime.sweep import Sweep
 
 AGREE_M = 0.02

@@ -91,7 +91,7 @@ SCRIPT = """
 import wonderful_team as wt
 {task}
 study = wt.Study({suite!r}, methods="team", seeds=[0, 1], controls=(), store={store!r}, jobs=2)
-print("ENDED", study.run().standing.done)
+print("ENDED", study.run().status.done)
 """
 TASK = '''
 @wt.task("mine/spawned", instruction="Put the red block into the blue bowl.", horizon=1)

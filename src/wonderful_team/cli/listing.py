@@ -74,7 +74,7 @@ def _worlds(out: Path | None) -> dict[str, str]:
     from wonderful_team.registry.worlds import WORLDS
 
     return {
-        **WORLDS,
+        **{name: row.words for name, row in WORLDS.items()},
         "FILE.py:NAME": "your own: a class with the World interface, or a task made with wonderful_team.task",
     }
 

@@ -52,7 +52,6 @@ class StepDraft(AnswerModel):
         )
 
 
-@cache
 def _draft_of(step: type[Step]) -> type[StepDraft]:
     """How a model writes a kind of step: its first line, its fields with their metadata, none of them left out."""
     hints = get_type_hints(step)

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any, Self
 
 from wonderful_team import registry
-from wonderful_team.agents.prompts import role_names
+from wonderful_team.agents.prompts import ROLES, role_names
 from wonderful_team.core.caps import Caps
 from wonderful_team.core.protocols import Model, Policy, Subscriber, World
 from wonderful_team.core.renamed import renamed_attribute
@@ -21,7 +21,7 @@ from wonderful_team.planning import TeamConfig
 from wonderful_team.registry.simulated import waiting
 
 ModelChoice = str | Model | Mapping[str, str | Model]
-POINTING_ROLES = ("manager", "supervisor")
+POINTING_ROLES = tuple(name for name, role in ROLES.items() if role.points)
 """Who gives points and boxes on whole views."""
 
 

@@ -11,11 +11,13 @@ import pytest
 
 from wonderful_team.agents import step_words
 from wonderful_team.agents.rendering import ability_parts
+from wonderful_team.cli.plan import command as plan_command
 from wonderful_team.cli.wording import action_line, numbers_line
 from wonderful_team.contracts import step_list_type
 from wonderful_team.core.actions import (
     ACTIONS,
     STEPS,
+    VOCABULARIES,
     Action,
     At,
     Beside,
@@ -188,6 +190,11 @@ class Wipe(ActionKind):
 
     def points(self) -> tuple[tuple[str, Array], ...]:
         return tuple(("waypoint", point) for point in self.strokes_m)
+
+
+def test_the_command_line_offers_every_vocabulary() -> None:
+    (option,) = [item for item in plan_command.params if item.name == "vocabulary"]
+    assert list(getattr(option.type, "choices", ())) == list(VOCABULARIES)
 
 
 def test_a_new_kind_is_its_two_classes(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -132,14 +132,13 @@ class Method:
         return registry.make_method(self.method, self._setup(subscribers))
 
     def _setup(self, subscribers: Sequence[Subscriber]) -> registry.MethodSetup:
-        models = self._models
-        if self._config is None:
-            # Roles that are not the team's have the model of the roles that are not named.
-            named = self.model if isinstance(self.model, Mapping) else {}
-            rest = next(iter([role for role in models if role not in named] or models))
-            models = {registry.DEFAULT_ROLE: models[rest], **models}
+        # Roles that are not the team's have the model of the roles that are not named.
+        named = self.model if isinstance(self.model, Mapping) else {}
+        rest = next(iter([role for role in self._models if role not in named] or self._models))
         everyone = (*subscribers, *self.subscribers)
-        return registry.MethodSetup(models, self._caps, everyone, self.concurrency, self._config)
+        return registry.MethodSetup(
+            self._models, self._models[rest], self._caps, everyone, self.concurrency, self._config
+        )
 
     def words(self) -> Mapping[str, str]:
         """The words of the roles, by file name; none for a method of one's own."""

@@ -15,6 +15,7 @@ from wonderful_team.models.client import ModelClient
 from wonderful_team.planning import ABLATIONS, TeamConfig, TeamPolicy
 from wonderful_team.planning.config import Mode
 from wonderful_team.registry.files import is_file_name, make_from_file
+from wonderful_team.registry.models import DEFAULT_ROLE
 
 
 @dataclass(frozen=True)
@@ -30,11 +31,13 @@ class MethodSetup:
     """What a method is made from, anew for every trial.
 
     Attributes:
-        models: By role; "*" for roles that the team has not.
+        models: By role of the team.
+        rest: For roles that the team has not.
         config: How the team works; None for every other method.
     """
 
     models: Mapping[str, Model]
+    rest: Model
     caps: Caps = Caps()
     subscribers: Sequence[Subscriber] = ()
     concurrency: int = 8
@@ -42,9 +45,8 @@ class MethodSetup:
 
     def client(self) -> ModelClient:
         """Where a method asks its models: capped, and told to subscribers."""
-        return ModelClient(
-            self.models, budget=Budget(self.caps), subscribers=self.subscribers, concurrency=self.concurrency
-        )
+        models = {DEFAULT_ROLE: self.rest, **self.models}
+        return ModelClient(models, budget=Budget(self.caps), subscribers=self.subscribers, concurrency=self.concurrency)
 
 
 @dataclass(frozen=True)

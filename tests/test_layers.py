@@ -31,7 +31,7 @@ ARROWS: dict[str, set[str]] = {
     "pages": BASE | {"record"},
     "runtime": BASE | {"images"},
     "evals": BASE | {"images"},
-    "registry": BASE | {"agents", "models", "offline", "simulated", "sims"},
+    "registry": BASE | {"agents", "models", "offline", "simulated", "planning", "sims"},
     "api": BASE
     | {"agents", "images", "models", "planning", "sims", "record", "pages", "runtime", "lab", "evals", "registry"},
     "cli": BASE
@@ -41,7 +41,6 @@ ARROWS: dict[str, set[str]] = {
         "images",
         "models",
         "offline",
-        "planning",
         "sandbox",
         "sims",
         "record",

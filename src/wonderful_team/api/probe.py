@@ -122,7 +122,7 @@ def _subject(
     return Subject(
         full_name, make, True, family.convention, family.max_pictures,
         None if spec.official else spec.base_url,
-        lambda: context_length(spec.api, spec.base_url, served, first.key, direct=local_only),
+        lambda: context_length(spec.service, spec.base_url, served, first.key, direct=local_only),
         (prices[0], prices[1]), library_version(),
     )  # fmt: skip
 

@@ -168,7 +168,7 @@ def _team(folder: Path, record: Mapping[str, Any], model: Model | Mapping[str, M
         raise ConfigError(f"{folder}: the record does not say its {', '.join(missing)}, so it cannot be run again")
     method = str(configuration["method"])
     if registry.team_mode(method) is None:
-        raise ConfigError(f"{folder}: method {method!r} is a file of your own; only runs of the team can be run again")
+        raise ConfigError(f"{folder}: method {method!r} is not the team; only runs of the team can be run again")
     with tempfile.TemporaryDirectory(prefix="wonderful-team-words-") as words:
         _write_words(Path(words), record.get("words") or {})
         return Team(

@@ -74,7 +74,7 @@ def _worlds(out: Path | None) -> dict[str, str]:
     from wonderful_team.registry.worlds import WORLDS
 
     return {
-        **WORLDS,
+        **{name: row.words for name, row in WORLDS.items()},
         "FILE.py:NAME": "your own: a class with the World interface, or a task made with wonderful_team.task",
     }
 
@@ -95,15 +95,10 @@ def _suites(out: Path | None) -> dict[str, str]:
 
 
 def _methods(out: Path | None) -> dict[str, str]:
-    from wonderful_team.planning.config import ABLATIONS
     from wonderful_team.registry.methods import METHODS
 
-    def words(name: str, text: str) -> str:
-        ablation = ABLATIONS.get(name.rpartition(":")[2])
-        return text if ablation is None else f"{text}: {ablation.words}"
-
     return {
-        **{name: words(name, text) for name, text in METHODS.items()},
+        **{name: row.words for name, row in METHODS.items()},
         "FILE.py:NAME": "your own: a class with the Policy interface",
     }
 

@@ -20,12 +20,13 @@ from wonderful_team.core.text import user_path
 from wonderful_team.errors import ConfigError, UnknownNameError, reading
 from wonderful_team.models.conventions import PIXELS, Convention, Resize, Shape
 from wonderful_team.models.error_profile import ErrorProfile
+from wonderful_team.models.providers.vendors import VENDORS
 
 SCHEMA_VERSION = 1
 CONFIG_VARIABLE = "WONDERFUL_TEAM_CONFIG"
 """Environment variable with the folder of our configuration, instead of the user's usual one."""
 _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,63}")
-_RESERVED = frozenset({"offline", "simulated", "scripted", "replay", "openai", "anthropic", "google", "openrouter", "http", "https"})  # fmt: skip
+_RESERVED = frozenset({"offline", "simulated", "scripted", "replay", "http", "https", *(name for name, vendor in VENDORS.items() if vendor.words)})  # fmt: skip
 
 Schemas: TypeAlias = Literal["enforced", "ignored", "refused", "unknown"]
 Thinking: TypeAlias = Literal["never", "switchable", "always", "unknown"]

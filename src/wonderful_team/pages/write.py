@@ -80,7 +80,7 @@ def _content(record: dict[str, Any], album: Album) -> dict[str, Any]:
         "execution": sections.execution(record, album),
         "replans": sections.replans(record),
         "roles": cost.per_role(asked),
-        "waterfall": cost.waterfall(asked),
+        "waterfall": cost.waterfall(asked, record.get("words") or {}),
         "rounds": cost.rounds(asked),
         "warnings": sections.warnings(record, asked),
         "crashes": record["planner"].get("crashes", []),

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 from wonderful_team.core.protocols import Model, World
 from wonderful_team.errors import ConfigError, ModelCodeError, UnknownNameError, code_of
+from wonderful_team.models.providers.vendors import VENDORS
 from wonderful_team.registry.files import check_names_no_code, is_file_name, make_from_file
 from wonderful_team.registry.simulated import SIMULATED, simulated_model
 
@@ -20,10 +21,11 @@ MODELS: dict[str, str] = {
     "simulated:perfect": "a simulator's truth, as it is seen through the pictures shown: tests everything but the model",
 }
 MODEL_FORMS: dict[str, str] = {
-    "openai:NAME": "OpenAI (Responses); openai-chat:NAME for Chat Completions; key in OPENAI_API_KEY",
-    "anthropic:NAME": "Anthropic; key in ANTHROPIC_API_KEY",
-    "google:NAME": "Google Gemini; key in GOOGLE_API_KEY or GEMINI_API_KEY",
-    "openrouter:NAME": "OpenRouter; key in OPENROUTER_API_KEY",
+    **{
+        f"{name}:NAME": f"{vendor.words}; key in {' or '.join(vendor.keys)}"
+        for name, vendor in VENDORS.items()
+        if vendor.words
+    },
     "VENDOR:NAME@URL": "the same interface at another address",
     "http://HOST:8000/v1[#NAME]": "any OpenAI-compatible server; without #NAME it is asked which model it has",
     "simulated:PROFILE": "a simulator's truth with stated errors: coarse, hasty, or a profile that probe --full measured",

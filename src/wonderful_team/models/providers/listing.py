@@ -13,7 +13,8 @@ from wonderful_team.errors import (
 )
 from wonderful_team.models.providers.bounded import ReplyTooLargeError, fetch_json
 from wonderful_team.models.providers.faults import scrubbed
-from wonderful_team.models.providers.specs import SERVER_KEY, is_loopback
+from wonderful_team.models.providers.specs import is_loopback
+from wonderful_team.models.providers.vendors import SERVER_KEY
 
 
 def server_models(base_url: str, key: str | None, *, timeout_s: float = 10.0, local_only: bool = False) -> list[str]:

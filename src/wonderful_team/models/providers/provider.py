@@ -29,7 +29,8 @@ from wonderful_team.models.prices import Prices
 from wonderful_team.models.providers import library
 from wonderful_team.models.providers.faults import Fault, fault_of, scrubbed
 from wonderful_team.models.providers.settings import LONGEST_WAIT_S, Settings
-from wonderful_team.models.providers.specs import SERVER_KEY, VENDORS, Spec
+from wonderful_team.models.providers.specs import Spec
+from wonderful_team.models.providers.vendors import SERVER_KEY
 from wonderful_team.models.wire import Composed, Reading, Unreadable, compose, encodable, ticks_of
 
 if TYPE_CHECKING:
@@ -87,7 +88,7 @@ class Provider:
         """What decides the answer beside the request: for cache keys and records."""
         return {
             "model": self.model,
-            "api": self.spec.api,
+            "api": self.spec.service.api,
             "server": self.spec.base_url,
             "thinking": self.settings.thinking,
             "max_tokens": self.settings.max_tokens,
@@ -175,7 +176,7 @@ class Provider:
         self, request: Request, composed: Composed, ticket: Ticket, left_s: float
     ) -> tuple[ModelResponse, int] | Fault:
         """One HTTP request: the library's reply with the limit of tokens it had, or what went wrong."""
-        keys = VENDORS[self.spec.vendor].keys if self.spec.official and self.spec.vendor else (SERVER_KEY,)
+        keys = self.spec.service.keys if self.spec.official else (SERVER_KEY,)
         limit = self.settings.max_tokens if ticket.max_out is None else min(self.settings.max_tokens, ticket.max_out)
         # A hang must leave time for another try.
         longest = max(0.001, min(left_s, self.settings.deadline_s / 2 if self.settings.tries > 1 else left_s))
@@ -202,22 +203,8 @@ class Provider:
             return fault_of(error, self.name, self.spec.base_url, self.key, " or ".join(keys))
 
     def _settings(self, max_tokens: int) -> dict[str, Any]:
-        settings: dict[str, Any] = {"max_tokens": max_tokens, "max_retries": 0}
-        thinking = self.settings.thinking
-        if self.spec.api == "google":
-            # Google's client takes no such setting; it does not try again by itself.
-            settings.pop("max_retries")
-        if self.spec.api == "openai-responses":
-            settings["openai_store"] = False
-        if thinking is not None and self.spec.vendor is None:
-            # Servers have no common switch: this is the one of vLLM, SGLang and llama.cpp for models that think.
-            body: dict[str, Any] = {"chat_template_kwargs": {"enable_thinking": thinking != "off"}}
-            if thinking != "off":
-                body["reasoning_effort"] = thinking
-            settings["extra_body"] = body
-        elif thinking is not None:
-            settings["thinking"] = False if thinking == "off" else thinking
-        return settings
+        thinking, service = self.settings.thinking, self.spec.service
+        return {"max_tokens": max_tokens, **service.settings, **({} if thinking is None else service.think(thinking))}
 
     def _complaint(self, request: Request, composed: Composed) -> str:
         """What was wrong with the last answer, in a further turn."""

@@ -91,7 +91,7 @@ SCRIPT = """
 import wonderful_team as wt
 {task}
 study = wt.Study({suite!r}, methods="team", seeds=[0, 1], controls=(), store={store!r}, jobs=2)
-print("ENDED", study.run().standing.done)
+print("ENDED", study.run().status.done)
 """
 TASK = '''
 @wt.task("mine/spawned", instruction="Put the red block into the blue bowl.", horizon=1)
@@ -127,6 +127,7 @@ def test_a_stored_run_is_loaded():
     now = world.observe()
     world.close()
     stored = wt.load_run("latest")
+    assert len(repr(stored)) < 300, "a prompt that shows it must not be flooded by the record"
     assert stored.folder.resolve() == trial.folder.resolve()
     assert (stored.state, stored.outcome, stored.method, stored.model) == ("finished", "success", "team", "offline")
     assert [plan.id for plan in stored.plans] == [plan.id for plan in trial.plans]

@@ -16,6 +16,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
+from wonderful_team.core.renamed import renamed_attribute
 from wonderful_team.core.text import counted
 from wonderful_team.errors import ConfigError
 from wonderful_team.evals.monitor import Report, StudyMonitor, StudyStatus
@@ -35,6 +36,7 @@ class StudyResult:
 
     status: StudyStatus
     why: str = ""
+    standing = renamed_attribute("standing", "status")
 
 
 def run_study(

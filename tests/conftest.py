@@ -12,16 +12,26 @@ from wonderful_team.record.run_folders import OUT_VARIABLE
 SECRET_ENDINGS = ("_KEY", "_TOKEN", "_SECRET")
 
 
+OPT_IN = {
+    "slow": "takes more than ten seconds",
+    "install": "installs packages: takes minutes and needs the package index",
+}
+
+
 def pytest_addoption(parser: pytest.Parser) -> None:
-    parser.addoption("--runslow", action="store_true", default=False, help="run tests that take more than ten seconds")
+    for marker, why in OPT_IN.items():
+        parser.addoption(
+            f"--run{marker}", action="store_true", default=False, help=f"run what is marked {marker}: {why}"
+        )
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    if config.getoption("--runslow"):
-        return
-    for item in items:
-        if "slow" in item.keywords:
-            item.add_marker(pytest.mark.skip(reason="slow: use --runslow"))
+    for marker, why in OPT_IN.items():
+        if config.getoption(f"--run{marker}"):
+            continue
+        for item in items:
+            if marker in item.keywords:
+                item.add_marker(pytest.mark.skip(reason=f"{marker}: {why}; use --run{marker}"))
 
 
 @pytest.fixture(autouse=True)

@@ -33,6 +33,7 @@ if TYPE_CHECKING:
         Request,
         StepReport,
         Trial,
+        Usage,
         View,
     )
     from wonderful_team.errors import WonderfulTeamError
@@ -79,6 +80,7 @@ _HOMES: dict[str, str] = {
     "Study": "api.study",
     "Team": "api.team",
     "Trial": "core.values",
+    "Usage": "core.values",
     "View": "core.values",
     "Vocabulary": "core.actions",
     "WonderfulTeamError": "errors",
@@ -134,6 +136,7 @@ __all__ = [
     "Study",
     "Team",
     "Trial",
+    "Usage",
     "View",
     "Vocabulary",
     "WonderfulTeamError",

@@ -42,7 +42,8 @@ def test_it_shows_numbers_and_the_page_and_no_word_of_a_model(
     answer(monkeypatch, "y")
     asking.ask(proposal)
     told = capsys.readouterr().err
-    for shown in ("pick_place", "0.5", "0.2", "0.034", "-0.2", "1.571 rad", "page.html", proposal.id[:12]):
+    assert "pick_place  pick [0.500, 0.200, 0.034] m  place [0.400, -0.200, 0.000] m  yaw 1.571 rad" in told
+    for shown in ("page.html", proposal.id[:12]):
         assert shown in told
     assert "harmless" not in told
     assert "safe place" not in told

@@ -127,6 +127,7 @@ def test_a_stored_run_is_loaded():
     now = world.observe()
     world.close()
     stored = wt.load_run("latest")
+    assert len(repr(stored)) < 300, "a prompt that shows it must not be flooded by the record"
     assert stored.folder.resolve() == trial.folder.resolve()
     assert (stored.state, stored.outcome, stored.method, stored.model) == ("finished", "success", "team", "offline")
     assert [plan.id for plan in stored.plans] == [plan.id for plan in trial.plans]

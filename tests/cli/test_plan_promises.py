@@ -91,6 +91,18 @@ def test_a_plan_that_was_read_runs_under_a_noisy_camera(given: str, world: Any) 
     assert [plan.id for plan in trial.plans] == [made.id]
 
 
+def test_a_plan_that_was_run_once_can_be_read_from_that_run_too(world: Any) -> None:
+    team, noisy = wt.Team(), Noisy(world)
+    made = team.plan(noisy.observe(), world.instruction, limits=world.limits)
+    first = wt.rollout(team, noisy, plan=made, replans=0)
+    again = wt.make_world(TASK, seed=3)
+    second = wt.rollout(team, Noisy(again), plan=first.folder, replans=0)
+    again.close()
+    assert second.stage is None, second.reason
+    assert len(second.reports) == 2
+    assert [plan.id for plan in second.plans] == [made.id]
+
+
 def test_consent_does_not_outlive_a_page_that_was_changed(world: Any) -> None:
     team = wt.Team()
     made = team.plan(world.observe(), world.instruction, limits=world.limits)

@@ -13,6 +13,9 @@ from click.testing import CliRunner
 
 import wonderful_team as wt
 from wonderful_team.cli.app import group
+from wonderful_team.evals.monitor import StudyStatus
+from wonderful_team.evals.spending import Spending
+from wonderful_team.evals.study import StudyResult
 from wonderful_team.record.plan_file import plan_from_json, plan_to_json
 from wonderful_team.record.setup import read_setup
 from wonderful_team.registry.methods import load_method
@@ -49,6 +52,8 @@ def test_old_arguments_and_attributes() -> None:
         assert situation.looks_left == 2
     with pytest.warns(DeprecationWarning, match="looks"):
         assert wt.Study(suite="vima17", seeds=range(2), looks=3).reobserve == 3  # type: ignore[call-arg]
+    with pytest.warns(DeprecationWarning, match="standing is called status now"):
+        assert StudyResult(StudyStatus(4, 3, 3, {}, Spending(), 1.0)).standing.done == 3
     with pytest.raises(TypeError, match="old name of reobserve"):
         wt.Act((), look=True, reobserve=True)  # type: ignore[call-arg]
 

@@ -63,7 +63,7 @@ def test_a_move_is_told_in_the_pixels_in_which_boxes_are_told(right_px):
     before, after = (next(event for event in history if event.what == what) for what in ("box", "move"))
     moved_px = after.box.centre[0] - before.box.centre[0]
     assert abs(moved_px) < 55, "the crop is enlarged, so that the units differ"
-    told = re.search(r"moved (\d+) px (left|right)", after.text)
+    told = re.fullmatch(r"Mover: moved (\d+) px (left|right)", after.text)  # no word of a way on which nothing moved
     assert told is not None, after.text
     assert float(told[1]) == pytest.approx(abs(moved_px), abs=1)
     assert told[2] == ("right" if right_px > 0 else "left")

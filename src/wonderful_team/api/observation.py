@@ -107,7 +107,7 @@ def seen(what: Any) -> BaseObservation:
         with reading("the picture"):
             return Observation({"photo": View("photo", "photo", 0.0, np.asarray(rgb))})
     raise ConfigError(
-        f"a {type(what).__name__} shows no scene; valid: a wt.Observation (Observation.from_files, world.observe()), a wt.View, "
+        f"observation: {type(what).__name__} shows no scene; valid: a wt.Observation (Observation.from_files, world.observe()), a wt.View, "
         "the path of a picture or a list of them, pixels of shape (H, W, 3) and type uint8, a PIL image"
     )
 

@@ -161,7 +161,7 @@ def rollout(
 
 
 def task(name: str, *, instruction: str, horizon: int = 1, **more: Any) -> Callable[[Callable[..., Any]], Any]:
-    """Make a tabletop task of a function `(scene, rng)` that sets the table; see docs/own-task.md."""
+    """Make a tabletop task of a function `(scene, rng)` that sets the table; see docs/extending.md."""
     from wonderful_team.sims.tabletop import task as tabletop_task
 
     return tabletop_task(name, instruction=instruction, horizon=horizon, **more)

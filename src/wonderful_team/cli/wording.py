@@ -148,22 +148,26 @@ def numbers_line(planned: PlannedAction) -> str:
             f"{source.role} ({source.point_px[0]:.1f}, {source.point_px[1]:.1f}) px" for source in planned.sources
         )
         return f"{planned.step.kind}  {'  '.join(points)}"
-    numbers = [f"{item.name} {_shown(item.name, getattr(action, item.name))}" for item in fields(action)]
+    numbers = [_shown(item.name, getattr(action, item.name)) for item in fields(action)]
     return f"{action.kind}  {'  '.join(numbers)}".rstrip()
 
 
 def _shown(name: str, value: Any) -> str:
-    """A number or several with their unit, which is the end of the name; waypoints count and end."""
+    """A name and a number or several with their unit, which is the end of the name; waypoints count and end."""
     if isinstance(value, tuple | list) and value and is_dataclass(value[0]):
-        ends = "; ".join(_shown(name, one) for one in (value[0], value[-1]))
-        return f"({len(value)}: first and last {ends})"
+        return f"{name} ({len(value)}: first and last {'; '.join(_parts(one) for one in (value[0], value[-1]))})"
     if is_dataclass(value) and not isinstance(value, type):
-        return ", ".join(f"{item.name} {_shown(item.name, getattr(value, item.name))}" for item in fields(value))
+        return f"{name} {_parts(value)}"
     if isinstance(value, str | bool) or value is None:
-        return str(value)
-    flat = np.round(np.asarray(value, dtype=np.float64), 3) + 0.0
-    unit = next((f" {unit}" for unit in ("m", "rad", "s", "px") if name.endswith(f"_{unit}")), "")
-    return f"{np.array2string(flat, separator=', ', threshold=64)}{unit}"
+        return f"{name} {value}"
+    numbers = np.round(np.asarray(value, dtype=np.float64), 3) + 0.0
+    unit = next((unit for unit in ("m", "rad", "s", "px") if name.endswith(f"_{unit}")), "")
+    text = np.array2string(numbers, separator=", ", threshold=64, formatter={"float_kind": lambda one: f"{one:.3f}"})
+    return f"{name.removesuffix(f'_{unit}')} {text} {unit}".rstrip()
+
+
+def _parts(value: Any) -> str:
+    return ", ".join(_shown(item.name, getattr(value, item.name)) for item in fields(value))
 
 
 def trial_lines(trial: TrialResult) -> list[str]:

@@ -165,6 +165,6 @@ class RunSettings:
 
 
 TrialRunner: TypeAlias = Callable[[TrialSpec, RunSettings], TrialRow]
-"""Handed in by the top of the house: turns names into methods, models and worlds, and runs one trial.
+"""Handed in by `api`: turns names into methods, models and worlds, and runs one trial.
 
 It must be importable by name (a module-level function), because worker processes import it."""

@@ -179,7 +179,8 @@ def _move_line(move: BoxMove, view_per_x: float = 1.0, view_per_y: float = 1.0) 
     """A revision in words; the factors are how many pixels of the wanted picture one pixel of the crop is."""
     if move.action == "move":
         right, down = move.right_px * view_per_x, move.down_px * view_per_y
-        return f"moved {abs(right):.0f} px {'right' if right >= 0 else 'left'}, {abs(down):.0f} px {'down' if down >= 0 else 'up'}"
+        ways = [(right, "right" if right >= 0 else "left"), (down, "down" if down >= 0 else "up")]
+        return f"moved {', '.join(f'{abs(by):.0f} px {way}' for by, way in ways if round(by)) or 'by less than 1 px'}"
     grown = {
         "left": move.grow_left_px * view_per_x,
         "top": move.grow_top_px * view_per_y,

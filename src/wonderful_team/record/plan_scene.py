@@ -10,7 +10,7 @@ from wonderful_team.core.values import Observation, Plan, ReadPlan, View
 from wonderful_team.errors import ConfigError
 from wonderful_team.images import load_picture
 from wonderful_team.record.plan_file import read_plan
-from wonderful_team.record.stored import stored_observation
+from wonderful_team.record.stored import observation_of
 
 
 def read_run_plan(folder: Path) -> ReadPlan:
@@ -37,25 +37,26 @@ def read_plan_scene(folder: Path, plan: Plan) -> Observation | None:
     file = Path(folder) / "record.json"
     try:
         record: Any = json.loads(file.read_text(encoding="utf-8"))
-        named = [seen["hash"] for seen in record["planner"]["observations"]]
+        # A run that was handed its plan keeps what that was made from apart from what it saw itself.
+        seen = [*record["planner"]["observations"], *filter(None, [record["planner"].get("plan_scene")])]
+        named = [entry["hash"] for entry in seen]
     except (OSError, ValueError, KeyError, TypeError, RecursionError) as error:
         raise ConfigError(f"{file}: cannot be read: {error}") from error
-    for number, name in enumerate(named):
+    for name, entry in zip(named, seen, strict=True):
         if name == plan.scene_hash:
-            observation = _stored(Path(folder), record, number)
+            observation = _stored(Path(folder), record, entry)
             return observation if observation is not None and observation.is_called(plan.scene_hash) else None
     return None
 
 
-def _stored(folder: Path, record: Any, number: int) -> Observation | None:
+def _stored(folder: Path, record: Any, entry: Any) -> Observation | None:
     """With camera and depth where the record keeps them, else the pixels alone."""
     try:
-        return stored_observation(folder, record, number)
+        return observation_of(folder, record, entry)
     except (ConfigError, KeyError, TypeError, ValueError):
         pass
     try:
-        seen = record["planner"]["observations"][number]
-        pictures = {name: load_picture(folder / record["files"][key]) for name, key in seen["views"].items()}
+        pictures = {name: load_picture(folder / record["files"][key]) for name, key in entry["views"].items()}
         return Observation({name: View(name, name, 0.0, rgb) for name, rgb in pictures.items()})
     except (ConfigError, KeyError, TypeError, ValueError):
         return None

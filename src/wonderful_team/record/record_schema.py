@@ -227,6 +227,7 @@ class Planner(_Part):
     instruction: InstructionEntry | None
     outlines: list[dict[str, Any]]
     observations: list[ObservationEntry]
+    plan_scene: ObservationEntry | None = None
     stages: list[StageEntry]
     plans: list[PlanEntry]
     asked: list[Asked] | None = None

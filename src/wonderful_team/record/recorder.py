@@ -73,6 +73,7 @@ class Recorder:
         self._handlers: dict[str, Callable[[Event], None]] = {
             "run": self._on_run,
             "observe": self._on_observe,
+            "plan_scene": self._on_plan_scene,
             "stage": self._on_stage,
             "request": self._on_request,
             "answer": self._on_answer,
@@ -154,6 +155,10 @@ class Recorder:
         while len(self._observations) > 8:
             self._observations.pop(next(iter(self._observations)))
         self._planner["observations"].append(entries.observation_entry(event.name, observation, self._store))
+
+    def _on_plan_scene(self, event: Event) -> None:
+        """What a plan that was read was made from: it stays with the plan, so that the plan can be read from here too."""
+        self._planner["plan_scene"] = entries.observation_entry("plan", event.content, self._store)
 
     def _on_stage(self, event: Event) -> None:
         content = event.content

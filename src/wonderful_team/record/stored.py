@@ -46,7 +46,15 @@ def stored_observation(folder: Path, record: Mapping[str, Any], number: int = 0)
     seen = record["planner"]["observations"]
     if number >= len(seen):
         raise ConfigError(f"{folder}: the record has {len(seen)} observations; number {number + 1} is asked for")
-    entry = seen[number]
+    return observation_of(folder, record, seen[number])
+
+
+def observation_of(folder: Path, record: Mapping[str, Any], entry: Mapping[str, Any]) -> Observation:
+    """The observation of one entry of the record.
+
+    Raises:
+        ConfigError: As for stored_observation.
+    """
     if "stored" not in entry:
         raise ConfigError(f"{folder}: this record keeps its pictures without camera and depth; it cannot be run again")
     views = {

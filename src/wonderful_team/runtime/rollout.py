@@ -91,8 +91,10 @@ def rollout(
     progress = RolloutLog(policy, scene, seed, tuple(subscribers))
     setup = {"method": policy.name, "seed": seed, "replans": replans, "looks": reobserve, **(configuration or {})}
     progress.tell("run", scene, {**setup, "task": world.instruction, "limits": world.limits})
-    execution = Execution(world, progress, approval, max_age_s, page, strict)
     read = ReadPlan(plan, plan_observation) if isinstance(plan, Plan) else plan
+    if read is not None and read.observation is not None:
+        progress.tell("plan_scene", scene, read.observation)
+    execution = Execution(world, progress, approval, max_age_s, page, strict)
     try:
         with Caller() as caller:
             try:

@@ -17,6 +17,7 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 from PIL import Image
 
+from wonderful_team.core.filesystem import write_redacted
 from wonderful_team.core.text import counted, visible
 from wonderful_team.errors import ConfigError
 from wonderful_team.pages.sections import summary
@@ -46,7 +47,7 @@ def write_runs_table(folders: Sequence[Path], path: Path) -> Path:
         script=Markup(script),  # noqa: S704  our own file
         script_hash=base64.b64encode(hashlib.sha256(script.encode()).digest()).decode(),
     )
-    path.write_text(visible(html, layout=True), encoding="utf-8")
+    write_redacted(path, visible(html, layout=True), errors="xmlcharrefreplace")
     return path
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from wonderful_team.record.redact import redact, redact_all
+from wonderful_team.redaction import redact, redact_all
 
 
 @pytest.mark.parametrize(

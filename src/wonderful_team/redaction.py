@@ -143,7 +143,7 @@ def _known_of(used: frozenset[str], in_environment: frozenset[str]) -> _Known:
 
 
 class _Known:
-    """Finds these secrets in every coding; the longest first, so that no secret is left in half by a shorter one."""
+    """Finds these secrets in every coding and case; the longest first, so that a shorter one leaves no half of another."""
 
     def __init__(self, secrets: frozenset[str]) -> None:
         ordered = sorted(secrets, key=lambda secret: (-len(secret), secret))
@@ -153,7 +153,9 @@ class _Known:
         first = "".join(re.escape(letter) for letter in sorted({form[0] for form in escaped}))
         coded = "|".join("".join(map(_character, form)) for form in escaped)
         # The look ahead makes it ten times as fast.
-        self._coded = re.compile(rf"(?=[{first}\\%&])(?:{coded})") if ordered else None
+        self._coded = re.compile(rf"(?=[{first}\\%&])(?:{coded})", re.IGNORECASE) if ordered else None
+        self._plain = re.compile("|".join(map(re.escape, self._whole)), re.IGNORECASE)
+        self._lower = tuple(dict.fromkeys(form.lower() for form in self._whole))
 
     @property
     def empty(self) -> bool:
@@ -163,10 +165,11 @@ class _Known:
         if self._coded is None:
             return text
         if _ESCAPES.search(text):
-            text = self._coded.sub(HIDDEN, text)
-        for form in self._whole:
-            text = text.replace(form, HIDDEN)
-        return text
+            # A picture inside of a page holds no escapes.
+            pieces = _EMBEDDED.split(text)
+            text = "".join(piece if k % 2 else self._coded.sub(HIDDEN, piece) for k, piece in enumerate(pieces))
+        lower = text.lower()
+        return self._plain.sub(HIDDEN, text) if any(form in lower for form in self._lower) else text
 
 
 def _whole_forms(secret: str) -> list[str]:
@@ -174,7 +177,7 @@ def _whole_forms(secret: str) -> list[str]:
     raw = secret.encode("utf-8", errors="surrogatepass")
     coded = _base64_forms(raw)
     swapped = [form.replace("+", "-").replace("/", "_") for form in coded]
-    return list(dict.fromkeys([secret, raw.hex(), raw.hex().upper(), *coded, *swapped]))
+    return list(dict.fromkeys([secret, raw.hex(), *coded, *swapped]))
 
 
 def _character(letter: str) -> str:
@@ -183,23 +186,19 @@ def _character(letter: str) -> str:
     octets = letter.encode("utf-8", errors="surrogatepass").hex()
     forms = [
         re.escape(letter),
-        "".join(rf"\\+u{_any_case(units[k : k + 4])}" for k in range(0, len(units), 4)),
-        "".join(rf"\\+x{_any_case(octets[k : k + 2])}" for k in range(0, len(octets), 2)),
-        "".join(f"%(?:25)*{_any_case(octets[k : k + 2])}" for k in range(0, len(octets), 2)),
+        "".join(rf"\\+u{units[k : k + 4]}" for k in range(0, len(units), 4)),
+        "".join(rf"\\+x{octets[k : k + 2]}" for k in range(0, len(octets), 2)),
+        "".join(f"%(?:25)*{octets[k : k + 2]}" for k in range(0, len(octets), 2)),
         rf"&(?:amp;)*\#0*{ord(letter)};",
-        rf"&(?:amp;)*\#[xX]0*{_any_case(f'{ord(letter):x}')};",
+        rf"&(?:amp;)*\#[xX]0*{ord(letter):x};",
     ]
     if 127 < ord(letter) < 256:
-        forms.append(rf"\\+x{_any_case(f'{ord(letter):02x}')}")
+        forms.append(rf"\\+x{ord(letter):02x}")
     if letter in "\"'\\/+":
         forms.append(rf"\\+{re.escape(letter)}")
     if letter in _NAMED:
         forms.append(f"&(?:amp;)*{_NAMED[letter]};")
     return f"(?:{'|'.join(forms)})"
-
-
-def _any_case(digits: str) -> str:
-    return "".join(f"[{digit}{digit.upper()}]" if digit.isalpha() else digit for digit in digits)
 
 
 def _base64_forms(raw: bytes) -> list[str]:

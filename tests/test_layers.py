@@ -29,7 +29,7 @@ ARROWS: dict[str, set[str]] = {
     "planning": BASE | {"contracts", "images", "motion", "sandbox", "agents", "models"},
     "lab": BASE | {"contracts", "images", "agents", "models"},
     "record": BASE | {"images"},
-    "pages": BASE | {"record"},
+    "pages": BASE | {"images", "record"},
     "runtime": BASE | {"images"},
     "evals": BASE | {"images"},
     "registry": BASE | {"agents", "models", "offline", "simulated", "sims"},

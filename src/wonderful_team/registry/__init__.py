@@ -1,7 +1,15 @@
 """Names to things: models, methods, worlds and tasks. The only place where a string picks an implementation."""
 
 from wonderful_team.registry.methods import METHODS, MethodSetup, TeamMode, load_method, make_method, team_mode
-from wonderful_team.registry.models import DEFAULT_ROLE, MODEL_FORMS, MODELS, make_model, make_models, model_label
+from wonderful_team.registry.models import (
+    DEFAULT_ROLE,
+    MODEL_FORMS,
+    MODELS,
+    make_model,
+    make_models,
+    model_label,
+    named_by_profile,
+)
 from wonderful_team.registry.worlds import (
     WORLDS,
     check_ready,
@@ -30,6 +38,7 @@ __all__ = [
     "make_models",
     "make_world",
     "model_label",
+    "named_by_profile",
     "own_tiers",
     "scene_name",
     "task_made_of",

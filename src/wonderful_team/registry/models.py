@@ -13,6 +13,7 @@ from wonderful_team.registry.files import check_names_no_code, is_file_name, mak
 from wonderful_team.registry.simulated import SIMULATED, simulated_model
 
 if TYPE_CHECKING:
+    from wonderful_team.models.profiles import Profile
     from wonderful_team.models.providers import ModelOptions
 
 
@@ -72,10 +73,24 @@ def make_model(
         made = make_provider(spec, profile=profile, thinking=thinking, price=price, local_only=asked.local_only)
         return cast(Model, made)
     if profile is not None:
-        return make_model(check_names_no_code(spec, f"profile {model!r}"), options, role, world)
+        return make_model(named_by_profile(profile), options, role, world)
     if model not in MODELS:
         raise UnknownNameError("model", model, [*MODELS, *profile_names(), *MODEL_FORMS])
     return cast(Model, importlib.import_module("wonderful_team.offline").OfflineModel())
+
+
+def named_by_profile(profile: Profile) -> str:
+    """The model that a profile was measured of.
+
+    Raises:
+        ConfigError: It names code, or another profile.
+    """
+    from wonderful_team.models.profiles import profile_names
+
+    name = check_names_no_code(profile.model, f"profile {profile.name!r}")
+    if name in profile_names():
+        raise ConfigError(f"profile {profile.name!r} names the profile {name!r}; valid is the name of a model")
+    return name
 
 
 def make_models(

@@ -11,6 +11,7 @@ from urllib.parse import urlsplit, urlunsplit
 
 from wonderful_team.errors import ConfigError, LocalOnlyError, ModelAuthError
 from wonderful_team.models.providers.vendors import SERVER, SERVER_KEY, VENDORS, Vendor
+from wonderful_team.redaction import keep_secret
 
 _PRIVATE = tuple(
     ipaddress.ip_network(text)
@@ -104,13 +105,10 @@ def find_key(spec: Spec, given: str | None, environment: Mapping[str, str] | Non
         ModelAuthError: A vendor needs a key and none is set; names the variable.
     """
     held = os.environ if environment is None else environment
-    if given:
-        return given
-    if not spec.official:
-        return held.get(SERVER_KEY) or None
-    names = spec.service.keys
-    key = next((held[name] for name in names if held.get(name)), None)
-    if key is None:
+    names = spec.service.keys if spec.official else (SERVER_KEY,)
+    key = given or next((held[name] for name in names if held.get(name)), None)
+    keep_secret(key)
+    if key is None and spec.official:
         raise ModelAuthError(f"model {spec.text!r} needs a key: set the environment variable {' or '.join(names)}")
     return key
 

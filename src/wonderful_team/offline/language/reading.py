@@ -269,6 +269,8 @@ def _without_and(tokens: list[Token]) -> list[Token]:
         if token.kind == "SEP" and out and out[-1].kind == "STACK":
             continue
         after = tokens[at + 1].kind if at + 1 < len(tokens) else ""
+        if token.kind == "SUPER" and after == "STACK":
+            continue  # "a small tower" is as large as what it is made of
         many = any(item.kind in ("EACH", "ALL", "EVERYTHING") for item in out[-4:])
         if (
             token.text == "but"

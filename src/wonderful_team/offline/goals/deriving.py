@@ -49,7 +49,11 @@ def derive(understood: Understood, eyes: Eyes, *, strict: bool = True, literal: 
     stay = _staying(understood, eyes, result)
     for command in understood.commands:
         first = len(result.aims)
-        for aim in _of_command(command, eyes, result, strict):
+        aims = _of_command(command, eyes, result, strict)
+        kept = command.off or command.limit
+        if kept is not None and aims and not any(aim.off or aim.limit for aim in aims):
+            result.absent.append(f"no way is known there that keeps off the {kept.text}")
+        for aim in aims:
             if aim.thing.number in stay:
                 result.notes.append(f"{aim.thing.words} stays where it is, as asked")
                 continue

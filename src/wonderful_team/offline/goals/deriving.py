@@ -207,6 +207,9 @@ def _one(
     matches = as_pictured(single, matches, eyes)
     if holds is not None and single.noun in HOLDERS:
         matches = [m for m in matches if m.thing is None or m.thing.area_px > LARGER * holds.area_px]
+    compared = replace(single, superlative=None, ordinal=1)
+    if matches and len(fits := eyes.find(compared)) < description.number:
+        result.absent.append(f"{description.number} are spoken of, but only {len(fits)} fit '{render(compared)}'")
     equal = _equal(single, matches)
     if len(equal) > 1:
         equal = _by_size(equal, holds, fits_in) or equal

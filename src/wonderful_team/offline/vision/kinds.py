@@ -27,7 +27,7 @@ FRUITS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
     "melon": (("green", "yellow"), ("round", "oval")),
     "orange": (("orange",), ("round",)),
     "peach": (("orange", "pink"), ("round",)),
-    "pear": (("green", "yellow", "olive"), ("oval", "round")),
+    "pear": (("green", "yellow", "olive"), ("tapered",)),
     "plum": (("purple", "blue"), ("round", "oval")),
     "strawberry": (("red",), ("round", "heart", "triangle", "oval")),
     "tangerine": (("orange",), ("round",)),
@@ -76,6 +76,9 @@ def _form(look: Look, outline: str) -> float:
         return smooth * float(np.clip((1.45 - aspect) / 0.25, 0, 1))
     if outline == "oval":
         return smooth * float(np.clip((aspect - 1.05) / 0.12, 0, 1)) * float(np.clip((2.4 - aspect) / 0.4, 0, 1))
+    if outline == "tapered":
+        ends = np.abs(look.outline.profile - np.roll(look.outline.profile, len(look.outline.profile) // 2))
+        return smooth * float(np.clip((ends.max() - 0.12) / 0.12, 0, 1))
     if outline == "long":
         return float(np.clip((aspect - 1.6) / 0.4, 0, 1))
     if outline == "crescent":

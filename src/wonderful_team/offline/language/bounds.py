@@ -36,7 +36,9 @@ _KEEP = r"(?:(?:stay|keep|steer|remain)(?:ing)?\s+(?:well\s+)?(?:clear|away|off)
 _SHORT = (
     r"(?:stay|stop|keep|remain)(?:s|p?ing)?\s+(?:short\s+of|before|behind|in\s+front\s+of|on\s+this\s+side\s+of|within)"
 )
-_FORBIDDEN = r"\s+(?:is|are)\s+(?:(?:not|never)\s+(?:allowed|permitted|ok|okay|acceptable)|forbidden|prohibited|off\s+limits)"
+_FORBIDDEN = (
+    r"\s+(?:is|are)\s+(?:(?:not|never)\s+(?:allowed|permitted|ok|okay|acceptable)|forbidden|prohibited|off\s+limits)"
+)
 _CLEAR_OF = (rf"{_LEAD}{_KEEP}{_WHAT}",)
 """What is said of a way along the table: whatever is asked for with it is a push."""
 _OFF = (

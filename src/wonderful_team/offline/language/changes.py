@@ -35,7 +35,9 @@ def thing_of(tree: Tree[Token]) -> Description:
     some = {token.type for adj in trees(tree, "adj") for token in tokens_in(adj)} & {"OF_TWO", "OF", "ONE_OF"}
     both_of_a_list = description.number > 1 and not any(_is_many(head) for head in trees(tree, "head"))
     if description.quantity == "all" and (both_of_a_list or some):
-        description = replace(description, quantity="one", number=1 if both_of_a_list and not some else description.number)
+        description = replace(
+            description, quantity="one", number=1 if both_of_a_list and not some else description.number
+        )
     return replace(description, text=render(description))
 
 

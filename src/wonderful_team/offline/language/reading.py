@@ -69,7 +69,9 @@ def _understand(text: str) -> Understood:
     if bounds.off is not None or bounds.limit is not None:
         commands = tuple(_kept_off(command, bounds) for command in commands)
         if all(command.off is None and command.limit is None for command in commands):
-            raise NotUnderstoodError(_no_sentence(text, tokens, "what must be kept off is said of nothing that is pushed"))
+            raise NotUnderstoodError(
+                _no_sentence(text, tokens, "what must be kept off is said of nothing that is pushed")
+            )
     lost = passed_over(tokens, commands)
     if lost:
         raise NotUnderstoodError(_no_sentence(text, tokens, f"it is not clear what is meant by {', '.join(lost)}"))

@@ -173,6 +173,9 @@ def _next(pieces: list[str], start: int) -> tuple[Token | None, int]:
         if entry is None or (entry[0] == "SIDE_POST" and _noun_phrase_follows(pieces, start + length)):
             continue
         return (None if entry[0] == "SKIP" else Token(entry[0], entry[1], " ".join(words))), length
+    before = WORDS.get(pieces[start - 1], ("",))[0] if start else ""
+    if piece == "one" and _noun_phrase_follows(pieces, start + 1) and before not in (*_BEFORE_HEAD, "ALL", "EACH"):
+        return Token("ONE_OF", 1.0, piece), 1  # "one pink block": any of them
     angle = _angle(pieces, start)
     if angle is not None:
         return angle

@@ -237,10 +237,7 @@ def _words() -> dict[str, Entry]:
     for table in (_VERBS, _SMALL):
         for kind, listing in table.items():
             words |= {word: (kind, kind.lower()) for word in listing.split()}
-    for kind, listing in _VERBS.items():
-        for word in listing.split() if kind not in ("WANT", "LEAVE") else ():
-            for form in _forms(word, kind) if word not in _AS_THEY_STAND else ():
-                words.setdefault(form, (kind, kind.lower()))
+    words = _verb_forms() | words
     words |= {word: ("SIDE", side) for word, side in _SIDES.items()}
     words |= {word: ("ORDINAL", number) for word, number in _ORDINALS.items()}
     words |= {word: ("NUMBER", float(number)) for word, number in NUMBERS.items()}
@@ -253,6 +250,18 @@ def _shape_words() -> dict[str, Entry]:
         words |= {word: ("SHAPE", (shape, False)) for word in listing.split()}
         words |= {plural(word): ("SHAPE", (shape, True)) for word in listing.split() if plural(word) not in words}
     return words
+
+
+def _verb_forms() -> dict[str, Entry]:
+    inflected = (
+        (kind, word) for kind, listing in _VERBS.items() if kind not in ("WANT", "LEAVE") for word in listing.split()
+    )
+    return {
+        form: (kind, kind.lower())
+        for kind, word in inflected
+        if word not in _AS_THEY_STAND
+        for form in _forms(word, kind)
+    }
 
 
 def _forms(verb: str, kind: str) -> Iterator[str]:

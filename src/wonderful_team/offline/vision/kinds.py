@@ -115,6 +115,8 @@ def container_score(thing: Thing) -> float:
 
 ROOMY = 0.3
 """What holds things is at least this share of the largest object of its table."""
+BENT = 0.3
+"""Fit of a crescent from which a thing is no block."""
 BLOCKS = 4.0
 """A round object more than so many times the smallest of its table is no block."""
 
@@ -153,6 +155,7 @@ def kind_score(thing: Thing, description: Description) -> float:
         case "container":
             return container_score(thing)
         case "object" | "block" | "toy":
-            return 0.3 if thing.flat else 1.0
+            bent = look.shapes["crescent"] > BENT or look.shapes["oval"] >= max(look.shapes.values())
+            return 0.3 if thing.flat or (bent and description.noun == "block" and not description.shape) else 1.0
         case _:
             return 0.8 if thing.flat else 1.0

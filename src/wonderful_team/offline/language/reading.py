@@ -68,6 +68,10 @@ def _understand(text: str) -> Understood:
         commands = tuple(replace(command, conditional=True) for command in commands)
     if bounds.off is not None or bounds.limit is not None:
         commands = tuple(_kept_off(command, bounds) for command in commands)
+        if all(command.off is None and command.limit is None for command in commands):
+            raise NotUnderstoodError(
+                _no_sentence(text, tokens, "what must be kept off is said of nothing that is pushed")
+            )
     lost = passed_over(tokens, commands)
     if lost:
         raise NotUnderstoodError(_no_sentence(text, tokens, f"it is not clear what is meant by {', '.join(lost)}"))
@@ -269,6 +273,8 @@ def _without_and(tokens: list[Token]) -> list[Token]:
         if token.kind == "SEP" and out and out[-1].kind == "STACK":
             continue
         after = tokens[at + 1].kind if at + 1 < len(tokens) else ""
+        if token.kind == "SUPER" and after == "STACK":
+            continue  # "a small tower" is as large as what it is made of
         many = any(item.kind in ("EACH", "ALL", "EVERYTHING") for item in out[-4:])
         if (
             token.text == "but"

@@ -68,7 +68,7 @@ _ASIDES = (
     (rf"(?P<x>{_ONE}) (?:(?:should|must|shall|has to|is to|needs to|will) )?(?:visits?|(?:go(?:es)?|pass(?:es)?) through) (?P<a>{_ONE})\s*(?:,\s*then|and then|,\s*and|and|,|then)\s*(?P<b>{_ONE})", r"put \g<x> into \g<a>, then into \g<b>"),
     (r"\b(?:is|are) (?:covered|decorated|painted|patterned|textured|surfaced) like\b|\b(?:covered|decorated|patterned|textured) like\b", "with the same texture as"),
     (r"\b(?:whatever|anything) (?=with the same)", "everything "),
-    (r"\b(?:whatever|anything) (?=(?:has|have|shares|bears|matches)\b)", "everything that "),
+    (r"\b(?:whatever|anything) (?=(?:has|have|shares|bears|matches|looks like)\b)", "everything that "),
     (r",\s*(?:and\s+)?(?:then\s+)?on to (?=(?:the )?\{)", ", then into "),
     (r"\b(?:that|which) (?P<a>\{[^{}]+\}) (?:shows|depicts|pictures)\b", r"in \g<a>"),
     (r"\bfrom (?:its|the) (?:own |original |old )?(?:container|place|spot|position) (?=(?:in)?to (?:the )?\{)", " "),

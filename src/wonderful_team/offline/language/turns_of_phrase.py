@@ -24,7 +24,7 @@ _TURNS = (
     (rf"^\s*(?:out of|from|of|among|amongst) (?:all )?(?:of )?(?P<what>(?:the |these |those )?[a-z ]+?)\s*,\s*(?P<rest>.*?)\bthe (?:one (?:that is )?)?{_WHICH}(?: ones?)?\b", r"\g<rest>the \g<which> of the \g<what>"),
     (rf"^\s*(?:counting|counted|starting) from the (?P<side>left|right|top|bottom)\s*,\s*(?P<rest>.*?\bthe) {_WHICH} (?P<what>[a-z]+)", r"\g<rest> \g<which> \g<what> from the \g<side>"),
     (r"^\s*(?:with the exception of|except for|apart from|aside from|other than|excluding|except) (?P<spared>[^,]+),\s*(?P<rest>[^.!?;]+)", r"\g<rest> except \g<spared>"),
-    (r"\bput (?P<a>[^,.;]+?) where (?P<b>[^,.;]+?) (?:is|stands|lies|was)\s*,? and vice[ -]versa\b", r"swap \g<a> and \g<b>"),
+    (r"\bput (?P<a>[^,.;]+?) where (?P<b>[^,.;]+?) (?:is|stands|lies|was)(?: now| right now| currently)?\s*,? and vice[ -]versa\b", r"swap \g<a> and \g<b>"),
     (rf"^[^,.;:{{}}]*? (?:the|all|all the) (?P<what>[a-z ]+?) by {_PUTTING} (?:each|every|all)(?: one)?(?: of (?:them|these))?\b", r"put all \g<what>"),
     (r"\bthe (?P<what>[a-z]+), the (?P<look>[a-z]+(?: [a-z]+)?) one,(?! and\b| the\b)", r"the \g<look> \g<what>"),
     (r"(?:^|(?<=[.;!?]))\s*which (?P<what>[^?{}]+?) (?P<is>is|are) (?P<where>[^?]+)\?(?P<rest>[^.;!?]*?)\b(?:it|that one|this one|them|those)\b", r"\g<rest> the \g<what> that \g<is> \g<where>"),

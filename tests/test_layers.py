@@ -212,6 +212,24 @@ def test_simulators_and_the_team_never_meet() -> None:
         assert not ours(path) & {"models", "agents", "planning", "contracts"}, path
 
 
+def planners_met(path: Path, rival: bool) -> set[str]:
+    """What a planner's file imports of the other planners: a rival of all the others, the team of its rivals."""
+    planners = {name for name in imported(path) if name.startswith("wonderful_team.planning")}
+    return planners if rival else {name for name in planners if "baselines" in name.split(".")}
+
+
+def test_the_team_and_its_rivals_never_meet(tmp_path: Path) -> None:
+    """Comparisons are fair because neither can lean on the other."""
+    for path in _files("planning"):
+        assert not planners_met(path, path.parent.name == "baselines"), path
+    planted = tmp_path / "planted.py"
+    planted.write_text("from wonderful_team.planning.session import AgentSession\n", encoding="utf-8")
+    assert planners_met(planted, rival=True)
+    assert not planners_met(planted, rival=False)
+    planted.write_text("from wonderful_team.planning.baselines import one\n", encoding="utf-8")
+    assert planners_met(planted, rival=False)
+
+
 def test_tests_do_not_lean_on_the_benchmarks() -> None:
     tests = Path(__file__).parent
     leaning = [

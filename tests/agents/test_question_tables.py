@@ -12,7 +12,7 @@ from wonderful_team.agents.rendering import words
 from wonderful_team.agents.role import Ask, role
 from wonderful_team.api.method import POINTING_ROLES
 from wonderful_team.api.trial import GROUNDING_ROLES
-from wonderful_team.contracts import QUESTIONS, WriteFunction
+from wonderful_team.contracts import QUESTIONS, Question, WriteFunction
 from wonderful_team.core.values import Words
 from wonderful_team.errors import ConfigError
 from wonderful_team.models.stub_model import stub_script
@@ -24,6 +24,13 @@ def test_every_question_has_an_answer_in_every_table() -> None:
     assert set(stub_script()) == {question.__name__ for question in QUESTIONS}
     assert set(QUESTIONS) - set(ANSWERS) == {WriteFunction}
     assert set(ANSWERS) >= SAMPLED
+
+
+@pytest.mark.parametrize("question", SAMPLES, ids=lambda question: question.contract)
+def test_the_stub_answers_every_question_in_its_form(question: Question) -> None:
+    request = build_request(question, id="q", stage="plan")
+    said = stub_script()[question.contract](request)
+    assert request.output.model_validate(said).model_dump() is not None
 
 
 def test_what_studies_and_models_ask_of_roles_follows_from_the_roles() -> None:

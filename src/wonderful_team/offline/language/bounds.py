@@ -111,9 +111,6 @@ _PLAIN = (
     (rf"\bby\s+{_PUSH}(?:\s+(?:it|them))?\b", " "),
     (rf"[;,.]\s*(?:and\s+)?{_PUSH}\s+(?:it|them)\s*(?=[.,;!]|$)", " "),
     (rf"^\s*[,;:.]?\s*(?:while|when|as)\s+(?:you\s+)?(?=(?:are\s+)?{_PUSH})", " "),
-    (r"\b(?:exactly|just|only|precisely)\s+(?=(?:any|one|two|three|four|five|a|\d)\b)", ""),
-    (rf"\b{_COUNT}\s+(?:(?:piece|item|object)\s+)?(?:of\s+)?(?:(?:the|these|those|this)\s+)*(?=\{{)", "one of the "),
-    (r"\b(?P<n>two|three|four|five|all|both)\s+(?:of\s+)?(?:the|these|those|this)\s+(?=\{)", r"\g<n> "),
     (r"\b(?P<verb>[a-z]+)\s+(?:the\s+)?(?P<what>\{[^{}]+\})(?P<rest>[^.;]*?),\s*all\s+of\s+them\b", r"\g<verb> all \g<what>\g<rest>"),
 )  # fmt: skip
 

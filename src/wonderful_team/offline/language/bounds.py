@@ -105,7 +105,6 @@ def _plainly(text: str) -> str:
     return text
 
 
-_COUNT = r"(?:any|one|a\s+single|1)"
 _PLAIN = (
     (rf"\b{_TOOL}\b\s*,?", " "),
     (rf"\bby\s+{_PUSH}(?:\s+(?:it|them))?\b", " "),

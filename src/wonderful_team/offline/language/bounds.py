@@ -62,7 +62,6 @@ _SINGLE = re.compile(
     rf"\b(?P<verb>{_PUSH})\s+(?:exactly\s+|just\s+|only\s+)?(?:any|one|a\s+single|1)\s+(?!of\b|by\b|and\b|into\b)",
     re.IGNORECASE,
 )
-_COUNTED = re.compile(rf"\b(?P<verb>{_PUSH})\s+(?:exactly|just|only)\s+", re.IGNORECASE)
 
 
 @dataclass(frozen=True)
@@ -94,7 +93,6 @@ def set_bounds(text: str, describe: Callable[[str], Description | None]) -> Boun
     text = _plainly(text)
     # "any block" asks for one of them, and it is free which.
     text = _SINGLE.sub(lambda found: f"{found.group('verb')} one of the ", text)
-    text = _COUNTED.sub(lambda found: f"{found.group('verb')} ", text)
     return Bounds(text, off, limit, pushes=True)
 
 

@@ -70,11 +70,6 @@ _MENTION = re.compile(
     re.IGNORECASE,
 )
 """A sentence that only names a thing which the next one calls "it"."""
-_SEEN_IN = re.compile(
-    r"(?:^|(?<=[.;:!?]))\s*(?P<what>(?:the|a|an)\s+[^.;:,!?{}]+?)\s+(?:is|can be)\s+(?:seen|shown|found|pictured|visible|depicted)\s+in\s+\{[^{}]*\}\s*[.;:,!]\s*(?:(?:please|now|then|and)\s+)*(?P<rest>[^.;!?]*?)\b"
-    r"(?P<it>it|this one|that one)\b",
-    re.IGNORECASE,
-)
 _WHAT_IS = re.compile(r"\b(?:what|whatever|the one) (?:is|looks) (?P<look>[a-z]+(?: [a-z]+){0,5}?)(?=\s+in\s+\{|\s+(?:into|onto|inside|in|on|and|goes|should|must)\b|\s*[.,;!?]|\s*$)", re.IGNORECASE)  # fmt: skip
 
 
@@ -87,9 +82,7 @@ def put_plainly(text: str) -> str:
     text = re.sub(r"beside_(above|over|top)\b", "beside_north", text)
     text = re.sub(r"beside_(below|under|bottom)\b", "beside_south", text)
     text = _WHAT_IS.sub(lambda found: f"the {found.group('look')} object", text)
-    for mention in (_MENTION, _SEEN_IN):
-        text = mention.sub(lambda found: f" {found.group('rest')} {_definite(found.group('what'))}", text)
-    return text
+    return _MENTION.sub(lambda found: f" {found.group('rest')} {_definite(found.group('what'))}", text)
 
 
 def _definite(words: str) -> str:

@@ -62,7 +62,6 @@ _SINGLE = re.compile(
     rf"\b(?P<verb>{_PUSH})\s+(?:exactly\s+|just\s+|only\s+)?(?:any|one|a\s+single|1)\s+(?!of\b|by\b|and\b|into\b)",
     re.IGNORECASE,
 )
-_COUNTED = re.compile(rf"\b(?P<verb>{_PUSH})\s+(?:exactly|just|only)\s+", re.IGNORECASE)
 
 
 @dataclass(frozen=True)
@@ -94,7 +93,6 @@ def set_bounds(text: str, describe: Callable[[str], Description | None]) -> Boun
     text = _plainly(text)
     # "any block" asks for one of them, and it is free which.
     text = _SINGLE.sub(lambda found: f"{found.group('verb')} one of the ", text)
-    text = _COUNTED.sub(lambda found: f"{found.group('verb')} ", text)
     return Bounds(text, off, limit, pushes=True)
 
 
@@ -105,15 +103,11 @@ def _plainly(text: str) -> str:
     return text
 
 
-_COUNT = r"(?:any|one|a\s+single|1)"
 _PLAIN = (
     (rf"\b{_TOOL}\b\s*,?", " "),
     (rf"\bby\s+{_PUSH}(?:\s+(?:it|them))?\b", " "),
     (rf"[;,.]\s*(?:and\s+)?{_PUSH}\s+(?:it|them)\s*(?=[.,;!]|$)", " "),
     (rf"^\s*[,;:.]?\s*(?:while|when|as)\s+(?:you\s+)?(?=(?:are\s+)?{_PUSH})", " "),
-    (r"\b(?:exactly|just|only|precisely)\s+(?=(?:any|one|two|three|four|five|a|\d)\b)", ""),
-    (rf"\b{_COUNT}\s+(?:(?:piece|item|object)\s+)?(?:of\s+)?(?:(?:the|these|those|this)\s+)*(?=\{{)", "one of the "),
-    (r"\b(?P<n>two|three|four|five|all|both)\s+(?:of\s+)?(?:the|these|those|this)\s+(?=\{)", r"\g<n> "),
     (r"\b(?P<verb>[a-z]+)\s+(?:the\s+)?(?P<what>\{[^{}]+\})(?P<rest>[^.;]*?),\s*all\s+of\s+them\b", r"\g<verb> all \g<what>\g<rest>"),
 )  # fmt: skip
 

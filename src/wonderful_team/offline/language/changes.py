@@ -144,14 +144,8 @@ def _adj(tree: Tree[Token]) -> Change:
     return change
 
 
-_FIELDS: dict[str, str] = {
-    "PATTERN": "pattern",
-    "MATERIAL": "material",
-    "SUPER": "superlative",
-    "SIDE": "superlative",
-    "SIDE_POST": "superlative",
-    "FREE": "name",
-}
+_FIELDS = {"PATTERN": "pattern", "MATERIAL": "material", "SUPER": "superlative", "SIDE": "superlative",
+           "SIDE_POST": "superlative", "FREE": "name"}  # fmt: skip
 """Words whose value is that of one field."""
 
 

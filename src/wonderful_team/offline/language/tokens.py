@@ -11,23 +11,8 @@ from wonderful_team.offline.language.vocabulary import ARTICLES, FILLERS, NUMBER
 
 _PIECE = re.compile(r"\{[^{}]+\}|beside_[a-z]+|\d+(?:\.\d+)?(?:nd|rd|th)?|°|[^\W\d_]+|[,;.:!?()]", re.UNICODE)
 _LONGEST = max(len(phrase) for phrase in PHRASES)
-_LETTER_WORDS = ("letter", "letters", "character")
 _STARTS_NOUN_PHRASE = frozenset(
-    (
-        "NOUN",
-        "SHAPE",
-        "COLOUR",
-        "ORANGE",
-        "PATTERN",
-        "ONE",
-        "SIDE",
-        "SLOT",
-        "DARK",
-        "SUPER",
-        "LETTER",
-        "MATERIAL",
-        "LOOK",
-    )
+    "NOUN SHAPE COLOUR ORANGE PATTERN ONE SIDE SLOT DARK SUPER LETTER MATERIAL LOOK".split()
 )
 
 

@@ -49,6 +49,11 @@ def keep_secret(value: str | None) -> None:
         _used.add(value.strip())
 
 
+def names_secret(variable: str) -> bool:
+    """Whether a variable's name says that its value is secret."""
+    return _SECRET_VARIABLE.search(variable) is not None
+
+
 def redact(text: str) -> str:
     """The text without any known secret, in whichever coding, and without anything that looks like a key."""
     return _redact_looks(_known().hide(text))
@@ -129,9 +134,7 @@ def _redact_looks(text: str) -> str:
 
 def _known() -> _Known:
     set_now = (
-        value.strip()
-        for name, value in os.environ.items()
-        if len(value) >= SHORTEST_UNUSED and _SECRET_VARIABLE.search(name)
+        value.strip() for name, value in os.environ.items() if len(value) >= SHORTEST_UNUSED and names_secret(name)
     )
     return _known_of(frozenset(_used), frozenset(value for value in set_now if len(value) >= SHORTEST_UNUSED))
 

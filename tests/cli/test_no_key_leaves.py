@@ -168,6 +168,37 @@ def test_a_key_in_a_servers_headers(header, status, echo, session, photo, tmp_pa
     assert told_below(tmp_path / "out", key) == {}
 
 
+@pytest.mark.parametrize("status", [301, 302, 303, 307, 308])
+def test_a_key_follows_no_redirect(status, echo, session, photo, tmp_path, capsys, key):
+    address, handler = echo
+    reached = []
+
+    class Elsewhere(_Echo):
+        def do_GET(self) -> None:
+            reached.append(dict(self.headers))
+            self.send_error(404)
+
+    class Sends(_Echo):
+        def do_GET(self) -> None:
+            self.send_response(status)
+            self.send_header("Location", f"http://127.0.0.1:{other.server_port}/v1/chat/completions")
+            self.end_headers()
+
+    Elsewhere.do_POST = Elsewhere.do_GET
+    other = http.server.ThreadingHTTPServer(("127.0.0.1", 0), Elsewhere)
+    threading.Thread(target=other.serve_forever, daemon=True).start()
+    try:
+        handler.do_GET = handler.do_POST = Sends.do_GET
+        # With a model's name it is asked at once; without, for its models first.
+        for spec in (address, address.partition("#")[0]):
+            assert run(command(photo, spec, tmp_path / "out")) in (2, 3)
+    finally:
+        other.shutdown()
+        other.server_close()
+    assert reached == []
+    assert told(capsys.readouterr().err, key) == []
+
+
 OWN = """
 import os, sys, threading, warnings
 KEY = os.environ["WONDERFUL_TEAM_SERVER_KEY"]

@@ -91,11 +91,19 @@ def redact_all(value: Any, *, looks: bool = True) -> Any:
     return clean(value)
 
 
+def redact_streams() -> None:
+    """From now on, whatever is printed is redacted."""
+    sys.stdout, sys.stderr = (
+        stream if isinstance(stream, RedactedStream) else cast(TextIO, RedactedStream(stream))
+        for stream in (sys.stdout, sys.stderr)
+    )
+
+
 @contextlib.contextmanager
 def redacted_streams() -> Iterator[None]:
     """Redact what anybody prints meanwhile: libraries, warnings, threads that end with an exception, the user's own code."""
     before = sys.stdout, sys.stderr
-    sys.stdout, sys.stderr = (cast(TextIO, RedactedStream(stream)) for stream in before)
+    redact_streams()
     try:
         yield
     finally:

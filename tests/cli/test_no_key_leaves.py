@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import http.server
 import json
+import subprocess
+import sys
 import threading
 from collections.abc import Iterator
 from dataclasses import replace
@@ -247,6 +249,42 @@ def test_a_key_in_an_exception_of_ones_own_code(option, more, own, tmp_path, cap
     assert "[redacted]" in captured.out + captured.err
     assert told(captured.out + captured.err, key) == []
     assert told_below(tmp_path / "out", key) == {}
+
+
+LATE = """
+import atexit, os, threading
+KEY = os.environ["WONDERFUL_TEAM_SERVER_KEY"]
+
+def late():
+    threading.main_thread().join()
+    raise KeyError(KEY)
+
+class Own:
+    name = "own"
+    def decide(self, situation):
+        atexit.register(print, "the last word is", KEY)
+        threading.Thread(target=late).start()
+        raise RuntimeError("failed")
+"""
+
+
+def test_a_key_that_is_told_after_the_command_has_ended(tmp_path, key):
+    (tmp_path / "own.py").write_text(LATE, encoding="utf-8")
+    argv = [
+        "run",
+        "tabletop/visual_manipulation",
+        "--method",
+        f"{tmp_path / 'own.py'}:Own",
+        "--out",
+        str(tmp_path / "out"),
+    ]
+    ended = subprocess.run(
+        [sys.executable, "-m", "wonderful_team", *argv], capture_output=True, text=True, check=False, timeout=120
+    )
+    assert ended.returncode == 1
+    assert "the last word is [redacted]" in ended.stdout
+    assert "KeyError: '[redacted]'" in ended.stderr
+    assert told(ended.stdout + ended.stderr, key) == []
 
 
 @pytest.mark.filterwarnings("ignore")

@@ -49,6 +49,11 @@ def keep_secret(value: str | None) -> None:
         _used.add(value.strip())
 
 
+def names_secret(variable: str) -> bool:
+    """Whether a variable's name says that its value is secret."""
+    return _SECRET_VARIABLE.search(variable) is not None
+
+
 def redact(text: str) -> str:
     """The text without any known secret, in whichever coding, and without anything that looks like a key."""
     return _redact_looks(_known().hide(text))
@@ -86,11 +91,19 @@ def redact_all(value: Any, *, looks: bool = True) -> Any:
     return clean(value)
 
 
+def redact_streams() -> None:
+    """From now on, whatever is printed is redacted."""
+    sys.stdout, sys.stderr = (
+        stream if isinstance(stream, RedactedStream) else cast(TextIO, RedactedStream(stream))
+        for stream in (sys.stdout, sys.stderr)
+    )
+
+
 @contextlib.contextmanager
 def redacted_streams() -> Iterator[None]:
     """Redact what anybody prints meanwhile: libraries, warnings, threads that end with an exception, the user's own code."""
     before = sys.stdout, sys.stderr
-    sys.stdout, sys.stderr = (cast(TextIO, RedactedStream(stream)) for stream in before)
+    redact_streams()
     try:
         yield
     finally:
@@ -129,9 +142,7 @@ def _redact_looks(text: str) -> str:
 
 def _known() -> _Known:
     set_now = (
-        value.strip()
-        for name, value in os.environ.items()
-        if len(value) >= SHORTEST_UNUSED and _SECRET_VARIABLE.search(name)
+        value.strip() for name, value in os.environ.items() if len(value) >= SHORTEST_UNUSED and names_secret(name)
     )
     return _known_of(frozenset(_used), frozenset(value for value in set_now if len(value) >= SHORTEST_UNUSED))
 

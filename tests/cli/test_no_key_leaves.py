@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import http.server
 import json
+import subprocess
+import sys
 import threading
 from collections.abc import Iterator
 from dataclasses import replace
@@ -168,6 +170,37 @@ def test_a_key_in_a_servers_headers(header, status, echo, session, photo, tmp_pa
     assert told_below(tmp_path / "out", key) == {}
 
 
+@pytest.mark.parametrize("status", [301, 302, 303, 307, 308])
+def test_a_key_follows_no_redirect(status, echo, session, photo, tmp_path, capsys, key):
+    address, handler = echo
+    reached = []
+
+    class Elsewhere(_Echo):
+        def do_GET(self) -> None:
+            reached.append(dict(self.headers))
+            self.send_error(404)
+
+    class Sends(_Echo):
+        def do_GET(self) -> None:
+            self.send_response(status)
+            self.send_header("Location", f"http://127.0.0.1:{other.server_port}/v1/chat/completions")
+            self.end_headers()
+
+    Elsewhere.do_POST = Elsewhere.do_GET
+    other = http.server.ThreadingHTTPServer(("127.0.0.1", 0), Elsewhere)
+    threading.Thread(target=other.serve_forever, daemon=True).start()
+    try:
+        handler.do_GET = handler.do_POST = Sends.do_GET
+        # With a model's name it is asked at once; without, for its models first.
+        for spec in (address, address.partition("#")[0]):
+            assert run(command(photo, spec, tmp_path / "out")) in (2, 3)
+    finally:
+        other.shutdown()
+        other.server_close()
+    assert reached == []
+    assert told(capsys.readouterr().err, key) == []
+
+
 OWN = """
 import os, sys, threading, warnings
 KEY = os.environ["WONDERFUL_TEAM_SERVER_KEY"]
@@ -216,6 +249,42 @@ def test_a_key_in_an_exception_of_ones_own_code(option, more, own, tmp_path, cap
     assert "[redacted]" in captured.out + captured.err
     assert told(captured.out + captured.err, key) == []
     assert told_below(tmp_path / "out", key) == {}
+
+
+LATE = """
+import atexit, os, threading
+KEY = os.environ["WONDERFUL_TEAM_SERVER_KEY"]
+
+def late():
+    threading.main_thread().join()
+    raise KeyError(KEY)
+
+class Own:
+    name = "own"
+    def decide(self, situation):
+        atexit.register(print, "the last word is", KEY)
+        threading.Thread(target=late).start()
+        raise RuntimeError("failed")
+"""
+
+
+def test_a_key_that_is_told_after_the_command_has_ended(tmp_path, key):
+    (tmp_path / "own.py").write_text(LATE, encoding="utf-8")
+    argv = [
+        "run",
+        "tabletop/visual_manipulation",
+        "--method",
+        f"{tmp_path / 'own.py'}:Own",
+        "--out",
+        str(tmp_path / "out"),
+    ]
+    ended = subprocess.run(
+        [sys.executable, "-m", "wonderful_team", *argv], capture_output=True, text=True, check=False, timeout=120
+    )
+    assert ended.returncode == 1
+    assert "the last word is [redacted]" in ended.stdout
+    assert "KeyError: '[redacted]'" in ended.stderr
+    assert told(ended.stdout + ended.stderr, key) == []
 
 
 @pytest.mark.filterwarnings("ignore")

@@ -86,13 +86,14 @@ ENDLESS = (
 )  # fmt: skip
 """Lines that never end, or take all the memory that there is."""
 
+_HIDDEN = ("try:", "    {}", "except BaseException:", "    pass")
 _AROUND = (
-    ("{}",), ("try:", "    {}", "except BaseException:", "    pass"), ("def inner():", "    {}", "inner()"),
+    ("{}",), _HIDDEN, ("def inner():", "    {}", "inner()"),
     ("for k in range(3):", "    {}"), ("if boxes:", "    {}"), ("try:", "    pass", "finally:", "    {}"),
     ("lambda_ = [1, 2, 3]", "while lambda_:", "    lambda_.pop()", "    {}"),
 )  # fmt: skip
 _RETURNED = (
-    "[(1, 2), (3, 4)]", "[[1, 'a'], {}]", "3", "[(float('nan'), 1), (1, 1)]", "[]", "boxes", "[(1, 2)] * 10**6", "None",
+    "[(1, 2), (3, 4)]", "[[boxes['T1'][0], 2.5], (3, 4)]", "[[1, 'a'], {}]", "3", "[(float('nan'), 1), (1, 1)]", "[]", "boxes", "[(1, 2)] * 10**6", "None",
     "[(boxes['T1'][0], boxes['T9'][0])]",
 )  # fmt: skip
 
@@ -101,6 +102,8 @@ def program(rng: random.Random) -> str:
     """A program in which harm of several kinds is put together."""
     if rng.random() < 0.1:
         return rng.choice(LARGE)
+    # Half of them hide what went wrong, and give a path all the same.
+    hidden = rng.random() < 0.5
     lines: list[str] = []
     for _ in range(rng.randrange(1, 4)):
         kind = rng.random()
@@ -110,11 +113,11 @@ def program(rng: random.Random) -> str:
             harm = list(rng.choice(IMPORTS))
         else:
             harm = [rng.choice(ENDLESS)]
-        around = rng.choice(_AROUND)
+        around = _HIDDEN if hidden else rng.choice(_AROUND)
         for line in around:
             spaces = line[: len(line) - len(line.lstrip())]
             lines += [line] if "{}" not in line else [f"{spaces}{one}" for one in harm]
-    lines.append(f"return {rng.choice((*_RETURNED, *ESCAPES))}")
+    lines.append(f"return {rng.choice(_RETURNED if rng.random() < 0.8 else ESCAPES)}")
     code = body(*lines)
     if rng.random() < 0.3:
         code = f"{rng.choice(OVERRIDES)}\n{code}"

@@ -17,11 +17,12 @@ from wonderful_team.api.study import known_suites
 from wonderful_team.api.trial import make_scene, model_of, run_trial
 from wonderful_team.api.trial_setup import reproduce
 from wonderful_team.cli.app import run
+from wonderful_team.core.caps import Caps
 from wonderful_team.core.protocols import World
 from wonderful_team.errors import ConfigError
 from wonderful_team.evals.perturb import perturbed
 from wonderful_team.evals.store import Store
-from wonderful_team.evals.trials import Condition, RunSettings, SpendingCaps, TrialSpec
+from wonderful_team.evals.trials import Condition, RunSettings, TrialSpec
 from wonderful_team.evals.workers import run_safely
 from wonderful_team.images import to_png
 
@@ -198,7 +199,7 @@ def test_a_photo_that_meets_a_cap_or_an_own_method_that_gives_up_is_a_failure_wi
         encoding="utf-8",
     )
     photos = str(tmp_path / "photos.json")
-    capped = RunSettings(SpendingCaps(calls=1))
+    capped = RunSettings(Caps(calls=1))
     trial = run_trial(TrialSpec(photos, 0, Condition("team:paper", "offline")), capped)
     assert (trial.outcome, trial.stage, trial.calls) == ("failure", "budget", 1)
     assert "the cap of 1 calls is reached" in trial.reason

@@ -13,10 +13,11 @@ from pathlib import Path
 import pytest
 
 from tests.evals.runners import toy_plan
+from wonderful_team.core.caps import Caps
 from wonderful_team.evals.leases import LEASE_S, Owner, Surroundings
 from wonderful_team.evals.spending import CapReached
 from wonderful_team.evals.store import Claim, Store
-from wonderful_team.evals.trials import SpendingCaps, TrialRow
+from wonderful_team.evals.trials import TrialRow
 from wonderful_team.evals.workers import settle
 
 MOST_STEPS = 4000
@@ -58,7 +59,7 @@ class World:
         self.chance, self.file = random.Random(seed), file
         self.machines = [Machine("a"), Machine("b")]
         self.processes: list[Process] = []
-        self.caps = SpendingCaps(calls=cap)
+        self.caps = Caps(calls=cap)
         self.really_spent = 0
         self.numbers = iter(range(1, 100_000))
         self.written: list[int] = []
@@ -131,7 +132,7 @@ class World:
         result = TrialRow("success", calls=one.spent, usd=None)
         if wanted > most:
             result = TrialRow("failure", "budget", f"the cap of {most} calls is reached", calls=one.spent, usd=None)
-        if settle(one.store, one.owner, one.claim, SpendingCaps(), result):
+        if settle(one.store, one.owner, one.claim, Caps(), result):
             self.written.append(trial)
         one.claim = None
 
@@ -177,14 +178,14 @@ def test_a_dead_process_does_not_hold_what_is_left(tmp_path: Path) -> None:
         plan = toy_plan(2)
         store.want(plan.name, plan.trials(), plan.request())
         first, second = (Owner("a", pid, "born", 0, "", str(pid)) for pid in (1, 2))
-        claim = store.claim(plan.name, first, SpendingCaps(calls=8))
+        claim = store.claim(plan.name, first, Caps(calls=8))
         assert claim is not None
-        assert store.claim(plan.name, second, SpendingCaps(calls=8)) is None, "the first holds all, while it lives"
+        assert store.claim(plan.name, second, Caps(calls=8)) is None, "the first holds all, while it lives"
         here.alive.discard(1)
         with pytest.raises(CapReached, match="8 spent"):
-            store.claim(plan.name, second, SpendingCaps(calls=8))
+            store.claim(plan.name, second, Caps(calls=8))
         assert store.spending(plan.name).calls == 8, "what the dead one held counts as spent"
-        assert store.claim(plan.name, second, SpendingCaps(calls=16)) is not None
+        assert store.claim(plan.name, second, Caps(calls=16)) is not None
 
 
 def test_a_cheap_first_trial_does_not_cut_the_others_for_ever(tmp_path: Path) -> None:
@@ -192,10 +193,10 @@ def test_a_cheap_first_trial_does_not_cut_the_others_for_ever(tmp_path: Path) ->
     with Store(tmp_path / "s.db", here=here.surroundings()) as store:
         plan = toy_plan(2)
         store.want(plan.name, plan.trials(), plan.request())
-        owner, caps = Owner("a", 1, "born", 0, "", "1"), SpendingCaps(calls=1000)
+        owner, caps = Owner("a", 1, "born", 0, "", "1"), Caps(calls=1000)
         claim = store.claim(plan.name, owner, caps)
         assert claim is not None
-        settle(store, owner, claim, SpendingCaps(), TrialRow("success", calls=1, usd=None))
+        settle(store, owner, claim, Caps(), TrialRow("success", calls=1, usd=None))
         cuts = 0
         while store.count(plan.name, "done") < store.count_all(plan.name):
             claim = store.claim(plan.name, owner, caps)
@@ -207,7 +208,7 @@ def test_a_cheap_first_trial_does_not_cut_the_others_for_ever(tmp_path: Path) ->
             result = TrialRow(
                 "success" if enough else "failure", None if enough else "budget", reason, calls=1, usd=None
             )
-            cuts += not settle(store, owner, claim, SpendingCaps(), result)
+            cuts += not settle(store, owner, claim, Caps(), result)
             assert cuts < 50
 
 

@@ -17,13 +17,14 @@ import pytest
 from tests.evals import runners
 from tests.evals.runners import toy_plan
 from tests.interrupting import listen
+from wonderful_team.core.caps import Caps
 from wonderful_team.core.filesystem import network_file_system
 from wonderful_team.errors import ConfigError
 from wonderful_team.evals.leases import Owner, Surroundings
 from wonderful_team.evals.spending import CapReached, Likely, Spending, WaitForCost, allow
 from wonderful_team.evals.store import Store
 from wonderful_team.evals.study import run_study
-from wonderful_team.evals.trials import SpendingCaps, TrialRow
+from wonderful_team.evals.trials import TrialRow
 
 ROOT = Path(__file__).parents[2]
 
@@ -118,7 +119,7 @@ def test_errors_are_kept_apart_and_retried_on_request(tmp_path: Path, monkeypatc
 @pytest.mark.parametrize("cap", [35, 5])
 def test_a_cap_stops_a_study_cleanly_and_is_never_passed(tmp_path: Path, cap: int) -> None:
     path = tmp_path / "s.db"
-    ended = run_study(toy_plan(5), path, runners.capped, jobs=1, caps=SpendingCaps(calls=cap))
+    ended = run_study(toy_plan(5), path, runners.capped, jobs=1, caps=Caps(calls=cap))
     assert "cap" in ended.why
     assert ended.status.spent.calls <= cap
     with Store(path) as store:
@@ -131,9 +132,7 @@ def test_a_cap_stops_a_study_cleanly_and_is_never_passed(tmp_path: Path, cap: in
 
 def test_trials_run_side_by_side_under_a_cap_and_never_pass_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("TOY_LOG", str(tmp_path / "log"))
-    ended = run_study(
-        toy_plan(10), tmp_path / "s.db", runners.capped_slow, jobs=1, at_once=4, caps=SpendingCaps(calls=305)
-    )
+    ended = run_study(toy_plan(10), tmp_path / "s.db", runners.capped_slow, jobs=1, at_once=4, caps=Caps(calls=305))
     assert "cap of 305 calls" in ended.why
     assert ended.status.spent.calls == 300, "whatever fits is run, and nothing is cut that fits"
     assert ended.status.outcomes == {"success": 30}
@@ -143,13 +142,13 @@ def test_trials_run_side_by_side_under_a_cap_and_never_pass_it(tmp_path: Path, m
 def test_a_cap_in_money_does_not_slow_models_that_cost_none(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("TOY_LOG", str(tmp_path / "log"))
     plan = toy_plan(4, models=("offline",))
-    ended = run_study(plan, tmp_path / "s.db", runners.free_slow, jobs=1, at_once=4, caps=SpendingCaps(usd=0.01))
+    ended = run_study(plan, tmp_path / "s.db", runners.free_slow, jobs=1, at_once=4, caps=Caps(usd=0.01))
     assert ended.why == ""
     assert _most_in_flight(tmp_path / "log") >= 3
 
 
 def test_a_trial_dearer_than_its_allowance_is_cut_run_again_with_more_and_booked() -> None:
-    caps = SpendingCaps(calls=100)
+    caps = Caps(calls=100)
     known = allow(caps, Spending(calls=20), Likely((10, 0, 0), (10, 0, 0)))
     assert (known.caps.calls, known.held[0]) == (20, 20)
     cut = allow(caps, Spending(calls=40), Likely((20, 0, 0), (20, 0, 0)))

@@ -9,6 +9,7 @@ import cv2
 import numpy as np
 import pytest
 
+from wonderful_team.core.caps import Caps
 from wonderful_team.core.geometry import AffineCamera, Box, PinholeCamera, Pose
 from wonderful_team.errors import ConfigError, UnknownNameError
 from wonderful_team.evals.estimate import estimate
@@ -16,7 +17,7 @@ from wonderful_team.evals.perturb import moved, read_tiers
 from wonderful_team.evals.photos import Located, overlap, read_photos, score_photo
 from wonderful_team.evals.plan import StudyPlan, read_shard
 from wonderful_team.evals.suites import VIMA_TASKS, all_suites, default_seeds, read_seeds, resolve
-from wonderful_team.evals.trials import Condition, Row, SpendingCaps, TrialRow, TrialSpec
+from wonderful_team.evals.trials import Condition, Row, TrialRow, TrialSpec
 from wonderful_team.registry.role_models import choice_of, read_choices, text_of
 
 KNOWN = [
@@ -71,7 +72,7 @@ def test_seeds_shards_and_caps() -> None:
         with pytest.raises(ConfigError, match="shard"):
             read_shard(words)
     with pytest.raises(ConfigError, match="positive"):
-        SpendingCaps(calls=0)
+        Caps(calls=0)
 
 
 def test_controls_stand_in_every_study_unless_refused() -> None:

@@ -22,7 +22,7 @@ from wonderful_team.images import Ticks
 from wonderful_team.models.budget import Budget
 from wonderful_team.models.cache import Cached, cached_models
 from wonderful_team.models.cache_key import model_identity, request_key
-from wonderful_team.models.cache_store import CacheStore, Stored, default_cache_file, network_file_system
+from wonderful_team.models.cache_store import CacheStore, Stored, default_cache_file
 from wonderful_team.models.client import ModelClient
 from wonderful_team.offline import OfflineModel
 
@@ -332,15 +332,6 @@ def test_the_first_answer_stands(store):
     first, second = Stored({"n": 1}, "", "m", "c"), Stored({"n": 2}, "", "m", "c")
     assert store.put("k", first) == first
     assert store.put("k", second) == first
-
-
-def test_network_file_systems_are_told():
-    mounts = "/dev/sda / ext4 rw 0 0\nserver:/home /home nfs4 rw 0 0\n/dev/sdb /home/me/fast\\040disk ext4 rw 0 0\n"
-    from pathlib import Path
-
-    assert network_file_system(Path("/home/me/answers.sqlite"), mounts) == "nfs4"
-    assert network_file_system(Path("/home/me/fast disk/answers.sqlite"), mounts) is None
-    assert network_file_system(Path("/tmp/answers.sqlite"), mounts) is None
 
 
 def test_on_a_network_file_system_it_warns_and_does_without_wal(tmp_path, monkeypatch):

@@ -11,6 +11,7 @@ from typing import Any, Literal
 
 from wonderful_team import registry
 from wonderful_team.api.trial import check_isolation, check_names, code_of_names, run_trial
+from wonderful_team.core.caps import Caps
 from wonderful_team.core.renamed import renamed_arguments
 from wonderful_team.errors import ConfigError, UnknownNameError
 from wonderful_team.evals.controls import CONTROLS
@@ -23,7 +24,7 @@ from wonderful_team.evals.store import Store
 from wonderful_team.evals.study import StudyResult, run_study, started_by_spawn
 from wonderful_team.evals.suites import PARTITIONS, Suite, all_suites, read_seeds, resolve
 from wonderful_team.evals.summary import Summary, summarise
-from wonderful_team.evals.trials import Condition, RunSettings, SpendingCaps, TrialRow, TrialSpec
+from wonderful_team.evals.trials import Condition, RunSettings, TrialRow, TrialSpec
 from wonderful_team.evals.workers import run_safely
 from wonderful_team.models.cache import CacheMode
 from wonderful_team.models.providers import PriceChoice
@@ -73,8 +74,8 @@ class Study:
     perturb: str | Sequence[str] = ""
     shard: tuple[int, int] = (1, 1)
     controls: Sequence[str] = ALL_CONTROLS
-    caps: SpendingCaps = SpendingCaps()
-    trial_caps: SpendingCaps = SpendingCaps()
+    caps: Caps = Caps()
+    trial_caps: Caps = Caps()
     concurrency: int | None = None
     pages: Literal["all", "failures", "none"] = "failures"
     out: str | Path | None = None
@@ -152,8 +153,8 @@ class Study:
             perturb=options["perturb"],
             shard=(1, 1) if options["shard"] is None else read_shard(options["shard"]),
             controls=() if "all" in refused else tuple(name for name in ALL_CONTROLS if name not in refused),
-            caps=SpendingCaps(options["max_calls"], options["max_tokens"], options["max_seconds"], options["max_usd"]),
-            trial_caps=SpendingCaps(*(options[f"trial_max_{name}"] for name in ("calls", "tokens", "seconds", "usd"))),
+            caps=Caps(options["max_calls"], options["max_tokens"], options["max_seconds"], options["max_usd"]),
+            trial_caps=Caps(*(options[f"trial_max_{name}"] for name in ("calls", "tokens", "seconds", "usd"))),
             concurrency=options["concurrency"],
             pages=options["pages"],
             out=options["out"],

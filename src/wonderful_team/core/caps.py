@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 from wonderful_team.errors import ConfigError
 
 
 @dataclass(frozen=True)
 class Caps:
-    """Upper limits of one plan or trial; None means no cap.
+    """Upper limits; None for none. Of one plan or trial: the method fails at stage budget. Of a whole study: it stops cleanly.
 
     Raises:
         ConfigError: A cap is not positive.
@@ -21,10 +21,14 @@ class Caps:
     usd: float | None = None
 
     def __post_init__(self) -> None:
-        for name in ("calls", "tokens", "seconds", "usd"):
-            value = getattr(self, name)
-            if value is not None and value <= 0:
+        for name, value in self.given.items():
+            if value <= 0:
                 raise ConfigError(f"cap on {name} must be positive, got {value}")
+
+    @property
+    def given(self) -> dict[str, float]:
+        """The caps that are set, by name."""
+        return {item.name: value for item in fields(self) if (value := getattr(self, item.name)) is not None}
 
 
 @dataclass(frozen=True)

@@ -4,21 +4,11 @@ from __future__ import annotations
 
 from pathlib import Path
 
-_NETWORK = (
-    "nfs",
-    "cifs",
-    "smb",
-    "sshfs",
-    "lustre",
-    "gpfs",
-    "beegfs",
-    "ceph",
-    "glusterfs",
-    "afs",
-    "9p",
-    "davfs",
-    "s3fs",
+_NETWORK = frozenset(
+    "9p afs afpfs beegfs ceph cifs davfs gcsfuse glusterfs gpfs lustre ncpfs nfs orangefs rclone s3fs smb smbfs sshfs vboxsf "
+    "virtiofs".split()
 )
+"""Types of mount, without `fuse.` before and a version after, on which SQLite's locks and shared memory cannot be relied on."""
 
 
 def network_file_system(path: Path, mounts: str | None = None) -> str | None:
@@ -30,7 +20,7 @@ def network_file_system(path: Path, mounts: str | None = None) -> str | None:
     """
     if mounts is None:
         try:
-            mounts = Path("/proc/mounts").read_text(encoding="utf-8")
+            mounts = Path("/proc/mounts").read_text(encoding="utf-8", errors="replace")
         except OSError:
             return None
     place = path.absolute().resolve()
@@ -42,4 +32,4 @@ def network_file_system(path: Path, mounts: str | None = None) -> str | None:
         point = Path(words[1].replace("\\040", " "))
         if place.is_relative_to(point) and len(point.parts) >= best:
             best, kind = len(point.parts), words[2]
-    return kind if any(name in kind for name in _NETWORK) else None
+    return kind if kind.removeprefix("fuse.").rstrip("0123456789") in _NETWORK else None

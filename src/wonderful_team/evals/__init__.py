@@ -1,4 +1,4 @@
-"""Measuring methods: statistics over trials. Suites and studies build on these."""
+"""Measuring methods: suites, studies in a durable store, statistics and reports."""
 
 from wonderful_team.core.intervals import Rate, wilson_interval
 from wonderful_team.evals.statistics import Confusion

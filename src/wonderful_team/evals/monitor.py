@@ -6,10 +6,10 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from wonderful_team.core.caps import Caps
 from wonderful_team.core.text import counted
 from wonderful_team.evals.spending import CapReached, Spending
 from wonderful_team.evals.store import Store
-from wonderful_team.evals.trials import SpendingCaps
 
 
 @dataclass(frozen=True)
@@ -80,7 +80,7 @@ class StudyMonitor:
         """Trials that have not ended."""
         return self._total - self.store.count(self.study, "done")
 
-    def why(self, caps: SpendingCaps, deadline_s: float | None) -> str:
+    def why(self, caps: Caps, deadline_s: float | None) -> str:
         """Why trials are missing; "" when none is."""
         if not self.missing:
             return ""

@@ -8,8 +8,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TypeAlias
 
+from wonderful_team.core.caps import Caps
 from wonderful_team.errors import BudgetReached
-from wonderful_team.evals.trials import SpendingCaps
 
 UNITS = ("calls", "tokens", "usd")
 ROOM = 2.0
@@ -65,11 +65,11 @@ class Likely:
 class Allowance:
     """What a trial may spend at most, and what of that it holds."""
 
-    caps: SpendingCaps
+    caps: Caps
     held: tuple[float, float, float]
 
 
-def allow(caps: SpendingCaps, spent: Spending, likely: Likely) -> Allowance:
+def allow(caps: Caps, spent: Spending, likely: Likely) -> Allowance:
     """What the next trial may spend.
 
     Raises:
@@ -108,7 +108,7 @@ def allow(caps: SpendingCaps, spent: Spending, likely: Likely) -> Allowance:
             raise WaitForCost("the trial was cut, and trials in flight hold what it needs more")
         raise CapReached("the study's cap is reached: a trial needs more than all that is left of it")
     calls, tokens, usd = left["calls"], left["tokens"], left["usd"]
-    whole = SpendingCaps(
+    whole = Caps(
         None if calls is None else max(1, int(calls)),
         None if tokens is None else max(1, int(tokens)),
         None,

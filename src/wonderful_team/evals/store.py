@@ -16,13 +16,14 @@ from typing import Any
 
 from pydantic import TypeAdapter
 
+from wonderful_team.core.caps import Caps
 from wonderful_team.core.filesystem import network_file_system
 from wonderful_team.errors import ConfigError, reading
 from wonderful_team.evals.leases import LEASE_S, Owner, Surroundings
 from wonderful_team.evals.names import NO_MODEL
 from wonderful_team.evals.schema import CONDITION, JSON, RESULT, SCHEMA_VERSION, SPEC, check_values, make_tables
 from wonderful_team.evals.spending import UNITS, Allowance, Costs, Likely, Spending, WaitForCost, allow
-from wonderful_team.evals.trials import Condition, Row, SpendingCaps, TrialRow, TrialSpec
+from wonderful_team.evals.trials import Condition, Row, TrialRow, TrialSpec
 
 CUT = "cut by the study's cap"
 """Why an attempt was discarded that had all it was allowed and wanted more."""
@@ -128,7 +129,7 @@ class Store:
 
     # -- handing out work --------------------------------------------------------------------------------------------
 
-    def claim(self, study: str, owner: Owner, caps: SpendingCaps | None = None) -> Claim | None:
+    def claim(self, study: str, owner: Owner, caps: Caps | None = None) -> Claim | None:
         """Take the next trial of a study; None when there is none to take now (see `left` and `spending`).
 
         Raises:
@@ -152,7 +153,7 @@ class Store:
             )
         return Claim(int(row["id"]), _spec(row), allowance.caps)
 
-    def check_caps(self, study: str, caps: SpendingCaps) -> None:
+    def check_caps(self, study: str, caps: Caps) -> None:
         """Whether the next trial may be begun, once nothing is in flight.
 
         Raises:
@@ -164,9 +165,9 @@ class Store:
             with suppress(WaitForCost):
                 self._allowance(study, row, caps)
 
-    def _allowance(self, study: str, row: sqlite3.Row, caps: SpendingCaps | None) -> Allowance:
+    def _allowance(self, study: str, row: sqlite3.Row, caps: Caps | None) -> Allowance:
         if caps is None or not set(caps.given) & set(UNITS):
-            return Allowance(SpendingCaps(), (0, 0, 0.0))
+            return Allowance(Caps(), (0, 0, 0.0))
         return allow(caps, self.spending(study), self._likely(row))
 
     def _likely(self, row: sqlite3.Row) -> Likely:
@@ -370,7 +371,7 @@ class Claim:
         left: What the caps of the study leave for this trial; None per cap that is not set.
     """
 
-    def __init__(self, trial: int, spec: TrialSpec, left: SpendingCaps) -> None:
+    def __init__(self, trial: int, spec: TrialSpec, left: Caps) -> None:
         self.trial, self.spec, self.left = trial, spec, left
 
 

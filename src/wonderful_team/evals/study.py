@@ -16,6 +16,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
+from wonderful_team.core.caps import Caps
 from wonderful_team.core.renamed import renamed_attribute
 from wonderful_team.core.text import counted
 from wonderful_team.errors import ConfigError
@@ -23,7 +24,7 @@ from wonderful_team.evals.monitor import Report, StudyMonitor, StudyStatus
 from wonderful_team.evals.plan import StudyPlan
 from wonderful_team.evals.rate_limit import ProcessLimiter
 from wonderful_team.evals.store import Store
-from wonderful_team.evals.trials import RunSettings, SpendingCaps, TrialRunner
+from wonderful_team.evals.trials import RunSettings, TrialRunner
 from wonderful_team.evals.workers import POLL_S, Work, work_until_done, worker_main
 
 STARTS_THAT_FAIL = 3
@@ -36,6 +37,7 @@ class StudyResult:
 
     status: StudyStatus
     why: str = ""
+
     standing = renamed_attribute("standing", "status")
 
 
@@ -45,7 +47,7 @@ def run_study(
     runner: TrialRunner,
     *,
     settings: RunSettings | None = None,
-    caps: SpendingCaps | None = None,
+    caps: Caps | None = None,
     jobs: int | None = None,
     at_once: int = 1,
     calls_at_once: int | None = None,
@@ -78,7 +80,7 @@ def run_study(
     jobs = jobs or os.cpu_count() or 1
     if jobs < 1 or at_once < 1:
         raise ConfigError(f"jobs and trials at once must be at least 1, got {jobs} and {at_once}")
-    settings, caps = settings or RunSettings(), caps or SpendingCaps()
+    settings, caps = settings or RunSettings(), caps or Caps()
     deadline_s = None if caps.seconds is None else time.time() + caps.seconds
     with Store(store) as opened:
         for warning in opened.warnings:

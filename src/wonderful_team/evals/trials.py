@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import Any, Literal, Protocol, TypeAlias
 
+from wonderful_team.core.caps import Caps
 from wonderful_team.errors import ConfigError
 
 OUTCOMES = ("success", "failure", "error", "unscored")
@@ -125,31 +126,6 @@ class Row:
     discarded: int = 0
 
 
-@dataclass(frozen=True)
-class SpendingCaps:
-    """Upper limits; None for none. Of a whole study: it stops cleanly. Of one trial: the method fails at stage budget.
-
-    Raises:
-        ConfigError: A cap is not positive.
-    """
-
-    calls: int | None = None
-    tokens: int | None = None
-    seconds: float | None = None
-    usd: float | None = None
-
-    def __post_init__(self) -> None:
-        for item in fields(self):
-            value = getattr(self, item.name)
-            if value is not None and value <= 0:
-                raise ConfigError(f"cap on {item.name} must be positive, got {value}")
-
-    @property
-    def given(self) -> dict[str, float]:
-        """The caps that are set, by name."""
-        return {item.name: value for item in fields(self) if (value := getattr(self, item.name)) is not None}
-
-
 class Limiter(Protocol):
     """Bounds how many model calls are in flight over all workers of a study."""
 
@@ -174,7 +150,7 @@ class RunSettings:
             the caller itself.
     """
 
-    caps: SpendingCaps = SpendingCaps()
+    caps: Caps = Caps()
     concurrency: int = 8
     pages: Literal["all", "failures", "none"] = "none"
     out: Path | None = None

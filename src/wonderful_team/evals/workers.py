@@ -13,10 +13,11 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
+from wonderful_team.core.caps import Caps
 from wonderful_team.evals.leases import RENEW_EVERY_S, Owner
 from wonderful_team.evals.spending import CapReached
 from wonderful_team.evals.store import CUT, Claim, Store
-from wonderful_team.evals.trials import RunSettings, SpendingCaps, TrialRow, TrialRunner, TrialSpec
+from wonderful_team.evals.trials import RunSettings, TrialRow, TrialRunner, TrialSpec
 
 POLL_S = 0.2
 """How long a worker waits before it looks again for a trial that another process holds [s]."""
@@ -39,7 +40,7 @@ class Work:
     study: str
     runner: TrialRunner
     settings: RunSettings
-    caps: SpendingCaps = SpendingCaps()
+    caps: Caps = Caps()
     deadline_s: float | None = None
     at_once: int = 1
     parent: int | None = None
@@ -93,7 +94,7 @@ async def _run(work: Work, store: Store, owner: Owner, claim: Claim) -> None:
     settle(store, owner, claim, work.settings.caps, result)
 
 
-def settle(store: Store, owner: Owner, claim: Claim, own: SpendingCaps, result: TrialRow) -> bool:
+def settle(store: Store, owner: Owner, claim: Claim, own: Caps, result: TrialRow) -> bool:
     """Write a result, unless the study's cap, and not one of its own, cut it short: then it did not happen.
 
     Returns:
@@ -105,7 +106,7 @@ def settle(store: Store, owner: Owner, claim: Claim, own: SpendingCaps, result: 
     return store.finish(claim.trial, owner, result)
 
 
-def cut_by_study(own: SpendingCaps, left: SpendingCaps, result: TrialRow) -> bool:
+def cut_by_study(own: Caps, left: Caps, result: TrialRow) -> bool:
     """Whether the cap that a trial met was what the study had left, and not its own."""
     for name in ("calls", "tokens", "usd"):
         study, trial = getattr(left, name), getattr(own, name)
@@ -118,7 +119,7 @@ def cut_by_study(own: SpendingCaps, left: SpendingCaps, result: TrialRow) -> boo
     return False
 
 
-def tighter(one: SpendingCaps, other: SpendingCaps) -> SpendingCaps:
+def tighter(one: Caps, other: Caps) -> Caps:
     """The smaller of each cap."""
 
     def least(name: str) -> Any:
@@ -127,7 +128,7 @@ def tighter(one: SpendingCaps, other: SpendingCaps) -> SpendingCaps:
 
     # What is left may be less than one call or token: the trial then starts with one and is cut at once.
     calls, tokens = least("calls"), least("tokens")
-    return SpendingCaps(
+    return Caps(
         None if calls is None else max(1, calls),
         None if tokens is None else max(1, tokens),
         least("seconds"),

@@ -1,1 +1,1 @@
-"""The client of models, and the models that need no key: offline, scripted, wrappers."""
+"""The client of models: providers, wire formats, conventions, cache and caps; scripted models and wrappers."""

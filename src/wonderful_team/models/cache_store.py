@@ -18,6 +18,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from wonderful_team.core.filesystem import network_file_system
 from wonderful_team.core.text import user_path
 from wonderful_team.errors import ConfigError
 
@@ -27,11 +28,6 @@ SCHEMA_VERSION = 1
 BUSY_S = 20.0
 """How long one process waits for another that is writing [s]."""
 FILE_VARIABLE = "WONDERFUL_TEAM_CACHE"
-NETWORK_FILE_SYSTEMS = frozenset(
-    "9p afs afpfs beegfs ceph cifs fuse.ceph fuse.glusterfs fuse.rclone fuse.s3fs fuse.sshfs glusterfs gpfs lustre ncpfs "
-    "nfs nfs3 nfs4 orangefs smb2 smb3 smbfs virtiofs vboxsf".split()
-)
-"""Types of mount on which SQLite's shared memory, and so its WAL mode, cannot be relied on."""
 _TABLE = """CREATE TABLE answers (
     key TEXT PRIMARY KEY, answer TEXT NOT NULL, model TEXT NOT NULL, contract TEXT NOT NULL, made_s INTEGER NOT NULL
 ) WITHOUT ROWID"""
@@ -277,27 +273,3 @@ class CacheStore:
 
 
 _WAYS_OUT = "it was left as it is: move it away, or use another (--cache-file FILE), or --cache off"
-
-
-def network_file_system(path: Path, mounts: str | None = None) -> str | None:
-    """The type of the network mount that a path lies on; None for a local disk, or where the system does not say.
-
-    Args:
-        path: The file, which need not exist yet.
-        mounts: The system's table of mounts (the form of /proc/mounts); None to read it.
-    """
-    if mounts is None:
-        try:
-            mounts = Path("/proc/mounts").read_text(encoding="utf-8", errors="replace")
-        except OSError:
-            return None
-    place = path.resolve()
-    best, found = -1, ""
-    for line in mounts.splitlines():
-        words = line.split()
-        if len(words) < 3:
-            continue
-        point = Path(words[1].replace("\\040", " "))
-        if place.is_relative_to(point) and len(point.parts) >= best:
-            best, found = len(point.parts), words[2]
-    return found if found in NETWORK_FILE_SYSTEMS else None

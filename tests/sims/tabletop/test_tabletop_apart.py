@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import gc
 import re
+import weakref
 from pathlib import Path
 
+import pytest
+
 import wonderful_team
-from wonderful_team.sims.tabletop import make_world
+from wonderful_team.sims.tabletop import drawing_gl, make_world
 
 INSIDE = re.compile(r"sims\.tabletop\.(textures|patterns|shapes|outlines|fruits|tasks|goals|oracle|scene|model)")
 
@@ -39,3 +42,19 @@ def test_worlds_that_nobody_closed_do_no_harm() -> None:
     assert world.observe().main.rgb.any()
     world.close()
     world.close()
+
+
+@pytest.mark.timeout(60)
+def test_a_world_may_be_forgotten_while_another_is_drawn() -> None:
+    """Garbage is collected at any point of any thread, so also on the one that draws."""
+    kept = make_world("rotate", 1)
+    kept.observe()
+    forgotten = make_world("rotate", 2)
+    forgotten.observe()
+    renderer = weakref.ref(forgotten._table.renderer())
+    forgotten.itself = forgotten  # type: ignore[attr-defined]
+    del forgotten
+    drawing_gl._THREAD.run(gc.collect)
+    assert renderer() is None, "collected on that very thread"
+    assert kept.observe().main.rgb.any()
+    kept.close()

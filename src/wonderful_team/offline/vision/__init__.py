@@ -1,4 +1,4 @@
-"""Classical eyes: what a picture of a table shows, read from its pixels (and depth if given) and nothing else."""
+"""Classical computer vision: what a picture of a table shows, read from its pixels (and depth if given) and nothing else."""
 
 from wonderful_team.offline.vision.examples import alike, likeness, study_example
 from wonderful_team.offline.vision.heights import with_heights

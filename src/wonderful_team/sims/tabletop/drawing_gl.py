@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import atexit
+import contextlib
 import weakref
+from collections import deque
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any, TypeVar
@@ -23,19 +25,33 @@ class _DrawingThread:
 
     def __init__(self) -> None:
         self._pool = ThreadPoolExecutor(max_workers=1, thread_name_prefix="tabletop-drawing")
+        self._to_free: deque[Any] = deque()
         self._context: Any = None
         self._failure: str | None = None
         self.name = ""
 
     def run(self, work: Callable[[], T]) -> T:
-        return self._pool.submit(work).result()
+        def after_freeing() -> T:
+            self._free_waiting()
+            return work()
 
-    def free(self, context: Any) -> None:
-        """Free what a renderer holds; at the end of the process the graphics card has done so already."""
-        try:
-            self.run(context.free)
-        except RuntimeError:
-            return
+        return self._pool.submit(after_freeing).result()
+
+    def free_later(self, context: Any) -> None:
+        """Free what a renderer holds before anything is drawn next.
+
+        The garbage collector calls this at any point of any thread, the drawing thread included: it must not wait.
+        """
+        self._to_free.append(context)
+
+    def free_now(self) -> None:
+        """Free what waits for it; at the end of the process the graphics card has done so already."""
+        with contextlib.suppress(RuntimeError):
+            self._pool.submit(self._free_waiting).result()
+
+    def _free_waiting(self) -> None:
+        while self._to_free:
+            self._to_free.popleft().free()
 
     def ensure_context(self) -> None:
         """Open the context once; a failure is remembered, because trying again costs and changes nothing."""
@@ -66,7 +82,7 @@ class OpenGLRenderer:
         _THREAD.run(self._open)
         self.name = _THREAD.name
         # A world that nobody closed gives its memory back on the right thread, too.
-        self._give_back = weakref.finalize(self, _THREAD.free, self._context)
+        self._give_back = weakref.finalize(self, _THREAD.free_later, self._context)
 
     def _open(self) -> None:
         _THREAD.ensure_context()
@@ -123,3 +139,4 @@ class OpenGLRenderer:
     def close(self) -> None:
         """Give back what the graphics card holds; safe to call twice."""
         self._give_back()
+        _THREAD.free_now()

@@ -110,7 +110,7 @@ class Request:
             pictures: data_url, or png: {"type": "image", "media_type": "image/png", "data": the PNG bytes}.
         """
         # Drawing lies above these types: the side that sends requests hands it in when it is loaded.
-        assert Request.chat is not None, "requests come from a team or a door, which load the drawing"
+        assert Request.chat is not None, "requests come from a team or a client, which load the drawing"
         return Request.chat(self, pictures)
 
     @property

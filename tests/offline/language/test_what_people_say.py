@@ -38,6 +38,18 @@ SAME = [
     ("Cover the light green square with the dark blue one.", "put the dark blue square onto the light green square"),
     ("Nudge the green block to the left, please.", "push the green block to the left"),
     ("The pear in the bowl and the plum on the plate, please.", "put the pear into the bowl, put the plum onto the plate"),
+    ("Carefully lower the green block into the red bowl and let go.", "put the green block into the red bowl"),
+    ("Centre the green ring between the red and the blue block.", "put the green ring between the red block and the blue block"),
+    ("Drop the green block off in the red bowl.", "put the green block into the red bowl"),
+    ("The red bowl should end up holding the green block.", "put the green block into the red bowl"),
+    ("Bottom left corner is where the red star goes.", "put the red star in the bottom left corner"),
+    ("Make a small tower with the green block at the bottom and the blue block on top.", "put the blue block on the green block"),
+    ("Tidy away the red blocks: they all live in the white box.", "put all red blocks into the white box"),
+    ("Put the red block where the blue star is now, and vice versa.", "swap the red block and the blue star"),
+    ("Put one pink block into the blue frame.", "put one of the pink blocks into the blue frame"),
+    ("Push two red blocks into the frame; going over the line is not allowed.", "push two red blocks into the frame without exceeding the line"),
+    ("Get two red blocks into the frame, but keep off the line.", "push two red blocks into the frame without touching the line"),
+    ("Put the red block on the round plate.", "put the red block onto the circular plate"),
     ("Both the red and the green block belong on the blue area.", "put the red block and the green block onto the blue area"),
 ]  # fmt: skip
 
@@ -87,6 +99,25 @@ def test_where_a_thing_stands_is_no_place_to_put_it(text: str) -> None:
 def test_two_moves_that_are_a_swap_are_not_read_as_two_moves() -> None:
     with pytest.raises(NotUnderstoodError, match="what goes where"):
         understand("The apple goes where the pear is and the pear goes where the apple is.")
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("Empty the red bowl into the box.", "I do not know: to empty"),
+        ("Open the box and put the red block in it.", "I do not know: to open"),
+        ("Move the red block to the left and keep away from the bowl.", "what must be kept off"),
+        ("Rotate the red block by 30 degrees and avoid the bowl.", "what must be kept off"),
+    ],
+)
+def test_a_verb_or_a_constraint_that_finds_no_place_is_refused(text: str, said: str) -> None:
+    with pytest.raises(NotUnderstoodError, match=said):
+        understand(text)
+
+
+def test_one_of_two_is_one() -> None:
+    (command,) = understand("Put one of the two red blocks into the bowl.").commands
+    assert (command.thing.quantity, command.thing.number) == ("number", 1)
 
 
 @pytest.mark.parametrize("text", ["Put both red blocks into the bowl.", "Both of the red blocks go into the bowl."])

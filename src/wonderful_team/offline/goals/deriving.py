@@ -46,7 +46,7 @@ def derive(understood: Understood, eyes: Eyes, *, strict: bool = True, literal: 
     """
     result = Aims(literal=literal)
     moved: dict[int, int] = {}
-    stay = _staying(understood, eyes, result)
+    stay = frozenset(number for what in understood.spared for number in _numbers(what, eyes, result))
     for command in understood.commands:
         first = len(result.aims)
         aims = _of_command(command, eyes, result, strict)
@@ -68,11 +68,6 @@ def derive(understood: Understood, eyes: Eyes, *, strict: bool = True, literal: 
         if result.question:
             break
     return result
-
-
-def _staying(understood: Understood, eyes: Eyes, result: Aims) -> frozenset[int]:
-    """Numbers of the things that the words say must not be moved."""
-    return frozenset(number for what in understood.spared for number in _numbers(what, eyes, result))
 
 
 def _numbers(description: Description, eyes: Eyes, result: Aims) -> list[int]:

@@ -229,10 +229,6 @@ def _home(parts: Parts, meaning: Meaning, kind: str) -> None:
     meaning.put(nps[0], Destination("in", nps[1]), kind)
 
 
-def _there(parts: Parts, meaning: Meaning, kind: str) -> None:
-    meaning.there(_things(parts, meaning), kind)
-
-
 def _pairwise(parts: Parts, meaning: Meaning, kind: str) -> None:
     """The words "the apple and the lime on the red and the green area respectively"."""
     at = next((k for k, (name, _) in enumerate(parts.items) if name == "place"), None)
@@ -365,7 +361,7 @@ _SPECIAL: dict[str, Callable[[Parts, Meaning, str], None]] = {
     "PLACE_OF": _home,
     "RESPECTIVELY": _pairwise,
     "where": _where,
-    "there": _there,
+    "there": lambda parts, meaning, kind: meaning.there(_things(parts, meaning), kind),
     "between": _between,
 }
 """Words that settle alone how a clause is read."""

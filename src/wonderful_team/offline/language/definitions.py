@@ -75,7 +75,7 @@ def _define_nouns(text: str, objects: set[str]) -> str:
     for index in range(0, len(pieces), 2):
         pairs = _noun_pairs(pieces[index], objects)
         later = "".join(pieces[:index] + pieces[index + 1 :])
-        if pairs and all(_uses(later, word) for word, _ in pairs):
+        if pairs and all(re.search(rf"\b{word}(?:s|es)?\b", later, re.IGNORECASE) for word, _ in pairs):
             meant |= dict(pairs)
             kept.append(" ")
         else:
@@ -113,10 +113,6 @@ def _noun_pairs(piece: str, objects: set[str]) -> list[_Pair]:
         return []
     pairs = [dict(order[k : k + 2]) for k in range(0, len(order), 2)]
     return [(pair["word"], pair["slot"]) for pair in pairs]
-
-
-def _uses(text: str, word: str) -> bool:
-    return re.search(rf"\b{word}(?:s|es)?\b", text, re.IGNORECASE) is not None
 
 
 def _taken_out(text: str, objects: set[str], pairs: dict[str, list[_Pair]]) -> str:

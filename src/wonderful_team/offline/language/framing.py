@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 
 from wonderful_team.offline.language.clause_parts import VERBS
-from wonderful_team.offline.language.tokens import Token, cut
+from wonderful_team.offline.language.tokens import cut
 
 _SPEAKS = re.compile(
     r"\s*(?:(?:please|so|now|well|ok|okay|hello|hi|hey),?\s+)*(?:i|we|you|there|here|this|that|these|it|all|do|read|listen|pay)\b",
@@ -54,9 +54,5 @@ def _is_frame(sentence: str) -> bool:
         one.kind in (*VERBS, "GIVE") and other.kind in ("IT", "THEY")
         for one, other in zip(tokens, tokens[1:], strict=False)
     )
-    return not ordered and all(token.kind in _GENERAL or _is_general(token) for token in tokens)
-
-
-def _is_general(token: Token) -> bool:
-    """Whether a noun names nothing in particular."""
-    return token.kind == "NOUN" and token.value == ("object", "", False)
+    # "object" names nothing in particular.
+    return not ordered and all(token.kind in _GENERAL or token.value == ("object", "", False) for token in tokens)

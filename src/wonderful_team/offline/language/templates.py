@@ -31,9 +31,11 @@ def gathering_template(tokens: Sequence[Token]) -> Command | None:
         {"shape"} if "SHAPED" in kinds else set()
     )
     aspects = aspects or {"shape" for k, token in enumerate(tokens) if k and _is_aspect(token, tokens[k - 1])}
-    many = bool(kinds & {"ALL", "EACH", "EVERYTHING"}) or any(map(_plural, tokens))
+    many = bool(kinds & {"ALL", "EACH", "EVERYTHING"}) or any(
+        isinstance(token.value, tuple) and token.kind == "NOUN" and token.value[2] for token in tokens
+    )
     going = bool(kinds & {"PUT", "IN", "INTO", "ON", "ONTO", "TO", "CONTAIN", "FILL", "SORT"}) or any(
-        map(_receives, tokens)
+        token.text in ("receive", "receives") for token in tokens
     )
     if len(names) != 1 or len(aspects) != 1 or not many or not going:
         return None
@@ -42,30 +44,17 @@ def gathering_template(tokens: Sequence[Token]) -> Command | None:
     nouns = {token.value[:2] for token in tokens if token.kind == "NOUN" and isinstance(token.value, tuple)}
     if not kinds <= _GATHER or not nouns <= {("object", ""), ("container", ""), ("thing", "")}:
         return None
-    if _meant_elsewhere(tokens):
-        return None
+    if kinds & {"ON_TABLE", "TABLE"}:
+        return None  # what goes somewhere goes to the table
     holder = _shown(names.pop())
     related = Related(_SAME[aspects.pop()], (holder,))  # type: ignore[arg-type]
     things = Description("object", "", quantity="all", related=(related,))
     return Command("put", _worded(things), Destination("in", holder))
 
 
-def _plural(token: Token) -> bool:
-    return isinstance(token.value, tuple) and token.kind == "NOUN" and bool(token.value[2])
-
-
-def _receives(token: Token) -> bool:
-    return token.kind == "CONTAIN" or token.text in ("receive", "receives")
-
-
 def _is_aspect(token: Token, before: Token) -> bool:
     """Whether "shape" is what is shared, not another word for an object."""
     return token.text in ("shape", "shapes") and before.kind in _SHARED
-
-
-def _meant_elsewhere(tokens: Sequence[Token]) -> bool:
-    """Whether what goes somewhere goes to a place of another kind ("on the table")."""
-    return any(token.kind in ("ON_TABLE", "TABLE") for token in tokens)
 
 
 def _shown(name: str) -> Description:

@@ -89,12 +89,8 @@ def _head(description: Description) -> list[str]:
     if description.name == "table":
         noun = "table"
     if description.quantity == "all" or (description.quantity == "number" and description.number > 1):
-        noun = noun if noun.endswith("s") and noun not in ("cross",) else _many(noun)
+        noun = noun if noun.endswith("s") and noun not in ("cross",) else plural(noun)
     return [*words, noun]
-
-
-def _many(noun: str) -> str:
-    return plural(noun)
 
 
 def _is_corner(description: Description) -> bool:

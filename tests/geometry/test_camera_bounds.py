@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import json
+from pathlib import Path
+
 import numpy as np
 import pytest
 
 from wonderful_team.core.geometry import Box, PinholeCamera, PlanarCamera, Pose
 from wonderful_team.core.values import KeepOut
 from wonderful_team.errors import ConfigError
+from wonderful_team.images.calibration import load_camera
 from wonderful_team.images.keep_out import region_m
 
 K = np.array([[500.0, 0, 320], [0, 500, 240], [0, 0, 1]])
@@ -40,6 +44,20 @@ def test_a_pinhole_camera_takes_a_pose_and_says_how_to_make_one_of_a_matrix() ->
 def test_intrinsics_of_another_form_are_refused(matrix: np.ndarray, says: str) -> None:
     with pytest.raises(ValueError, match=says):
         PinholeCamera(matrix, Pose.at((0, 0, 1)))
+
+
+@pytest.mark.parametrize("number", [1e7, -1e308, 1e308, float("inf"), float("nan")])
+@pytest.mark.parametrize("place", ["low", "high", "position", "K"])
+def test_a_camera_file_holds_no_number_that_no_camera_has(number: float, place: str, tmp_path: Path) -> None:
+    held = {"K": K.tolist(), "T_base_cam": np.eye(4).tolist(), "size_px": [640, 480]}
+    held["workspace_m"] = {"low": [0.2, -0.4, 0.0], "high": [0.8, 0.4, 0.3]}
+    if place in ("low", "high"):
+        held["workspace_m"][place][0] = number
+    else:
+        held["T_base_cam" if place == "position" else "K"][0][3 if place == "position" else 0] = number
+    (tmp_path / "camera.json").write_text(json.dumps(held), encoding="utf-8")
+    with pytest.raises(ConfigError, match=r"every number lies within ±1e\+06|finite"):
+        load_camera(tmp_path / "camera.json", (640, 480))
 
 
 def test_a_matrix_that_is_no_pose_is_refused() -> None:

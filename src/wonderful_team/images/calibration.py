@@ -64,9 +64,17 @@ class CameraFile(_Strict):
         pinhole = self.K is not None and self.T_base_cam is not None
         if pinhole == (self.matrix is not None) or (self.matrix is not None and (self.K or self.T_base_cam)):
             raise ValueError("give either K with T_base_cam (pinhole) or matrix (affine)")
+        for name, value in self.model_dump(exclude_none=True).items():
+            numbers = np.concatenate(
+                [np.ravel(one) for one in (value.values() if isinstance(value, dict) else [value])]
+            )
+            if not (np.abs(numbers.astype(np.float64)) <= LARGEST_NUMBER).all():
+                raise ValueError(f"{name} holds {numbers.tolist()}; every number lies within ±{LARGEST_NUMBER:g}")
         return self
 
 
+LARGEST_NUMBER = 1e6
+"""Largest number of a camera file [px or m]: no camera on a robot has larger, and products of such numbers stay numbers."""
 CAMERA_FILE_FORM = (
     '{"K": 3x3 [px], "T_base_cam": 4x4, "size_px": [width, height], "workspace_m": {"low": [x, y, z], "high": [x, y, z]}}'
     ' or, for an affine camera, "matrix": 3x4 instead of K and T_base_cam'

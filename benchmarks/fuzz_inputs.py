@@ -30,20 +30,20 @@ LONGEST_S = 60.0
 
 @dataclass
 class Tally:
-    """What was tried, until when."""
+    """What was tried, and what came of it."""
 
     session: AgentSession
-    ends: float
     tried: Counter[str] = field(default_factory=Counter)
     slowest: dict[str, tuple[float, str]] = field(default_factory=dict)
     wrong: set[str] = field(default_factory=set)
+    hung: int = 0
 
-    def round(self, kind: Kind, number: int) -> None:
+    def round(self, kind: Kind, number: int, inputs: int = ROUND) -> None:
         """Try some inputs of one kind."""
 
         @seed(number)
         @settings(
-            max_examples=ROUND,
+            max_examples=inputs,
             deadline=None,
             database=None,
             phases=[Phase.generate],
@@ -57,7 +57,7 @@ class Tally:
             faulthandler.cancel_dump_traceback_later()
             took = time.monotonic() - started
             if took > LONGEST_S and not said:
-                said = f"took {took:.0f} s"
+                said, self.hung = f"took {took:.0f} s", self.hung + 1
             name = kind.__name__
             self.tried[name] += 1
             self.slowest[name] = max(self.slowest.get(name, (0.0, "")), (took, str(argv)[:300]))
@@ -76,9 +76,9 @@ def main() -> int:
     asked = parser.parse_args()
     kinds = [kind for kind in KINDS if kind.__name__ in asked.kinds.split(",")]
     with tempfile.TemporaryDirectory() as folder:
-        tally = Tally(AgentSession(Path(folder)), time.monotonic() + asked.minutes * 60)
+        tally, ends = Tally(AgentSession(Path(folder))), time.monotonic() + asked.minutes * 60
         number = asked.seed
-        while time.monotonic() < tally.ends:
+        while time.monotonic() < ends:
             for kind in kinds:
                 tally.round(kind, number)
             number += 1

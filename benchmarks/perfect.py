@@ -1,6 +1,6 @@
 """How often the whole chain solves a task when the model makes no errors: subgoals, targets, frames, motion and gate.
 
-Run: python benchmarks/perfect.py [--world tabletop|vimabench] [--first 500] [--seeds 6] [--task NAME ...] [--way lean|paper]
+Run: python benchmarks/perfect.py [--world tabletop|vimabench] [--first 500] [--seeds 6] [--task NAME ...] [--mode lean|paper]
      [--replans N] [--reobserve N] [--show shifted|flipped|noised|blank] [--isolate planning|grounding] [--jobs N] [--model NAME]
 
 Every scene is run twice: by the oracle, which looks after every action, and by the team with `simulated:perfect`, which answers
@@ -141,8 +141,8 @@ def main() -> None:
     parser.add_argument("--task", action="append", help="only this task, such as rotate or rotate@L3; may be repeated")
     parser.add_argument("--first", type=int, default=500, help="first seed")
     parser.add_argument("--seeds", type=int, default=6, help="scenes per task")
-    parser.add_argument("--way", choices=("lean", "paper"), default="lean")
-    parser.add_argument("--setting", choices=tuple(ABLATIONS), default="full", help="members switched off")
+    parser.add_argument("--mode", choices=("lean", "paper"), default="lean")
+    parser.add_argument("--ablation", choices=tuple(ABLATIONS), default="full", help="members switched off")
     parser.add_argument("--model", default="simulated:perfect")
     parser.add_argument("--replans", type=int, default=0)
     parser.add_argument("--reobserve", type=int, help="default 0; for pushes the task's horizon, one after every push")

@@ -14,14 +14,72 @@ import argparse
 import sys
 import time
 from collections import Counter
-from pathlib import Path
+from dataclasses import dataclass, field
 
 import numpy as np
 
-sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "runtime"))
+from tests.runtime.gate_cases import edited, judged, random_case
+from tests.runtime.gate_oracle import broken_rules
 
-from gate_cases import edited, judged, random_case  # noqa: E402  they live beside the tests
-from gate_oracle import broken_rules  # noqa: E402
+
+@dataclass
+class Passed:
+    """What came of random plans, and of admitted ones in which one thing was changed.
+
+    Attributes:
+        sound: Random plans that keep every rule of the oracle.
+        changed, still: Edited plans, and how many of them are admitted.
+        wrong: Plans admitted outside the rules, in words.
+        crashed: Plans over which the gate or the oracle broke, in words.
+        strict: Checks that refused plans within the rules, with how many.
+    """
+
+    plans: int = 0
+    admitted: int = 0
+    sound: int = 0
+    changed: int = 0
+    still: int = 0
+    wrong: list[str] = field(default_factory=list)
+    crashed: list[str] = field(default_factory=list)
+    strict: Counter[str] = field(default_factory=Counter)
+
+
+def through_the_gate(plans: int, most_edited: int, first: int = 0, depth: float = 0.5) -> Passed:
+    """Judge random plans by the gate and by the oracle.
+
+    Args:
+        plans: How many.
+        most_edited: Most admitted plans in which one thing is changed.
+        first: First seed.
+        depth: Share of the tables that are seen with depth.
+    """
+    passed = Passed()
+    for seed in range(first, first + plans):
+        try:
+            _one(seed, most_edited, depth, passed)
+        except Exception as error:  # noqa: BLE001  a crash is what is looked for
+            passed.crashed.append(f"seed {seed}: {error!r}")
+    return passed
+
+
+def _one(seed: int, most_edited: int, depth: float, passed: Passed) -> None:
+    rng = np.random.default_rng([seed, 100])
+    case = random_case(rng, depth=bool(rng.random() < depth))
+    report, rules = judged(case), broken_rules(case)
+    passed.plans += 1
+    passed.sound += not rules
+    passed.admitted += report.admitted
+    if report.admitted and rules:
+        passed.wrong.append(f"seed {seed}: {'; '.join(rules)}")
+    if not report.admitted and not rules:
+        passed.strict.update({check.name.split(" region")[0] for check in report.checks if not check.ok})
+    if report.admitted and passed.changed < most_edited:
+        what, other = edited(case, rng)
+        passed.changed += 1
+        passes = judged(other).admitted
+        passed.still += passes
+        if passes and (rules := broken_rules(other)):
+            passed.wrong.append(f"seed {seed}, {what} changed: {'; '.join(rules)}")
 
 
 def main() -> None:
@@ -32,34 +90,16 @@ def main() -> None:
     parser.add_argument("--first", type=int, default=0, help="first seed")
     parser.add_argument("--depth", type=float, default=0.5, help="share of the tables that are seen with depth")
     options = parser.parse_args()
-    started, wrong, strict = time.process_time(), list[str](), Counter[str]()
-    admitted = sound = changed = still = 0
-    for seed in range(options.first, options.first + options.plans):
-        rng = np.random.default_rng([seed, 100])
-        case = random_case(rng, depth=bool(rng.random() < options.depth))
-        report, rules = judged(case), broken_rules(case)
-        sound += not rules
-        admitted += report.admitted
-        if report.admitted and rules:
-            wrong.append(f"seed {seed}: {'; '.join(rules)}")
-        if not report.admitted and not rules:
-            strict.update({check.name.split(" region")[0] for check in report.checks if not check.ok})
-        if report.admitted and changed < options.edited:
-            what, other = edited(case, rng)
-            changed += 1
-            passes = judged(other).admitted
-            still += passes
-            if passes and (rules := broken_rules(other)):
-                wrong.append(f"seed {seed}, {what} changed: {'; '.join(rules)}")
-    print(f"{options.plans} random plans: {admitted} admitted, {sound} keep every rule of the oracle")
-    print(f"{changed} edited plans: {still} admitted")
-    print(f"admitted outside the rules: {len(wrong)}   {time.process_time() - started:.0f} s of CPU")
-    for line in wrong[:20]:
+    started = time.process_time()
+    passed = through_the_gate(options.plans, options.edited, options.first, options.depth)
+    print(f"{passed.plans} random plans: {passed.admitted} admitted, {passed.sound} keep every rule of the oracle")
+    print(f"{passed.changed} edited plans: {passed.still} admitted")
+    print(f"admitted outside the rules: {len(passed.wrong)}   {time.process_time() - started:.0f} s of CPU")
+    for line in [*passed.wrong, *passed.crashed][:20]:
         print(f"    {line}")
-    print(
-        "refused within the rules, by check: " + ", ".join(f"{name} {count}" for name, count in strict.most_common(8))
-    )
-    sys.exit(1 if wrong else 0)
+    refused = ", ".join(f"{name} {count}" for name, count in passed.strict.most_common(8))
+    print(f"refused within the rules, by check: {refused}")
+    sys.exit(1 if passed.wrong or passed.crashed else 0)
 
 
 if __name__ == "__main__":

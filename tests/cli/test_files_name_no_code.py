@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import json
+import pickle
 import sqlite3
+from pathlib import Path
 
+import numpy as np
 import pytest
 
 import wonderful_team as wt
@@ -86,3 +89,115 @@ def test_the_caller_may_name_code(planted):
     with pytest.raises(ConfigError, match="lacks vocabulary"):
         run_trial(spec, RunSettings(named_code=frozenset({f"{file}:W"})))
     assert shown.exists()
+
+
+SCENES = (
+    "tabletop/../{file}#3", "tabletop/{file}#3", "tabletop/{file}@L3#3", "tabletop/{file}:W@clutter=2#3", "tabletop/{file}:#3",
+    "tabletop/{link}#3", "tabletop/{link}:W#3", "tabletop/rotate#{file}:W", "tabletop/rotate@{file}#3", "tabletop/x/{file}:W#",
+    "tabletop/{package}#3", "tabletop/{package}/x.py#3", "vimabench/{file}#3", "vimabench/../{file}:W#3", "tabletop//{file}:W?a=1#3",
+    "tabletop/{file}\n#3", "tabletop/rotate\x00{file}:W#3", "tabletop/x.PY:W#3", "tabletop/importlib:import_module#3",
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("scene", SCENES)
+def test_no_scene_of_a_record_runs_code(planted, trial_folder, scene, capsys, tmp_path, monkeypatch):
+    file, shown = planted
+    (tmp_path / "tabletop").mkdir()
+    (tmp_path / "link").symlink_to(file)
+    (tmp_path / "link.py").symlink_to(file)
+    (tmp_path / "package.py").mkdir()
+    (tmp_path / "package.py" / "__init__.py").write_text(file.read_text(encoding="utf-8"), encoding="utf-8")
+    monkeypatch.chdir(tmp_path)
+    for name in (file.name, str(file), f"../{file.name}"):
+        record = read_record(trial_folder)
+        record["setup"]["scene"] = scene.format(file=name, link="../link.py", package="../package.py")
+        (trial_folder / "record.json").write_text(json.dumps(record), encoding="utf-8")
+        assert run(["show", str(trial_folder), "--from", "act", "--model", "offline"]) == 2
+        assert not shown.exists()
+        assert run(["show", str(trial_folder), "--replay"]) == 0
+    assert not shown.exists()
+    assert "defect" not in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("key", ["method", "model", "scene", "commit"])
+@pytest.mark.parametrize("name", ["{}:W", "{}", "team:{}:W", "*={}:W"])
+def test_no_configuration_of_a_record_runs_code(planted, trial_folder, key, name, capsys):
+    file, shown = planted
+    record = read_record(trial_folder)
+    record["configuration"][key] = name.format(file)
+    record["command"] = f"wonderful-team run {file}:W; touch {shown}"
+    record["words"] = {**record["words"], f"../{file.name}": "x", str(file): "x"}
+    (trial_folder / "record.json").write_text(json.dumps(record), encoding="utf-8")
+    for argv in (["--replay"], ["--from", "act", "--model", "offline"], [], ["--role", "supervisor"]):
+        assert run(["show", str(trial_folder), *argv]) in (0, 2)
+    assert not shown.exists()
+    assert file.read_text(encoding="utf-8") != "x"
+    assert "defect" not in capsys.readouterr().err
+
+
+def test_words_of_a_record_are_no_templates(planted, trial_folder, capsys):
+    """Prompts are data: what stands in braces in them is text."""
+    _, shown = planted
+    record = read_record(trial_folder)
+    code = f"__import__('os').system('touch {shown}')"
+    spoiled = f"{{{{ {code} }}}} {{{code}}} {{0.__class__.__init__.__globals__}} %(x)s ${{{code}}} `touch {shown}`"
+    record["words"] = {name: f"{text}\n{spoiled}" for name, text in record["words"].items()}
+    (trial_folder / "record.json").write_text(json.dumps(record), encoding="utf-8")
+    assert run(["show", str(trial_folder), "--from", "plan", "--model", "offline"]) == 0
+    assert not shown.exists()
+    assert "defect" not in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    "name", ["{}:W", "{}", "../{}:W", "mine", "other", "*={}:W", "supervisor={}:W", "simulated:{}:W"]
+)
+def test_no_profile_runs_code(planted, name, tmp_path, monkeypatch, capsys):
+    """A profile may name a profile; two that name each other are no endless loop."""
+    file, shown = planted
+    photo = str(Path("examples/desk.png").absolute())
+    monkeypatch.chdir(tmp_path)
+    held = json.loads(profile_to_json(probe_model("offline", most_pictures=1).profile))
+    profiles_folder().mkdir(parents=True, exist_ok=True)
+    for profile, model in (("mine", name.format(file)), ("other", "mine")):
+        text = json.dumps({**held, "name": profile, "model": model})
+        (profiles_folder() / f"{profile}.json").write_text(text, encoding="utf-8")
+    for profile in ("mine", "other"):
+        assert run(["plan", photo, "put the red block into the blue bowl", "--model", profile]) == 2
+        assert run(["probe", profile]) == 2
+    assert not shown.exists()
+    assert "defect" not in capsys.readouterr().err
+
+
+CAMERA = {"K": [[400, 0, 160], [0, 400, 120], [0, 0, 1]], "size_px": [320, 240]}
+
+
+@pytest.mark.parametrize("kind", ["yaml", "tag", "pickle", "type", "npy"])
+def test_no_camera_plan_or_depth_file_runs_code(kind, planted, trial_folder, tmp_path, capsys):
+    file, shown = planted
+
+    class Opens:
+        def __reduce__(self):
+            return (open, (str(shown), "w"))
+
+    camera, depth, plan = tmp_path / "camera.json", tmp_path / "depth.npy", trial_folder / "plan.json"
+    match kind:
+        case "yaml":
+            camera.write_text(f"!!python/object/apply:builtins.open ['{shown}', 'w']", encoding="utf-8")
+        case "tag":
+            camera.write_text(json.dumps({**CAMERA, "model": f"{file}:W", "type": f"{file}:W"}), encoding="utf-8")
+        case "pickle":
+            camera.write_bytes(pickle.dumps(Opens()))
+        case "type":
+            camera.write_text(json.dumps(CAMERA), encoding="utf-8")
+            held = json.loads(plan.read_text(encoding="utf-8"))
+            held["plan"]["actions"][0]["action"]["type"] = f"{file}:W"
+            plan.write_text(json.dumps(held), encoding="utf-8")
+        case _:
+            np.save(depth, np.array([Opens()], dtype=object), allow_pickle=True)
+            camera.write_text(json.dumps(CAMERA), encoding="utf-8")
+    words = "put the red block into the blue bowl"
+    argv = ["plan", str(Path("examples/desk.png").absolute()), words, "--camera", str(camera)]
+    assert run([*argv, "--depth", str(depth)] if kind == "npy" else argv) == 2
+    assert run(["run", "tabletop/visual_manipulation", "--seed", "3", "--plan", str(trial_folder)]) in (0, 1, 2, 4)
+    assert not shown.exists()
+    assert "defect" not in capsys.readouterr().err

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import random
 import signal
 import sqlite3
 import subprocess
@@ -16,7 +15,7 @@ import pytest
 
 from tests.evals import runners
 from tests.evals.runners import toy_plan
-from tests.interrupting import listen
+from tests.evals.sweeps import killed, lines, start
 from wonderful_team.core.caps import Caps
 from wonderful_team.core.filesystem import network_file_system
 from wonderful_team.errors import ConfigError
@@ -208,7 +207,7 @@ def test_one_limit_holds_for_the_model_calls_of_all_processes(
     log = tmp_path / "log"
     monkeypatch.setenv("TOY_LOG", str(log))
     run_study(toy_plan(3), tmp_path / "s.db", runners.limited, jobs=2, at_once=3, calls_at_once=places)
-    calls = [tuple(map(float, line.split())) for line in _lines(log)]
+    calls = [tuple(map(float, line.split())) for line in lines(log)]
     assert len(calls) == 12
     most = max(sum(began <= moment < ended for began, ended in calls) for moment, _ in calls)
     assert most == places
@@ -226,67 +225,23 @@ def test_several_trials_wait_at_the_same_time_in_one_process(tmp_path: Path, mon
 
 def _most_in_flight(log: Path) -> int:
     in_flight = most = 0
-    for line in _lines(log):
+    for line in lines(log):
         in_flight += 1 if line.startswith("begin") else -1
         most = max(most, in_flight)
     return most
 
 
-SWEEP = """
-from pathlib import Path
-from tests.evals import runners
-from wonderful_team.evals.study import run_study
-if __name__ == "__main__":
-    run_study(runners.toy_plan(20), Path({store!r}), runners.slow, jobs=2)
-"""
-
-
-def _start(tmp_path: Path, log: Path) -> subprocess.Popen[bytes]:
-    script = tmp_path / "sweep.py"
-    script.write_text(SWEEP.format(store=str(tmp_path / "s.db")), encoding="utf-8")
-    environment = {**os.environ, "TOY_LOG": str(log), "PYTHONPATH": f"{ROOT}{os.pathsep}{ROOT / 'src'}"}
-    # A group of its own, so that parent and workers can be killed together, as a machine that loses power would.
-    return subprocess.Popen([sys.executable, str(script)], env=environment, start_new_session=True, preexec_fn=listen)
-
-
-def _lines(log: Path) -> list[str]:
-    return log.read_text(encoding="utf-8").splitlines() if log.exists() else []
-
-
 def test_kill_9_at_random_moments_loses_only_what_was_in_flight(tmp_path: Path) -> None:
     """The whole group is killed several times in one sweep; then the counts."""
-    log, rng, kills = tmp_path / "log", random.Random(11), 0
-    for _ in range(12):
-        process = _start(tmp_path, log)
-        before = len(_lines(log))
-        while process.poll() is None and len(_lines(log)) < before + 4:
-            time.sleep(0.01)
-        time.sleep(rng.uniform(0, 0.25))
-        if process.poll() is not None:
-            break
-        os.killpg(process.pid, signal.SIGKILL)
-        process.wait()
-        kills += 1
-        if kills == 5:
-            break
-    assert kills >= 3, "the sweep was too short to be killed"
-    assert _start(tmp_path, log).wait(timeout=120) == 0
-    with Store(tmp_path / "s.db") as store:
-        rows = store.rows()
-    assert len(rows) == len({row.spec.key for row in rows}) == 80
-    assert all(row.result is not None for row in rows)
-    for row in rows:
-        assert (row.result.outcome == "success") == runners.wins(row.spec)  # type: ignore[union-attr]
-    began = Counter(line[6:] for line in _lines(log) if line.startswith("begin "))
-    # Two workers: at most two trials were in flight at each kill, and only those ran again.
-    assert set(began) == {row.spec.key for row in rows}
-    assert sum(began.values()) - 80 <= 2 * kills
+    ended = killed(tmp_path, seed=11)
+    assert ended.kills >= 3, "the sweep was too short to be killed"
+    assert ended.wrong == []
 
 
 def test_an_interrupt_lets_trials_in_flight_end_and_leaves_nothing_claimed(tmp_path: Path) -> None:
     log = tmp_path / "log"
-    process = _start(tmp_path, log)
-    while len(_lines(log)) < 6 and process.poll() is None:
+    process = start(tmp_path, log)
+    while len(lines(log)) < 6 and process.poll() is None:
         time.sleep(0.01)
     os.killpg(process.pid, signal.SIGINT)
     assert process.wait(timeout=60) != 0
@@ -295,14 +250,14 @@ def test_an_interrupt_lets_trials_in_flight_end_and_leaves_nothing_claimed(tmp_p
         assert store.count(study, "claimed") == 0
         assert 0 < store.count(study, "done") < 80
         done = {row.spec.key for row in store.rows() if row.result is not None}
-    assert done == {line[4:] for line in _lines(log) if line.startswith("end ")}
+    assert done == {line[4:] for line in lines(log) if line.startswith("end ")}
 
 
 def test_two_processes_share_a_store_without_double_work(tmp_path: Path) -> None:
     log = tmp_path / "log"
-    one, two = _start(tmp_path, log), _start(tmp_path, log)
+    one, two = start(tmp_path, log), start(tmp_path, log)
     assert one.wait(timeout=120) == 0
     assert two.wait(timeout=120) == 0
-    ended = Counter(line for line in _lines(log) if line.startswith("end "))
+    ended = Counter(line for line in lines(log) if line.startswith("end "))
     assert len(ended) == 80
     assert set(ended.values()) == {1}

@@ -17,7 +17,7 @@ from wonderful_team.core.values import GroundedTarget, KeepOut, Limits, Target, 
 from wonderful_team.images import Ticks, crop, draw, inside_points, overview, whole
 from wonderful_team.images.axes import SPANS, axis_step, axis_ticks, round_step
 from wonderful_team.images.canvas import INK, Canvas, Rectangle
-from wonderful_team.images.draw import candidate_radius
+from wonderful_team.images.draw import candidate_radius, draw_box
 from wonderful_team.images.lettering import plain
 from wonderful_team.images.placing import PointLabel, label_box, label_points
 
@@ -226,3 +226,30 @@ def test_overview_leaves_out_what_was_not_found() -> None:
     assert np.array_equal(overview(view(), {"T1": lost}), plainly)
     assert not np.array_equal(overview(view(), {"T1": found}), plainly)
     assert not np.array_equal(overview(view(), [found], arrows=[((30, 30), (300, 200))]), overview(view(), [found]))
+
+
+FAR = (1e3, 1e5, 1e9, 1e18, 1e60, 1e154, 1e300, 1.7e308, float("inf"), float("nan"))
+
+
+@pytest.mark.parametrize("far", FAR)
+def test_outlines_that_reach_as_far_as_numbers_go_are_drawn_at_once(far: float) -> None:
+    """A workspace out of a file may have any size; its dashes are laid along what is seen."""
+    for corners in (
+        [(-far, -far), (far, -far), (far, far), (-far, far)],
+        [(20, 20), (far, 20), (far, 60), (20, 60)],
+        [(-far, 30), (far, 31), (30, far), (31, -far)],
+    ):
+        canvas = Canvas.over(np.zeros((120, 160, 3), np.uint8))
+        draw_box(canvas, corners, "workspace")
+        if np.isfinite(far):
+            draw_box(canvas, corners, "keep_out")
+
+
+def test_a_side_that_leaves_the_picture_is_dashed_as_far_as_it_is_seen() -> None:
+    canvas = Canvas.over(np.zeros((120, 160, 3), np.uint8))
+    draw_box(canvas, [(20, 20), (1e4, 20), (1e4, 1e4), (20, 1e4)], "workspace")
+    bright = canvas.rgb[20].max(axis=1) > 60
+    assert not bright[:10].any()
+    # Dashes and gaps take turns up to the border.
+    assert np.count_nonzero(np.diff(bright[20:].astype(int))) >= 6
+    assert bright[-40:].any()

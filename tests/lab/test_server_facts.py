@@ -11,21 +11,22 @@ from tests.servers.odd import OddEyes
 from tests.servers.server import WireServer
 from wonderful_team.lab import server_facts
 from wonderful_team.lab.server_facts import context_length
+from wonderful_team.models.providers.vendors import SERVER
 
 
 def test_vllm_says_it_in_its_list_of_models() -> None:
     with WireServer(OddEyes(), replace(LOCAL, models=("a", "b"), context=32768)) as server:
-        found = context_length("server", f"{server.url}/v1", "b", None)
+        found = context_length(SERVER, f"{server.url}/v1", "b", None)
         assert found == (32768, f"GET {server.url}/v1/models")
 
 
 def test_a_server_that_does_not_say_is_unknown() -> None:
     with WireServer(OddEyes(), replace(LOCAL, models=("a",))) as server:
-        assert context_length("server", f"{server.url}/v1", "a", None) is None
+        assert context_length(SERVER, f"{server.url}/v1", "a", None) is None
 
 
 def test_nothing_there_is_unknown() -> None:
-    assert context_length("server", "http://127.0.0.1:9/v1", "a", None, timeout_s=0.5) is None
+    assert context_length(SERVER, "http://127.0.0.1:9/v1", "a", None, timeout_s=0.5) is None
 
 
 @pytest.mark.parametrize(

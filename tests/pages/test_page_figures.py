@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import math
 import re
+from types import SimpleNamespace
 
+from wonderful_team.pages.cost import waterfall
 from wonderful_team.pages.figures import arrow_layer
 from wonderful_team.pages.planted import sentence
 from wonderful_team.pages.strips import overviews
@@ -79,3 +81,19 @@ def test_planted_mistakes_that_nobody_caught_are_not_called_caught() -> None:
     assert sentence([{"by": "Verification"}, {"by": ""}]) == "2 planted mistakes, 1 caught"
     assert sentence([{"by": ""}]) == "1 planted mistake, 0 caught"
     assert sentence([{"by": "a"}, {"by": "b"}]) == "2 planted mistakes, both caught"
+
+
+def test_bars_have_the_colours_of_their_roles_and_roles_of_other_methods_have_some_too() -> None:
+    def call(role: str, number: int) -> SimpleNamespace:
+        entry = {"role": role, "invalid": None}
+        return SimpleNamespace(
+            entry=entry, sent_s=number, answered_s=number + 1, seconds=1.0, label=role, anchor="a", number=number
+        )
+
+    def colours(roles: list[str], words: list[str]) -> list[str]:
+        return re.findall(r"bar role-(\d)", str(waterfall([call(role, k) for k, role in enumerate(roles)], words)))  # type: ignore[misc]
+
+    words = ["supervisor.md", "supervisor.DraftPlan.md", "verification.md", "manager.md"]
+    assert colours(["manager", "supervisor", "manager"], words) == ["2", "0", "2"]
+    assert colours(["finder", "keeper", "finder"], []) == ["0", "1", "0"]
+    assert colours([str(k) for k in range(10)], []) == [*"01234567", "7", "7"]

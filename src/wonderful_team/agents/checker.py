@@ -66,4 +66,5 @@ CHECKER = role(
     SYSTEM,
     Ask(JudgeBox, JUDGE_BOX, _render_judge_box),
     Ask(JudgeRevision, JUDGE_REVISION, _render_judge_revision),
+    grounds=True,
 )

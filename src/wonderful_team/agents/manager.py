@@ -174,4 +174,5 @@ MANAGER = role(
     Ask(ReadScene, READ_SCENE, _render_read_scene),
     Ask(Presence, PRESENCE, _render_presence),
     Ask(ChoosePoint, CHOOSE_POINT, _render_choose_point),
+    grounds=True,
 )

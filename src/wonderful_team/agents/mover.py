@@ -53,4 +53,4 @@ def _render_move_box(question: MoveBox) -> list[Part]:
     ]
 
 
-MOVER = role("mover", SYSTEM, Ask(MoveBox, MOVE_BOX, _render_move_box))
+MOVER = role("mover", SYSTEM, Ask(MoveBox, MOVE_BOX, _render_move_box), grounds=True)

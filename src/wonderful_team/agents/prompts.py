@@ -42,8 +42,13 @@ class Prompts:
     @cache
     def default() -> Prompts:
         """The built-in words."""
+        return Prompts.of(*ROLES.values())
+
+    @staticmethod
+    def of(*roles: Role) -> Prompts:
+        """The words that roles bring."""
         texts = {}
-        for role in ROLES.values():
+        for role in roles:
             texts[f"{role.name}.md"] = role.system
             texts |= {f"{role.name}.{contract}.md": ask.words for contract, ask in role.asks.items()}
         return Prompts(texts)

@@ -5,8 +5,8 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Sequence
 
-from wonderful_team.agents.step_words import STEP_KINDS
 from wonderful_team.contracts import ShownSlot, ShownTask
+from wonderful_team.core.actions import STEPS
 from wonderful_team.core.pictures import Axes, BoxMark, Candidates, LineMark, Mark, PathMark, Picture, PointMark
 from wonderful_team.core.values import Note, Part, Subgoal, Target, Words
 from wonderful_team.images.captions import axes_words, size_words
@@ -184,7 +184,9 @@ def target_parts(targets: Sequence[Target], title: str = "Targets") -> list[Part
 
 def ability_parts(step_kinds: Sequence[str]) -> list[Part]:
     """What the robot can do, one line per kind of step."""
-    return listed("What the robot can do, and nothing else", [f"{kind}: {STEP_KINDS[kind]}" for kind in step_kinds])
+    return listed(
+        "What the robot can do, and nothing else", [f"{kind}: {STEPS[kind].words.does}" for kind in step_kinds]
+    )
 
 
 def note_parts(notes: Sequence[Note]) -> list[Part]:

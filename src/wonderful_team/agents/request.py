@@ -15,7 +15,7 @@ def build_request(
     *,
     id: str,  # noqa: A002  the request's field has this name
     stage: str,
-    role: str | None = None,
+    role: Role | str | None = None,
     notes: tuple[Note, ...] = (),
     sample: int = 0,
     prompts: Prompts | None = None,
@@ -29,16 +29,17 @@ def build_request(
         question: What is asked; every field of it is shown, and nothing else.
         id: The request's id.
         stage: plan | ground | act | memory | replan | other.
-        role: Who asks; None for the role that normally asks this kind of question.
+        role: Who asks: a role of the team by name, a role of one's own, or None for the one that normally asks this kind of
+            question. A role of one's own brings its own words.
         notes: The role's notebook and the system memory; shown as lines.
         sample: Number of this independent sample.
-        prompts: Words to use; None for the built-in ones.
+        prompts: Words of the team's roles; None for the built-in ones.
 
     Raises:
         ConfigError: No such role, or the role does not ask this kind of question.
     """
-    texts = Prompts.default() if prompts is None else prompts
     asker = role_for(question, role)
+    texts = prompts or Prompts.default() if ROLES.get(asker.name) is asker else Prompts.of(asker)
     ask = asker.asks[question.contract]
     parts: list[Part] = [
         *ask.render(question),
@@ -58,14 +59,15 @@ def build_request(
     )
 
 
-def role_for(question: Question, role: str | None = None) -> Role:
-    """The role that asks: the named one, or the one that normally asks this kind of question."""
+def role_for(question: Question, role: Role | str | None = None) -> Role:
+    """The role that asks: the one that is meant, or the one that normally asks this kind of question."""
     if role is not None:
-        if role not in ROLES:
+        if isinstance(role, str) and role not in ROLES:
             raise UnknownNameError("role", role, ROLES)
-        if question.contract not in ROLES[role].asks:
-            raise ConfigError(f"role {role!r} does not ask {question.contract}; it asks {', '.join(ROLES[role].asks)}")
-        return ROLES[role]
+        asker = ROLES[role] if isinstance(role, str) else role
+        if question.contract not in asker.asks:
+            raise ConfigError(f"role {asker.name!r} does not ask {question.contract}; it asks {', '.join(asker.asks)}")
+        return asker
     askers = [asker for asker in ROLES.values() if question.contract in asker.asks]
     if not askers:
         raise ConfigError(f"no role asks {question.contract}")

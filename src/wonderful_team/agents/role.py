@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any
 
-from wonderful_team.contracts import Question
+from wonderful_team.contracts import LocatePoints, Question
 from wonderful_team.core.values import Part
 
 
@@ -37,17 +37,24 @@ class Role:
     Attributes:
         system: The standing words: scope, what it sees, what it must not do; the same for every request of the role.
         asks: By the contract's name.
+        grounds: It finds targets in pictures; the others plan. Studies can let truth answer for one side of the two.
     """
 
     name: str
     system: str
     asks: Mapping[str, Ask]
+    grounds: bool = False
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "asks", MappingProxyType(dict(self.asks)))
 
+    @property
+    def points(self) -> bool:
+        """It gives points and boxes on whole views."""
+        return LocatePoints.__name__ in self.asks
 
-def role(name: str, system: str, *asks: Ask) -> Role:
+
+def role(name: str, system: str, *asks: Ask, grounds: bool = False) -> Role:
     """A role with its asks, its words trimmed."""
     trimmed = (Ask(ask.contract, ask.words.strip(), ask.render) for ask in asks)
-    return Role(name, system.strip(), {ask.contract.__name__: ask for ask in trimmed})
+    return Role(name, system.strip(), {ask.contract.__name__: ask for ask in trimmed}, grounds)

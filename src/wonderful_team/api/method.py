@@ -8,22 +8,20 @@ from pathlib import Path
 from typing import Any, Self
 
 from wonderful_team import registry
-from wonderful_team.agents.prompts import role_names
+from wonderful_team.agents.prompts import ROLES, role_names
 from wonderful_team.core.caps import Caps
 from wonderful_team.core.protocols import Model, Policy, Subscriber, World
 from wonderful_team.core.renamed import renamed_attribute
 from wonderful_team.errors import ConfigError
-from wonderful_team.models.budget import Budget
 from wonderful_team.models.cache import CacheMode, cached_models
 from wonderful_team.models.cache_key import model_identity
 from wonderful_team.models.client import ModelClient
 from wonderful_team.models.providers import PriceChoice, check_prices, model_options
 from wonderful_team.planning import TeamConfig
-from wonderful_team.planning import TeamPolicy as Planner
 from wonderful_team.registry.simulated import waiting
 
 ModelChoice = str | Model | Mapping[str, str | Model]
-POINTING_ROLES = ("manager", "supervisor")
+POINTING_ROLES = tuple(name for name, role in ROLES.items() if role.points)
 """Who gives points and boxes on whole views."""
 
 
@@ -34,7 +32,7 @@ class Method:
     Args:
         model: A name (`offline`, FILE.py:NAME), an object with `answer(request)`, or a mapping from role to either;
             "*" is for the roles not named.
-        method: team, team:paper, team:s1 to team:s8, or FILE.py:NAME.
+        method: One that `list methods` shows (team, team:paper, team:s1 to team:s8, …), or FILE.py:NAME.
         thinking: off, low, medium or high, for all roles or by role; None leaves each model's own default.
         price: "IN,OUT" or (IN, OUT) in USD per million tokens, for all roles or by role, where no price is known.
         allow_unpriced: Accept models of unknown price without a cap on tokens.
@@ -127,19 +125,19 @@ class Method:
 
     def client(self, *subscribers: Subscriber) -> ModelClient:
         """A client of the model for one run: capped, and told to subscribers."""
-        everyone = (*subscribers, *self.subscribers)
-        return ModelClient(self._models, budget=Budget(self._caps), subscribers=everyone, concurrency=self.concurrency)
+        return self._setup(subscribers).client()
 
     def policy(self, *subscribers: Subscriber) -> Policy:
         """The method at work in one trial."""
-        if self._config is None:
-            return registry.load_method(self.method, self.client(*subscribers))
-        return Planner(
-            self._models,
-            self._config,
-            caps=self._caps,
-            subscribers=(*subscribers, *self.subscribers),
-            concurrency=self.concurrency,
+        return registry.make_method(self.method, self._setup(subscribers))
+
+    def _setup(self, subscribers: Sequence[Subscriber]) -> registry.MethodSetup:
+        # Roles that are not the team's have the model of the roles that are not named.
+        named = self.model if isinstance(self.model, Mapping) else {}
+        rest = next(iter([role for role in self._models if role not in named] or self._models))
+        everyone = (*subscribers, *self.subscribers)
+        return registry.MethodSetup(
+            self._models, self._models[rest], self._caps, everyone, self.concurrency, self._config
         )
 
     def words(self) -> Mapping[str, str]:

@@ -14,7 +14,7 @@ from wonderful_team.lab.probe import Options, Probed, Subject, Tell, probe
 from wonderful_team.lab.server_facts import context_length
 from wonderful_team.models.families import guess_family
 from wonderful_team.models.profiles import Profile, check_name, load_profile, profile_names
-from wonderful_team.registry.files import check_names_no_code, is_file_name
+from wonderful_team.registry.files import is_file_name
 from wonderful_team.runtime.loop import Caller
 
 if TYPE_CHECKING:
@@ -93,7 +93,7 @@ def _subject(
 
     named: str | Model = model
     if isinstance(model, str) and not is_file_name(model) and model in profile_names():
-        named = check_names_no_code(load_profile(model).model, f"profile {model!r}")
+        named = registry.named_by_profile(load_profile(model))
     if not isinstance(named, str) or not is_provider_spec(named):
         held = registry.make_model(named)
         return Subject(registry.model_label(named), lambda profile, thinking: held, provider=False)
@@ -122,7 +122,7 @@ def _subject(
     return Subject(
         full_name, make, True, family.convention, family.max_pictures,
         None if spec.official else spec.base_url,
-        lambda: context_length(spec.api, spec.base_url, served, first.key, direct=local_only),
+        lambda: context_length(spec.service, spec.base_url, served, first.key, direct=local_only),
         (prices[0], prices[1]), library_version(),
     )  # fmt: skip
 

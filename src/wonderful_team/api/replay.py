@@ -28,7 +28,7 @@ from wonderful_team.record.record_schema import read_record
 from wonderful_team.record.setup import Setup, read_setup, same_limits
 from wonderful_team.record.stored import stored_instruction, stored_observation
 from wonderful_team.record.story import recorded_plan, situations
-from wonderful_team.registry.files import check_names_no_code
+from wonderful_team.registry.files import names_no_code
 from wonderful_team.runtime.loop import Caller
 
 
@@ -151,8 +151,8 @@ def branch(
     arguments = {**caps, "out": out, "subscribers": tuple(subscribers), "command": command, "parent": parent}
     team = _team(folder, record, models, **arguments)
     if setup.entry == "run" and setup.scene.partition("/")[0] in registry.WORLDS:
-        check_names_no_code(setup.scene, f"{folder}: the scene of this record")
-        return _trial_again(folder, record, setup, team)
+        with names_no_code(f"{folder}: the scene of this record"):
+            return _trial_again(folder, record, setup, team)
     return _plan_again(folder, record, setup, team)
 
 
@@ -168,7 +168,7 @@ def _team(folder: Path, record: Mapping[str, Any], model: Model | Mapping[str, M
         raise ConfigError(f"{folder}: the record does not say its {', '.join(missing)}, so it cannot be run again")
     method = str(configuration["method"])
     if registry.team_mode(method) is None:
-        raise ConfigError(f"{folder}: method {method!r} is a file of your own; only runs of the team can be run again")
+        raise ConfigError(f"{folder}: method {method!r} is not the team; only runs of the team can be run again")
     with tempfile.TemporaryDirectory(prefix="wonderful-team-words-") as words:
         _write_words(Path(words), record.get("words") or {})
         return Team(

@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 
 from wonderful_team import registry
+from wonderful_team.agents import ROLES
 from wonderful_team.api.method import Method
 from wonderful_team.api.photo_trial import run_photo
 from wonderful_team.api.rollout import rollout
@@ -175,7 +176,7 @@ def models_of(condition: Condition, world: World) -> Any:
     return {**model_of(chosen[REST], condition.isolate, world), **own}
 
 
-GROUNDING_ROLES = ("manager", "checker", "mover")
+GROUNDING_ROLES = tuple(name for name, role in ROLES.items() if role.grounds)
 TRUTH_MODEL = "simulated:perfect"
 
 

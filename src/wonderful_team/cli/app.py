@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import contextlib
 import importlib
-import io
 import sys
+import traceback
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -14,6 +14,7 @@ import click
 from wonderful_team._version import __version__
 from wonderful_team.cli.output import Document, say, wants_json
 from wonderful_team.core.interrupts import Interrupted, ends_on_signal, leave
+from wonderful_team.redaction import redact_streams, redacted_streams
 
 if TYPE_CHECKING:
     from wonderful_team.errors import WonderfulTeamError
@@ -96,6 +97,8 @@ def group(debug: bool) -> None:
 
 def main(argv: Sequence[str] | None = None) -> None:
     """Run one command and exit with its code."""
+    # To the very end: a thread of somebody's code may fail after the command did.
+    redact_streams()
     leave(run(list(sys.argv[1:] if argv is None else argv)))
 
 
@@ -112,7 +115,7 @@ def run(argv: list[str]) -> int:
             [word for word in argv if word not in foreign], "UsageError", f"{foreign[0]!r} is not text in UTF-8", 2
         )
     try:
-        with ends_on_signal(force=True):
+        with redacted_streams(), ends_on_signal(force=True):
             code: Any = group.main(args=argv, prog_name="wonderful-team", standalone_mode=False, obj=tuple(argv))
         return code if isinstance(code, int) else 0
     except click.exceptions.Exit as ending:
@@ -127,7 +130,7 @@ def run(argv: list[str]) -> int:
         return 0
     except Exception as error:  # noqa: BLE001  the top: every error becomes a message and an exit code here
         if "--debug" in argv:
-            raise
+            say("".join(traceback.format_exception(error)), err=True)
         return _tell(argv, error)
 
 
@@ -140,8 +143,8 @@ def _interrupted(argv: list[str], error: BaseException) -> int:
 
 def _write_anything() -> None:
     """What cannot be encoded (half of a character out of a file or a model's words) is shown escaped, never a crash."""
-    if isinstance(sys.stdout, io.TextIOWrapper):
-        sys.stdout.reconfigure(errors="backslashreplace")
+    if (reconfigure := getattr(sys.stdout, "reconfigure", None)) is not None:
+        reconfigure(errors="backslashreplace")
 
 
 def _tell(argv: list[str], error: Exception) -> int:

@@ -17,7 +17,6 @@ from wonderful_team.cli.output import finish
 from wonderful_team.cli.run_summary import program
 from wonderful_team.errors import ConfigError, WonderfulTeamError, extra_command
 
-KEYS = ("ANTHROPIC_API_KEY", "GEMINI_API_KEY", "GOOGLE_API_KEY", "OPENAI_API_KEY", "OPENROUTER_API_KEY")
 LEAST_FREE_MB = 200
 """A run folder takes about 2 MB; a hundred runs are a day's work."""
 GL_PACKAGES = "apt-get install libegl1 libgl1-mesa-dri"
@@ -205,6 +204,10 @@ def _vimabench() -> Finding:
 
 
 def _keys() -> Finding:
-    found = [name for name in KEYS if os.environ.get(name)]
+    from wonderful_team.models.providers.vendors import VENDORS
+
+    found = [
+        name for name in sorted({key for vendor in VENDORS.values() for key in vendor.keys}) if os.environ.get(name)
+    ]
     text = f"{', '.join(found)} set" if found else "none set"
     return Finding("keys", True, f"{text}; a key is used only by a model that you name, never by itself")

@@ -9,6 +9,7 @@ import click
 
 from wonderful_team.cli.options import PATH
 from wonderful_team.cli.output import finish
+from wonderful_team.core.filesystem import make_private_folder
 from wonderful_team.core.text import counted, visible
 from wonderful_team.errors import ConfigError
 
@@ -53,7 +54,7 @@ def _write_table(path: Path, out: Path | None, open_page: bool) -> str:
     from wonderful_team.record.run_folders import all_runs
 
     try:
-        path.parent.mkdir(parents=True, exist_ok=True)
+        make_private_folder(path.parent)
         write_runs_table(all_runs(out), path)
     except OSError as error:
         raise ConfigError(f"--html {str(path)!r}: {error.strerror or error}") from error
@@ -74,7 +75,7 @@ def _worlds(out: Path | None) -> dict[str, str]:
     from wonderful_team.registry.worlds import WORLDS
 
     return {
-        **WORLDS,
+        **{name: row.words for name, row in WORLDS.items()},
         "FILE.py:NAME": "your own: a class with the World interface, or a task made with wonderful_team.task",
     }
 
@@ -95,15 +96,10 @@ def _suites(out: Path | None) -> dict[str, str]:
 
 
 def _methods(out: Path | None) -> dict[str, str]:
-    from wonderful_team.planning.config import ABLATIONS
     from wonderful_team.registry.methods import METHODS
 
-    def words(name: str, text: str) -> str:
-        ablation = ABLATIONS.get(name.rpartition(":")[2])
-        return text if ablation is None else f"{text}: {ablation.words}"
-
     return {
-        **{name: words(name, text) for name, text in METHODS.items()},
+        **{name: row.words for name, row in METHODS.items()},
         "FILE.py:NAME": "your own: a class with the Policy interface",
     }
 

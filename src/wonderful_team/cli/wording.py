@@ -9,8 +9,7 @@ from typing import Any
 import numpy as np
 
 from wonderful_team.api.results import FoundTarget, PlanResult, TrialResult
-from wonderful_team.core.actions import Action, MoveTo, Navigate, PickPlace, Place, Push, Step, Trajectory, places_of
-from wonderful_team.core.geometry.arrays import Array
+from wonderful_team.core.actions import Action, Place, Step, places_of
 from wonderful_team.core.text import counted, picture_names, spoken, visible
 from wonderful_team.core.values import Instruction, Plan, PlannedAction
 
@@ -106,14 +105,10 @@ def action_line(planned: PlannedAction, words: Mapping[str, str]) -> str:
 
 
 def _kind_words(step: Step) -> str:
-    match step.kind:
-        case "move":
-            return f"move {getattr(step, 'height', '')}"
-        case "open" | "close":
-            return f"{step.kind} gripper" + (", tight" if getattr(step, "tight", False) else "")
-        case "follow":
-            return f"follow {visible(getattr(step, 'function', ''))}"
-    return step.kind
+    said = {item.name: visible(str(getattr(step, item.name))) for item in fields(step)}
+    return step.words.line.format(
+        kind=step.kind, **{**said, "tight": ", tight" if getattr(step, "tight", False) else ""}
+    )
 
 
 def _place_words(place: Place) -> str:
@@ -129,19 +124,9 @@ def _turn(step: Step) -> str:
 
 
 def _metres(action: Action | None) -> str:
-    match action:
-        case PickPlace():
-            points: list[Array] = [action.pick_m, action.place_m]
-        case Push():
-            points = [action.start_m, action.end_m]
-        case MoveTo():
-            points = [action.pose.position_m]
-        case Trajectory():
-            points = list(action.waypoints_m)
-        case Navigate():
-            points = list(action.path_m)
-        case _:
-            return ""
+    points = [] if action is None else [point for _, point in action.points()]
+    if not points:
+        return ""
     shown = points if len(points) <= 2 else [points[0], points[-1]]
     through = f" ({counted(len(points), 'point')})" if len(points) > 2 else ""
     return " -> ".join(f"({', '.join(f'{value:.3f}' for value in point)})" for point in shown) + f" m{through}"

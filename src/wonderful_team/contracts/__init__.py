@@ -29,7 +29,7 @@ from wonderful_team.contracts.shown import (
     ShownSlot,
     ShownTask,
 )
-from wonderful_team.contracts.steps import PickPlaceDraft, PlaceDraft, StepList, step_list_type
+from wonderful_team.contracts.steps import PlaceDraft, StepList, step_list_type
 from wonderful_team.contracts.write_function import FunctionCode, WriteFunction
 from wonderful_team.contracts.write_steps import WriteSteps
 
@@ -83,7 +83,6 @@ __all__ = [
     "MoveBox",
     "Outcome",
     "PathReview",
-    "PickPlaceDraft",
     "PlaceDraft",
     "PlanDraft",
     "PlanReview",

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import fields
 from functools import cache
-from typing import Annotated, Any, Literal, TypeAlias, Union
+from typing import Annotated, Any, Literal, Union, cast, get_type_hints
 
 from pydantic import Field, create_model
 
@@ -34,124 +35,34 @@ class PlaceDraft(AnswerModel):
                 return Beside(self.target, self.side)
 
 
-class _StepDraft(AnswerModel):
+class StepDraft(AnswerModel):
+    """A step of one kind; the concrete types have the fields of that kind's step."""
+
     subgoal: str = Field(description="Id of the subgoal this step serves.")
-
-
-class PickPlaceDraft(_StepDraft):
-    """Pick a target up, put it down at a place, turned clockwise."""
-
-    kind: Literal["pick_place"]
-    pick: str
-    place: PlaceDraft
-    rotate_deg: float = Field(ge=-360, le=360, description="Clockwise seen from above; 0 when nothing is said.")
+    kind: str
 
     def to_step(self) -> Step:
-        return actions.PickPlaceStep(self.subgoal, self.pick, self.place.to_place(), self.rotate_deg)
+        step: Any = actions.STEPS[self.kind]
+        given = {item.name: getattr(self, item.name) for item in fields(step)}
+        return cast(
+            Step,
+            step(
+                **{name: value.to_place() if isinstance(value, PlaceDraft) else value for name, value in given.items()}
+            ),
+        )
 
 
-class PushDraft(_StepDraft):
-    """Push along the table."""
-
-    kind: Literal["push"]
-    start: PlaceDraft
-    end: PlaceDraft
-
-    def to_step(self) -> Step:
-        return actions.PushStep(self.subgoal, self.start.to_place(), self.end.to_place())
-
-
-class MoveDraft(_StepDraft):
-    """Move the tool."""
-
-    kind: Literal["move"]
-    to: PlaceDraft
-    height: Literal["above", "at", "clear"]
-
-    def to_step(self) -> Step:
-        return actions.MoveStep(self.subgoal, self.to.to_place(), self.height)
-
-
-class OpenDraft(_StepDraft):
-    """Open the gripper."""
-
-    kind: Literal["open"]
-
-    def to_step(self) -> Step:
-        return actions.OpenStep(self.subgoal)
-
-
-class CloseDraft(_StepDraft):
-    """Close the gripper."""
-
-    kind: Literal["close"]
-    tight: bool
-
-    def to_step(self) -> Step:
-        return actions.CloseStep(self.subgoal, self.tight)
-
-
-class RotateGripperDraft(_StepDraft):
-    """Turn the gripper."""
-
-    kind: Literal["rotate_gripper"]
-    rotate_deg: float = Field(ge=-360, le=360, description="Clockwise seen from above.")
-
-    def to_step(self) -> Step:
-        return actions.RotateGripperStep(self.subgoal, self.rotate_deg)
-
-
-class FollowDraft(_StepDraft):
-    """Follow the path of the subgoal's helper function."""
-
-    kind: Literal["follow"]
-    function: str = Field(description="Id of the subgoal that asked for the function.")
-
-    def to_step(self) -> Step:
-        return actions.FollowStep(self.subgoal, self.function)
-
-
-class HomeDraft(_StepDraft):
-    """Go to the home pose."""
-
-    kind: Literal["home"]
-
-    def to_step(self) -> Step:
-        return actions.HomeStep(self.subgoal)
-
-
-class NavigateDraft(_StepDraft):
-    """Drive to a place."""
-
-    kind: Literal["navigate"]
-    to: PlaceDraft
-
-    def to_step(self) -> Step:
-        return actions.NavigateStep(self.subgoal, self.to.to_place())
-
-
-StepDraft: TypeAlias = (
-    PickPlaceDraft
-    | PushDraft
-    | MoveDraft
-    | OpenDraft
-    | CloseDraft
-    | RotateGripperDraft
-    | FollowDraft
-    | HomeDraft
-    | NavigateDraft
-)
-_DRAFTS: dict[str, type[Any]] = {
-    "pick_place": PickPlaceDraft,
-    "push": PushDraft,
-    "move": MoveDraft,
-    "open": OpenDraft,
-    "close": CloseDraft,
-    "rotate_gripper": RotateGripperDraft,
-    "follow": FollowDraft,
-    "home": HomeDraft,
-    "navigate": NavigateDraft,
-}
+def _draft_of(step: type[Step]) -> type[StepDraft]:
+    """How a model writes a kind of step: its first line, its fields with their metadata, none of them left out."""
+    hints = get_type_hints(step)
+    given: dict[str, Any] = {
+        item.name: (PlaceDraft if hints[item.name] == Place else hints[item.name], Field(**item.metadata))
+        for item in fields(step)
+        if item.name != "subgoal"
+    }
+    given["kind"] = (Literal[step.kind], ...)
+    name, words = f"{step.__name__.removesuffix('Step')}Draft", (step.__doc__ or "").partition("\n")[0]
+    return create_model(name, __base__=StepDraft, __doc__=words, **given)
 
 
 class StepList(AnswerModel):
@@ -167,7 +78,7 @@ class StepList(AnswerModel):
 @cache
 def step_list_type(step_kinds: tuple[str, ...]) -> type[StepList]:
     """The answer type for a vocabulary: a StepList whose steps may be of these kinds only."""
-    drafts = [_DRAFTS[kind] for kind in step_kinds]
+    drafts = [_draft_of(actions.STEPS[kind]) for kind in step_kinds]
     # typing.Union over a list built at run time has no `|` spelling.
     item: Any = drafts[0] if len(drafts) == 1 else Annotated[Union[tuple(drafts)], Field(discriminator="kind")]  # noqa: UP007
     return create_model("StepList", __base__=StepList, steps=(list[item], ...))

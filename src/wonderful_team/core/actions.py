@@ -1,173 +1,81 @@
-"""Steps (what a planner writes: target ids and stated quantities) and actions (what a robot runs: numbers).
+"""Actions: what a robot runs, numbers. A kind of action tells its points and its motion, and nothing else has to know it.
 
-A step never holds a coordinate; `motion` turns it into actions. Angles stated to or by people are degrees, clockwise
-seen from above; inside an action they are radians, counter-clockwise about the vertical axis.
+Inside an action angles are radians, counter-clockwise about the vertical axis. The steps that planners write stand in
+`core.steps`, and are offered from here too.
 """
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
-from typing import ClassVar, Literal, TypeAlias
+from typing import ClassVar, Literal, TypeAlias, get_args
 
 import numpy as np
 
 from wonderful_team.core.geometry import Pose
 from wonderful_team.core.geometry.arrays import Array, frozen_array
-
-Side: TypeAlias = Literal["left", "right", "above", "below"]
-"""A side of an object as the picture shows it: above is towards the picture's top edge."""
-Height: TypeAlias = Literal["above", "at", "clear"]
-GRIPPER_STATES: tuple[Literal["open", "close", "tight"], ...] = ("open", "close", "tight")
-SIDES: tuple[Side, ...] = ("left", "right", "above", "below")
-
-
-@dataclass(frozen=True)
-class At:
-    """At the chosen point of a target."""
-
-    target: str
-
-
-@dataclass(frozen=True)
-class Beside:
-    """Next to a target, on the named side as the picture shows it."""
-
-    target: str
-    side: Side
-
-
-@dataclass(frozen=True)
-class OriginOf:
-    """Where the target stood when the plan was made."""
-
-    target: str
-
-
-Place: TypeAlias = At | Beside | OriginOf
-
-
-@dataclass(frozen=True)
-class PickPlaceStep:
-    """Pick a target and put it at a place, turned clockwise by `rotate_deg`."""
-
-    kind: ClassVar[str] = "pick_place"
-    subgoal: str
-    pick: str
-    place: Place
-    rotate_deg: float = 0.0
-
-
-@dataclass(frozen=True)
-class PushStep:
-    """Push along the table from one place to another."""
-
-    kind: ClassVar[str] = "push"
-    subgoal: str
-    start: Place
-    end: Place
-
-
-@dataclass(frozen=True)
-class MoveStep:
-    """Move the tool to a place: above it, at it, or clear of everything."""
-
-    kind: ClassVar[str] = "move"
-    subgoal: str
-    to: Place
-    height: Height = "above"
-
-
-@dataclass(frozen=True)
-class OpenStep:
-    """Open the gripper."""
-
-    kind: ClassVar[str] = "open"
-    subgoal: str
-
-
-@dataclass(frozen=True)
-class CloseStep:
-    """Close the gripper; `tight` keeps squeezing."""
-
-    kind: ClassVar[str] = "close"
-    subgoal: str
-    tight: bool = False
-
-
-@dataclass(frozen=True)
-class RotateGripperStep:
-    """Turn the gripper clockwise seen from above."""
-
-    kind: ClassVar[str] = "rotate_gripper"
-    subgoal: str
-    rotate_deg: float
-
-
-@dataclass(frozen=True)
-class FollowStep:
-    """Follow the points of a helper function; `target` is what it moves along or round."""
-
-    kind: ClassVar[str] = "follow"
-    subgoal: str
-    function: str
-
-
-@dataclass(frozen=True)
-class HomeStep:
-    """Go to the home pose."""
-
-    kind: ClassVar[str] = "home"
-    subgoal: str
-
-
-@dataclass(frozen=True)
-class NavigateStep:
-    """Drive a mobile base to a place."""
-
-    kind: ClassVar[str] = "navigate"
-    subgoal: str
-    to: Place
-
-
-Step: TypeAlias = (
-    PickPlaceStep
-    | PushStep
-    | MoveStep
-    | OpenStep
-    | CloseStep
-    | RotateGripperStep
-    | FollowStep
-    | HomeStep
-    | NavigateStep
-)
-STEP_TYPES: tuple[type[Step], ...] = (
-    PickPlaceStep,
-    PushStep,
-    MoveStep,
-    OpenStep,
+from wonderful_team.core.motions import Carry, Drive, Leave, Lost, Motion, Reach, Slide, Stay
+from wonderful_team.core.steps import (
+    SIDES,
+    STEPS,
+    At,
+    Beside,
     CloseStep,
-    RotateGripperStep,
     FollowStep,
+    Height,
     HomeStep,
+    MoveStep,
     NavigateStep,
+    OpenStep,
+    OriginOf,
+    PickPlaceStep,
+    Place,
+    PushStep,
+    RotateGripperStep,
+    Side,
+    Step,
+    StepWords,
+    places_of,
 )
 
+GRIPPER_STATES: tuple[Literal["open", "close", "tight"], ...] = ("open", "close", "tight")
 
-def places_of(step: Step) -> tuple[tuple[str, Place], ...]:
-    """Every place a step refers to, as (role, place); roles name the points of a grounded target."""
-    match step:
-        case PickPlaceStep():
-            return ("pick", At(step.pick)), ("place", step.place)
-        case PushStep():
-            return ("push_start", step.start), ("push_end", step.end)
-        case MoveStep() | NavigateStep():
-            return (("place", step.to),)
-        case _:
-            return ()
+
+class _Action(ABC):
+    """What every kind of action has.
+
+    Attributes:
+        steps: The kinds of step that it carries out; none where a learned policy acts without steps.
+        also: Those that it may carry out too, for a method that writes its own.
+    """
+
+    kind: ClassVar[str]
+    steps: ClassVar[tuple[str, ...]] = ()
+    also: ClassVar[tuple[str, ...]] = ()
+
+    @abstractmethod
+    def motion(self, tool_m: Array | None) -> Motion:
+        """What it does to the scene, for a tool that stands at `tool_m`, shape (3,) [m] (None: unknown)."""
+
+    @abstractmethod
+    def as_step(self, subgoal: str, thing: str) -> Step:
+        """A step that says the same as its numbers, about a thing that no picture shows."""
+
+    def points(self) -> tuple[tuple[str, Array], ...]:
+        """The points that it names, as (role of the source, point [m]); none where sources are not bound to numbers."""
+        return ()
+
+    def turns_rad(self) -> tuple[float, ...]:
+        """How far it turns something [rad]."""
+        return ()
+
+    def settings(self) -> tuple[tuple[str, bool, str, str], ...]:
+        """What else must lie within bounds, as (name, whether it does, value, limit)."""
+        return ()
 
 
 @dataclass(frozen=True, eq=False)
-class PickPlace:
+class PickPlace(_Action):
     """Pick at one point, put down at another, turning the object on the way.
 
     Attributes:
@@ -176,6 +84,7 @@ class PickPlace:
     """
 
     kind: ClassVar[str] = "pick_place"
+    steps: ClassVar[tuple[str, ...]] = ("pick_place",)
     pick_m: Array
     place_m: Array
     yaw_rad: float = 0.0
@@ -185,12 +94,25 @@ class PickPlace:
         object.__setattr__(self, "place_m", frozen_array(self.place_m, (3,), "place_m"))
         _finite(self.yaw_rad, "yaw_rad")
 
+    def motion(self, tool_m: Array | None) -> Motion:
+        return Carry(self.pick_m, self.place_m, self.yaw_rad)
+
+    def as_step(self, subgoal: str, thing: str) -> Step:
+        return PickPlaceStep(subgoal, thing, At(thing), float(np.degrees(-self.yaw_rad)))
+
+    def points(self) -> tuple[tuple[str, Array], ...]:
+        return ("pick", self.pick_m), ("place", self.place_m)
+
+    def turns_rad(self) -> tuple[float, ...]:
+        return (float(self.yaw_rad),)
+
 
 @dataclass(frozen=True, eq=False)
-class Push:
+class Push(_Action):
     """Push along the table, start to end, shape (3,) [m] each."""
 
     kind: ClassVar[str] = "push"
+    steps: ClassVar[tuple[str, ...]] = ("push",)
     start_m: Array
     end_m: Array
 
@@ -198,43 +120,84 @@ class Push:
         object.__setattr__(self, "start_m", frozen_array(self.start_m, (3,), "start_m"))
         object.__setattr__(self, "end_m", frozen_array(self.end_m, (3,), "end_m"))
 
+    def motion(self, tool_m: Array | None) -> Motion:
+        return Slide(self.start_m, self.end_m)
+
+    def as_step(self, subgoal: str, thing: str) -> Step:
+        return PushStep(subgoal, Beside(thing, "left"), At(thing))
+
+    def points(self) -> tuple[tuple[str, Array], ...]:
+        return ("push_start", self.start_m), ("push_end", self.end_m)
+
 
 @dataclass(frozen=True, eq=False)
-class MoveTo:
+class MoveTo(_Action):
     """Move the tool to a pose in the base frame."""
 
     kind: ClassVar[str] = "move_to"
+    steps: ClassVar[tuple[str, ...]] = ("move",)
     pose: Pose
+
+    def motion(self, tool_m: Array | None) -> Motion:
+        return Reach(self.pose.position_m[None])
+
+    def as_step(self, subgoal: str, thing: str) -> Step:
+        return MoveStep(subgoal, At(thing))
+
+    def points(self) -> tuple[tuple[str, Array], ...]:
+        return (("waypoint", self.pose.position_m),)
 
 
 @dataclass(frozen=True)
-class Gripper:
+class Gripper(_Action):
     """Open, close, or close and keep squeezing."""
 
     kind: ClassVar[str] = "gripper"
+    steps: ClassVar[tuple[str, ...]] = ("open", "close")
     state: Literal["open", "close", "tight"]
 
     def __post_init__(self) -> None:
         if self.state not in GRIPPER_STATES:
             raise ValueError(f"state: expected {', '.join(GRIPPER_STATES)}, got {self.state!r}")
 
+    def motion(self, tool_m: Array | None) -> Motion:
+        return Stay("open" if self.state == "open" else "close")
+
+    def as_step(self, subgoal: str, thing: str) -> Step:
+        return OpenStep(subgoal) if self.state == "open" else CloseStep(subgoal, self.state == "tight")
+
+    def settings(self) -> tuple[tuple[str, bool, str, str], ...]:
+        return (("gripper", self.state in GRIPPER_STATES, repr(self.state), ", ".join(GRIPPER_STATES)),)
+
 
 @dataclass(frozen=True)
-class RotateGripper:
+class RotateGripper(_Action):
     """Turn the gripper about the vertical, counter-clockwise from above [rad]."""
 
     kind: ClassVar[str] = "rotate_gripper"
+    steps: ClassVar[tuple[str, ...]] = ("rotate_gripper",)
     yaw_rad: float
 
     def __post_init__(self) -> None:
         _finite(self.yaw_rad, "yaw_rad")
 
+    def motion(self, tool_m: Array | None) -> Motion:
+        return Stay()
+
+    def as_step(self, subgoal: str, thing: str) -> Step:
+        return RotateGripperStep(subgoal, float(np.degrees(-self.yaw_rad)))
+
+    def turns_rad(self) -> tuple[float, ...]:
+        return (float(self.yaw_rad),)
+
 
 @dataclass(frozen=True, eq=False)
-class Trajectory:
+class Trajectory(_Action):
     """Move the tool through waypoints, shape (N, 3) [m], base frame."""
 
     kind: ClassVar[str] = "trajectory"
+    steps: ClassVar[tuple[str, ...]] = ("follow",)
+    also: ClassVar[tuple[str, ...]] = ("move",)
     waypoints_m: Array
 
     def __post_init__(self) -> None:
@@ -243,27 +206,53 @@ class Trajectory:
             raise ValueError("waypoints_m: at least one waypoint is needed")
         object.__setattr__(self, "waypoints_m", waypoints)
 
+    def motion(self, tool_m: Array | None) -> Motion:
+        return Reach(self.waypoints_m)
+
+    def as_step(self, subgoal: str, thing: str) -> Step:
+        return FollowStep(subgoal, thing)
+
+    def points(self) -> tuple[tuple[str, Array], ...]:
+        return tuple(("waypoint", point) for point in self.waypoints_m)
+
 
 @dataclass(frozen=True)
-class Home:
+class Home(_Action):
     """Go to the home pose."""
 
     kind: ClassVar[str] = "home"
+    steps: ClassVar[tuple[str, ...]] = ("home",)
+
+    def motion(self, tool_m: Array | None) -> Motion:
+        return Leave()
+
+    def as_step(self, subgoal: str, thing: str) -> Step:
+        return HomeStep(subgoal)
 
 
 @dataclass(frozen=True, eq=False)
-class Navigate:
+class Navigate(_Action):
     """Drive a mobile base along a path on the floor, shape (N, 2) [m]."""
 
     kind: ClassVar[str] = "navigate"
+    steps: ClassVar[tuple[str, ...]] = ("navigate",)
     path_m: Array
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "path_m", frozen_array(self.path_m, (None, 2), "path_m"))
 
+    def motion(self, tool_m: Array | None) -> Motion:
+        return Drive(self.path_m)
+
+    def as_step(self, subgoal: str, thing: str) -> Step:
+        return NavigateStep(subgoal, At(thing))
+
+    def points(self) -> tuple[tuple[str, Array], ...]:
+        return tuple(("waypoint", point) for point in self.path_m)
+
 
 @dataclass(frozen=True, eq=False)
-class EndEffectorDelta:
+class EndEffectorDelta(_Action):
     """One step of a learned policy: (dx, dy, dz [m], droll, dpitch, dyaw [rad], gripper 0..1), shape (7,)."""
 
     kind: ClassVar[str] = "end_effector_delta"
@@ -272,40 +261,31 @@ class EndEffectorDelta:
     def __post_init__(self) -> None:
         object.__setattr__(self, "v7", frozen_array(self.v7, (7,), "v7"))
 
+    def motion(self, tool_m: Array | None) -> Motion:
+        return Lost() if tool_m is None else Reach((tool_m + self.v7[:3])[None], planned=False)
+
+    def as_step(self, subgoal: str, thing: str) -> Step:
+        return MoveStep(subgoal, At(thing))
+
+    def turns_rad(self) -> tuple[float, ...]:
+        return tuple(float(value) for value in self.v7[3:6])
+
+    def settings(self) -> tuple[tuple[str, bool, str, str], ...]:
+        grip = float(self.v7[6])
+        return (("gripper", 0.0 <= grip <= 1.0, f"{grip:.3g}", "[0, 1]"),)
+
 
 Action: TypeAlias = (
     PickPlace | Push | MoveTo | Gripper | RotateGripper | Trajectory | Home | Navigate | EndEffectorDelta
 )
-ACTION_TYPES: tuple[type[Action], ...] = (
-    PickPlace,
-    Push,
-    MoveTo,
-    Gripper,
-    RotateGripper,
-    Trajectory,
-    Home,
-    Navigate,
-    EndEffectorDelta,
-)
-
-_STEPS_FOR_ACTION: dict[str, tuple[str, ...]] = {
-    "pick_place": ("pick_place",),
-    "push": ("push",),
-    "move_to": ("move",),
-    "gripper": ("open", "close"),
-    "rotate_gripper": ("rotate_gripper",),
-    "trajectory": ("follow",),
-    "home": ("home",),
-    "navigate": ("navigate",),
-    "end_effector_delta": (),
-}
+ACTIONS: dict[str, type[Action]] = {action.kind: action for action in get_args(Action)}
+"""Every kind of action that the gate judges and a world may run."""
 
 
 def steps_for(action_kind: str) -> tuple[str, ...]:
     """The kinds of step that an action of that kind carries out; none where a learned policy acts without steps."""
-    # A method of one's own may make a move of many waypoints; a planner's move has one.
-    also = ("move",) if action_kind == "trajectory" else ()
-    return (*_STEPS_FOR_ACTION.get(action_kind, ()), *also)
+    action = ACTIONS.get(action_kind)
+    return () if action is None else (*action.steps, *action.also)
 
 
 @dataclass(frozen=True)
@@ -319,14 +299,14 @@ class Vocabulary:
     kinds: tuple[str, ...]
 
     def __post_init__(self) -> None:
-        unknown = [kind for kind in self.kinds if kind not in _STEPS_FOR_ACTION]
+        unknown = [kind for kind in self.kinds if kind not in ACTIONS]
         if unknown or not self.kinds:
-            raise ValueError(f"vocabulary {self.kinds}: valid kinds are {', '.join(_STEPS_FOR_ACTION)}")
+            raise ValueError(f"vocabulary {self.kinds}: valid kinds are {', '.join(ACTIONS)}")
 
     @property
     def step_kinds(self) -> tuple[str, ...]:
         """The kinds of step that a planner may write for these actions."""
-        return tuple(step for kind in self.kinds for step in _STEPS_FOR_ACTION[kind])
+        return tuple(step for kind in self.kinds for step in ACTIONS[kind].steps)
 
 
 PICK_PLACE = Vocabulary(("pick_place",))
@@ -337,3 +317,12 @@ VOCABULARIES: dict[str, Vocabulary] = {"pick_place": PICK_PLACE, "push": Vocabul
 def _finite(value: float, name: str) -> None:
     if not np.isfinite(value):
         raise ValueError(f"{name}: must be finite, got {value}")
+
+
+__all__ = [
+    "ACTIONS", "ARM", "Action", "At", "Beside", "CloseStep", "EndEffectorDelta", "FollowStep", "GRIPPER_STATES",
+    "Gripper", "Height", "Home", "HomeStep", "MoveStep", "MoveTo", "Navigate", "NavigateStep", "OpenStep",
+    "OriginOf", "PICK_PLACE", "PickPlace", "PickPlaceStep", "Place", "Push", "PushStep", "RotateGripper",
+    "RotateGripperStep", "SIDES", "STEPS", "Side", "Step", "StepWords", "Trajectory", "VOCABULARIES",
+    "Vocabulary", "places_of", "steps_for",
+]  # fmt: skip

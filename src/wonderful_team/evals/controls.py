@@ -4,23 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from wonderful_team.core.actions import (
-    Action,
-    At,
-    Beside,
-    CloseStep,
-    FollowStep,
-    HomeStep,
-    MoveStep,
-    NavigateStep,
-    OpenStep,
-    PickPlace,
-    PickPlaceStep,
-    Push,
-    PushStep,
-    RotateGripperStep,
-    Step,
-)
+from wonderful_team.core.actions import Action, PickPlace, Push
 from wonderful_team.core.protocols import Act, Decision, Done, Policy, Privileged, Situation
 from wonderful_team.core.values import Limits, PlannedAction
 from wonderful_team.errors import ConfigError
@@ -116,28 +100,7 @@ def at_seen_height(action: Action, situation: Situation) -> Action:
 
 def planned(action: Action, number: int) -> PlannedAction:
     """An action as a method hands it over; its step names what truth knows and no picture shows."""
-    return PlannedAction(_step(action, f"G{number}"), action)
-
-
-def _step(action: Action, subgoal: str) -> Step:
-    thing, place = "(from truth)", At("(from truth)")
-    match action.kind:
-        case "pick_place":
-            return PickPlaceStep(subgoal, thing, place, float(np.degrees(-getattr(action, "yaw_rad", 0.0))))
-        case "push":
-            return PushStep(subgoal, Beside(thing, "left"), place)
-        case "gripper":
-            state = getattr(action, "state", "")
-            return OpenStep(subgoal) if state == "open" else CloseStep(subgoal, tight=state == "tight")
-        case "rotate_gripper":
-            return RotateGripperStep(subgoal, float(np.degrees(-getattr(action, "yaw_rad", 0.0))))
-        case "home":
-            return HomeStep(subgoal)
-        case "navigate":
-            return NavigateStep(subgoal, place)
-        case "trajectory":
-            return FollowStep(subgoal, thing)
-    return MoveStep(subgoal, place)
+    return PlannedAction(action.as_step(f"G{number}", "(from truth)"), action)
 
 
 def control_faults(successes: dict[str, tuple[int, int]]) -> list[str]:

@@ -18,6 +18,7 @@ from wonderful_team.evals.leases import RENEW_EVERY_S, Owner
 from wonderful_team.evals.spending import CapReached
 from wonderful_team.evals.store import CUT, Claim, Store
 from wonderful_team.evals.trials import RunSettings, TrialRow, TrialRunner, TrialSpec
+from wonderful_team.redaction import redacted_streams
 
 POLL_S = 0.2
 """How long a worker waits before it looks again for a trial that another process holds [s]."""
@@ -49,7 +50,8 @@ class Work:
 def worker_main(work: Work, stopping: Any) -> None:
     """Entry of a worker process; an interrupt from the keyboard is the parent's to answer."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    work_until_done(work, stopping.is_set)
+    with redacted_streams():
+        work_until_done(work, stopping.is_set)
 
 
 def work_until_done(work: Work, stopping: Callable[[], bool]) -> None:

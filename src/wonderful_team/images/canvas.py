@@ -106,17 +106,19 @@ class Canvas:
     ) -> None:
         """A closed dashed stroke; its gaps show the halo."""
         width = width_px or self.stroke_px
-        loop = [*points, points[0]]
-        pieces = _fixed_lines(_dash_pieces(loop, 5.0 * self.stroke_px, 3.5 * self.stroke_px))
-        cv2.polylines(self.rgb, _fixed_lines([loop]), False, halo, width + 1, cv2.LINE_AA, _SHIFT)
+        margin = 4.0 * width
+        seen = (-margin, self.size_px[0] + margin, self.size_px[1] + margin)
+        sides, pieces = _dash_pieces([*points, points[0]], 5.0 * self.stroke_px, 3.5 * self.stroke_px, seen)
+        if sides:
+            cv2.polylines(self.rgb, _fixed_lines(sides), False, halo, width + 1, cv2.LINE_AA, _SHIFT)
         if pieces:
-            cv2.polylines(self.rgb, pieces, False, colour, width, cv2.LINE_AA, _SHIFT)
+            cv2.polylines(self.rgb, _fixed_lines(pieces), False, colour, width, cv2.LINE_AA, _SHIFT)
 
     def polygon(self, points: Sequence[Point], colour: Colour, alpha: float) -> None:
         """A translucent area."""
         corners = np.asarray(points)
-        x0, y0 = np.clip(np.floor(corners.min(axis=0)).astype(int), 0, self.size_px)
-        x1, y1 = np.clip(np.ceil(corners.max(axis=0)).astype(int) + 1, 0, self.size_px)
+        x0, y0 = np.clip(np.floor(corners.min(axis=0)), 0, self.size_px).astype(int)
+        x1, y1 = np.clip(np.ceil(corners.max(axis=0)) + 1, 0, self.size_px).astype(int)
         if x0 >= x1 or y0 >= y1:
             return
         part = self.rgb[y0:y1, x0:x1]
@@ -198,7 +200,8 @@ class Canvas:
 def _fixed_lines(lines: Sequence[Sequence[Point]]) -> list[Array]:
     """Points as cv2 wants them: fixed point, pixel centres at whole numbers."""
     flat = np.asarray([point for line in lines for point in line], dtype=np.float64).reshape(-1, 2)
-    fixed = np.clip(np.rint((flat - 0.5) * (1 << _SHIFT)), -(2**24), 2**24).astype(np.int32)
+    most = 2**24 / (1 << _SHIFT)
+    fixed = np.rint(np.clip(flat - 0.5, -most, most) * (1 << _SHIFT)).astype(np.int32)
     ends = np.cumsum([len(line) for line in lines])[:-1]
     return np.split(fixed, ends)
 
@@ -217,19 +220,58 @@ def _padding_px(font_px: int) -> tuple[int, int]:
     return max(3, round(font_px * 0.28)), max(2, round(font_px * 0.2))
 
 
-def _dash_pieces(points: Sequence[Point], dash: float, gap: float) -> list[list[Point]]:
-    """Straight pieces of length `dash`, `gap` apart, starting anew at each corner so that corners are drawn."""
+def _dash_pieces(
+    points: Sequence[Point], dash: float, gap: float, seen: tuple[float, float, float]
+) -> tuple[list[list[Point]], list[list[Point]]]:
+    """The sides as far as they are seen, and their pieces of length `dash`, `gap` apart, starting anew at each corner.
+
+    Args:
+        points: Corners, which may lie as far away as numbers go.
+        dash: Length of a piece [px].
+        gap: Between two pieces [px].
+        seen: Least coordinate that is seen, largest x, largest y [px].
+    """
+    sides: list[list[Point]] = []
     pieces: list[list[Point]] = []
     for (xa, ya), (xb, yb) in zip(points, points[1:], strict=False):
         length = math.hypot(xb - xa, yb - ya)
-        if length < 1e-6:
+        shown = _seen_share((xa, ya), (xb, yb), seen)
+        if not 1e-6 <= length < math.inf or shown is None:
             continue
+
         count = max(1, round((length + gap) / (dash + gap)))
         # Stretch dash and gap so that each side ends with a full dash at its corner.
         stretch = length / (count * dash + (count - 1) * gap)
-        for k in range(count):
-            low, high = k * (dash + gap) * stretch / length, (k * (dash + gap) + dash) * stretch / length
-            pieces.append(
-                [(xa + (xb - xa) * low, ya + (yb - ya) * low), (xa + (xb - xa) * high, ya + (yb - ya) * high)]
-            )
-    return pieces
+        period = (dash + gap) * stretch
+        begin, end = (_clipped(xa + (xb - xa) * share, ya + (yb - ya) * share, seen) for share in shown)
+        reach = math.hypot(end[0] - begin[0], end[1] - begin[1])
+        way = ((end[0] - begin[0]) / max(reach, 1e-9), (end[1] - begin[1]) / max(reach, 1e-9))
+        sides.append([begin, end])
+        # Laid along what is seen, which is short, however long the side is.
+        first = -((shown[0] * length) % period)
+        for k in range(math.ceil((reach - first) / period)):
+            low, high = max(0.0, first + k * period), min(reach, first + k * period + dash * stretch)
+            if low < high:
+                pieces.append([(begin[0] + way[0] * t, begin[1] + way[1] * t) for t in (low, high)])
+    return sides, pieces
+
+
+def _clipped(x: float, y: float, seen: tuple[float, float, float]) -> Point:
+    least, most_x, most_y = seen
+    return min(max(x, least), most_x), min(max(y, least), most_y)
+
+
+def _seen_share(start: Point, end: Point, seen: tuple[float, float, float]) -> tuple[float, float] | None:
+    """From where to where a line is seen, as shares of it from 0 to 1; None when it is not (Liang and Barsky 1984)."""
+    low, high = 0.0, 1.0
+    least, *largest = seen
+    for a, b, most in zip(start, end, largest, strict=True):
+        for distance, way in ((a - least, a - b), (most - a, b - a)):
+            if way == 0.0:
+                if not distance >= 0.0:
+                    return None
+            elif way > 0.0:
+                high = min(high, distance / way)
+            else:
+                low = max(low, distance / way)
+    return (low, high) if low < high else None

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from typing import Any
 
 from wonderful_team.models.providers.bounded import ReplyTooLargeError, fetch_json
+from wonderful_team.models.providers.vendors import Vendor
 
 _NAMES = (
     "max_model_len",
@@ -20,45 +21,33 @@ _NAMES = (
 
 
 def context_length(
-    api: str, base_url: str, model: str, key: str | None, *, timeout_s: float = 5.0, direct: bool = True
+    service: Vendor, base_url: str, model: str, key: str | None, *, timeout_s: float = 5.0, direct: bool = True
 ) -> tuple[int, str] | None:
     """The model's context length [tokens] and where that stands; None when the service does not say.
 
     Args:
-        api: As providers call it: server, openrouter, google, …
-        base_url: Address of the service, without a trailing slash.
+        service: What speaks there.
+        base_url: Its address, without a trailing slash.
         model: What the service calls the model.
         key: Sent as the service wants it; None for none.
         timeout_s: For each place asked.
         direct: Never through a proxy.
     """
-    for method, url, body in _places(api, base_url, model):
-        found = _fetched(method, url, body, key, api, timeout_s, direct)
+    name, before = service.key_header
+    headers = {name: f"{before}{key}"} if key else {}
+    for method, url, body in service.context(base_url, model):
+        found = _fetched(method, url, body, headers, timeout_s, direct)
         tokens = _length(found, model)
         if tokens is not None:
             return tokens, f"{method} {url}"
     return None
 
 
-def _places(api: str, base_url: str, model: str) -> Iterator[tuple[str, str, Mapping[str, Any] | None]]:
-    """Where the length may stand, in order."""
-    if api == "google":
-        yield "GET", f"{base_url}/v1beta/models/{model}", None
-        return
-    if api in ("server", "openrouter", "openai-chat"):
-        yield "GET", f"{base_url}/models", None
-    if api == "server":
-        root = base_url.removesuffix("/v1")
-        yield "GET", f"{root}/props", None  # llama.cpp
-        yield "POST", f"{root}/api/show", {"model": model}  # Ollama
-
-
 def _fetched(
-    method: str, url: str, body: Mapping[str, Any] | None, key: str | None, api: str, timeout_s: float, direct: bool
+    method: str, url: str, body: Mapping[str, Any] | None, headers: dict[str, str], timeout_s: float, direct: bool
 ) -> Any:
     import httpx2
 
-    headers = {} if not key else {"x-goog-api-key": key} if api == "google" else {"Authorization": f"Bearer {key}"}
     try:
         status, found = fetch_json(method, url, headers=headers, timeout_s=timeout_s, direct=direct, body=body)
         return found if status == 200 else None

@@ -16,16 +16,18 @@ from typing import Any, Literal, TypeAlias
 
 from pydantic import TypeAdapter, ValidationError
 
+from wonderful_team.core.filesystem import make_private_folder, write_redacted
 from wonderful_team.core.text import user_path
 from wonderful_team.errors import ConfigError, UnknownNameError, reading
 from wonderful_team.models.conventions import PIXELS, Convention, Resize, Shape
 from wonderful_team.models.error_profile import ErrorProfile
+from wonderful_team.models.providers.vendors import VENDORS
 
 SCHEMA_VERSION = 1
 CONFIG_VARIABLE = "WONDERFUL_TEAM_CONFIG"
 """Environment variable with the folder of our configuration, instead of the user's usual one."""
 _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,63}")
-_RESERVED = frozenset({"offline", "simulated", "scripted", "replay", "openai", "anthropic", "google", "openrouter", "http", "https"})  # fmt: skip
+_RESERVED = frozenset({"offline", "simulated", "scripted", "replay", "http", "https", *(name for name, vendor in VENDORS.items() if vendor.words)})  # fmt: skip
 
 Schemas: TypeAlias = Literal["enforced", "ignored", "refused", "unknown"]
 Thinking: TypeAlias = Literal["never", "switchable", "always", "unknown"]
@@ -239,8 +241,8 @@ def save_profile(profile: Profile, folder: Path | None = None) -> Path:
     path = place / f"{check_name(profile.name)}.json"
     fresh = place / f".{profile.name}.{os.getpid()}.tmp"
     try:
-        place.mkdir(parents=True, exist_ok=True)
-        fresh.write_text(profile_to_json(profile) + "\n", encoding="utf-8")
+        make_private_folder(place)
+        write_redacted(fresh, profile_to_json(profile) + "\n")
         fresh.replace(path)
     except OSError as error:
         raise ConfigError(

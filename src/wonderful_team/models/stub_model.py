@@ -6,7 +6,7 @@ It sees nothing and is no planner; it exists so that waiting rounds, calls and b
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
+from typing import Any, Literal, get_args, get_origin
 
 from wonderful_team import contracts as c
 from wonderful_team.core.values import Request
@@ -29,8 +29,8 @@ _TARGETS = [
 def stub_script() -> dict[str, Any]:
     """A script for ScriptedModel: one subgoal, two targets, no doubt, every first box accepted."""
     answers: dict[str, Callable[[Request], Any]] = {
+        **{question.__name__: _plausible for question in c.QUESTIONS},
         "DraftPlan": lambda request: _draft(request.question.with_targets),
-        "ReviewPlan": lambda _: {"reasoning": "", "approved": True, "doubt": None},
         "RevisePlan": lambda _: {"reasoning": "", "decision": "keep", "answer": "It stands.", "plan": None},
         "ExtractTargets": lambda _: {
             "reasoning": "",
@@ -45,7 +45,6 @@ def stub_script() -> dict[str, Any]:
             "reasoning": "",
             "edges": [{"edge": edge, "inside": True, "outside": False} for edge in c.EDGES],
         },
-        "JudgeBox": lambda _: {"reasoning": "", "decision": "accept", "problem": ""},
         "JudgeRevision": lambda _: {"reasoning": "", "decision": "take_after_stop"},
         "MoveBox": lambda _: {
             "reasoning": "",
@@ -58,14 +57,11 @@ def stub_script() -> dict[str, Any]:
             "grow_bottom_px": 0,
             "cut_edges": [],
         },
-        "ChoosePoint": lambda _: {"reasoning": "", "number": 1},
         "WriteSteps": _steps,
-        "ReviewSteps": lambda _: {"reasoning": "", "approved": True, "doubt": None},
         "WriteFunction": lambda _: {
             "reasoning": "",
             "code": "def path(boxes):\n    x0, y0, x1, y1 = next(iter(boxes.values()))\n    return [(x0, y0), (x1, y1)]",
         },
-        "ReviewPath": lambda _: {"reasoning": "", "accepted": True, "problem": ""},
         "Remember": lambda request: {
             "keep": True,
             "key": request.question.role,
@@ -78,7 +74,6 @@ def stub_script() -> dict[str, Any]:
                 for s in request.question.subgoals
             ],
         },
-        "Replan": lambda _: {"reasoning": "", "decision": "done", "cause": "", "advice": ""},
     }
     return dict(answers)
 
@@ -86,6 +81,19 @@ def stub_script() -> dict[str, Any]:
 def stub_model(delay_s: float = 0.0) -> ScriptedModel:
     """A model that agrees with everything and takes a fixed time per answer."""
     return ScriptedModel(stub_script(), delay_s=delay_s, name="stub")
+
+
+def _plausible(request: Request) -> dict[str, Any]:
+    """Yes, the first of several words, nothing to add: an answer to any question of which no more is expected."""
+    return {name: _first(field.annotation) for name, field in request.output.model_fields.items()}
+
+
+def _first(kind: Any) -> Any:
+    if get_origin(kind) is Literal:
+        return get_args(kind)[0]
+    if type(None) in get_args(kind):
+        return None
+    return {str: "", bool: True, int: 1}.get(kind, [])
 
 
 def _draft(with_targets: bool) -> dict[str, Any]:

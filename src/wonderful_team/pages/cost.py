@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from markupsafe import Markup
@@ -11,8 +11,8 @@ from wonderful_team.pages.pictures import text_in_svg
 from wonderful_team.pages.requests import Asked
 from wonderful_team.pages.words import seconds
 
-ROLES = ("supervisor", "verification", "manager", "checker", "mover", "memory", "replanner")
-"""Order of colours; other roles of other methods share the last colour."""
+COLOURS = 8
+"""Colours of bars; roles beyond share the last one."""
 _WIDTH, _LEFT, _ROW, _TOP = 960, 8, 24, 26
 
 
@@ -63,17 +63,24 @@ def rounds(asked: Sequence[Asked]) -> int:
     return count
 
 
-def waterfall(asked: Sequence[Asked]) -> Markup | None:
-    """Calls as bars over time; calls at the same time stand below one another. None without calls."""
+def waterfall(asked: Sequence[Asked], words: Iterable[str] = ()) -> Markup | None:
+    """Calls as bars over time; calls at the same time stand below one another. None without calls.
+
+    `words` are the names of the files with the roles' words: their order is that of the colours.
+    """
     if not asked:
         return None
     start = min(one.sent_s for one in asked)
     span = max(max(_end(one) for one in asked) - start, 1e-3)
     height = _TOP + _ROW * len(asked) + 10
     scale = (_WIDTH - 2 * _LEFT) / span
+    named = [name.removesuffix(".md") for name in words if name.count(".") == 1]
+    roles = list(dict.fromkeys([*named, *(one.entry["role"] for one in asked)]))
     lines = [_grid(span, scale, height)]
     for row, one in enumerate(asked):
-        lines.append(_bar(one, _LEFT + (one.sent_s - start) * scale, _TOP + row * _ROW, scale))
+        lines.append(
+            _bar(one, _LEFT + (one.sent_s - start) * scale, _TOP + row * _ROW, scale, roles.index(one.entry["role"]))
+        )
     return Markup(
         '<svg class="waterfall" viewBox="0 0 {} {}" role="img" aria-label="Calls over time, {} in all">{}</svg>'
     ).format(_WIDTH, height, len(asked), Markup("").join(lines))
@@ -83,10 +90,10 @@ def _end(one: Asked) -> float:
     return one.sent_s if one.answered_s is None else one.answered_s
 
 
-def _bar(one: Asked, x: float, y: float, scale: float) -> Markup:
+def _bar(one: Asked, x: float, y: float, scale: float, place: int) -> Markup:
     width = max((_end(one) - one.sent_s) * scale, 3.0)
     role = one.entry["role"]
-    shade = ROLES.index(role) if role in ROLES else len(ROLES)
+    shade = min(place, COLOURS - 1)
     failed = " failed" if one.entry["invalid"] is not None or one.answered_s is None else ""
     label = f"{one.label}  {seconds(one.seconds)}"
     size = 7.0 * len(label)

@@ -9,6 +9,8 @@ from typing import Any
 
 from markupsafe import Markup, escape
 
+from wonderful_team.core.actions import STEPS
+
 
 def pretty(value: Any) -> str:
     """A JSON value, indented."""
@@ -84,24 +86,23 @@ def _named(target: str, names: Mapping[str, str] | None) -> str:
 
 def step_words(step: dict[str, Any], names: Mapping[str, str] | None = None) -> str:
     """A step in words, from its JSON; `names` says what targets are, by id."""
-    turn = step.get("rotate_deg")
-    turned = f", turned {turn:g}° clockwise" if turn else ""
-    match step["type"]:
-        case "PickPlaceStep":
-            at = "" if step["place"].get("type") == "Beside" else "at "
-            return f"pick {_named(step['pick'], names)}, place {at}{place_words(step['place'], names)}{turned}"
-        case "PushStep":
-            return f"push from {place_words(step['start'], names)} to {place_words(step['end'], names)}"
-        case "MoveStep":
-            return f"move {step['height']} {place_words(step['to'], names)}"
-        case "CloseStep":
-            return "close the gripper" + (", tight" if step["tight"] else "")
-        case "OpenStep":
-            return "open the gripper"
-        case "RotateGripperStep":
-            return f"turn the gripper {turn:g}° clockwise"
-        case "FollowStep":
-            return f"follow the path of {step['function']}"
-        case "NavigateStep":
-            return f"drive to {place_words(step['to'], names)}"
-    return "go home"
+    kind = next((kind for kind in STEPS.values() if kind.__name__ == step["type"]), None)
+    if kind is None:
+        return pretty_name(step["type"])
+    turn = step.get("rotate_deg") or 0
+    said = {name: _field_words(name, value, names) for name, value in step.items()}
+    beside = isinstance(step.get("place"), dict) and step["place"].get("type") == "Beside"
+    return (kind.words.shown or kind.words.told).format(
+        **said, at="" if beside else "at ", turned=f", turned {turn:g}° clockwise" if turn else ""
+    )
+
+
+def _field_words(name: str, value: Any, names: Mapping[str, str] | None) -> str:
+    match name:
+        case "rotate_deg":
+            return f"{value:g}° clockwise"
+        case "tight":
+            return ", tight" if value else ""
+        case "pick":
+            return _named(value, names)
+    return place_words(value, names) if isinstance(value, dict) else str(value)

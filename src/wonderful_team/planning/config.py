@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from typing import Literal, TypeAlias
 
 from wonderful_team.agents import Prompts
@@ -29,8 +29,7 @@ class Members:
                 "Verification, Manager, Checker and Mover" if not self.verification else "Manager, Checker and Mover"
             )
             return f"without {members}: the Supervisor gives one point for each target"
-        off = [name for name in ("verification", "checker", "mover", "memory") if not getattr(self, name)]
-        names = [name.capitalize() for name in off]
+        names = [member.name.capitalize() for member in fields(self) if not getattr(self, member.name)]
         return (
             "without " + " and ".join([", ".join(names[:-1]), names[-1]] if len(names) > 1 else names) if names else ""
         )

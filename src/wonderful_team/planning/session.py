@@ -50,7 +50,7 @@ class AgentSession:
         self, question: Question, *, stage: str, branch: str = "", role: str | None = None, sample: int = 0
     ) -> Answer:
         """Like ask, with provenance and cost."""
-        asker = role_for(question, role).name
+        asker = role_for(question, role)
         key = (stage, branch, question.contract)
         self._counts[key] = number = self._counts.get(key, 0) + 1
         request = build_request(
@@ -58,11 +58,11 @@ class AgentSession:
             id=f"{self.attempt}/{stage}/{branch or 'main'}/{question.contract}/{number}",
             stage=stage,
             role=asker,
-            notes=(*(self.memory.notes if self.members.memory else ()), *self.notebooks.read(asker, branch)),
+            notes=(*(self.memory.notes if self.members.memory else ()), *self.notebooks.read(asker.name, branch)),
             sample=sample,
             prompts=self.config.prompts,
         )
-        write_down = self.notebooks.begin(asker, branch)
+        write_down = self.notebooks.begin(asker.name, branch)
         answer = await self.client.ask(request)
         write_down(Note(question.contract, _short(answer.value), "notebook"))
         return answer

@@ -10,7 +10,7 @@ from wonderful_team.core.values import Observation, Plan, ReadPlan, View
 from wonderful_team.errors import ConfigError
 from wonderful_team.images import load_picture
 from wonderful_team.record.plan_file import read_plan
-from wonderful_team.record.stored import observation_of
+from wonderful_team.record.stored import file_of_run, observation_of
 
 
 def read_run_plan(folder: Path) -> ReadPlan:
@@ -56,7 +56,9 @@ def _stored(folder: Path, record: Any, entry: Any) -> Observation | None:
     except (ConfigError, KeyError, TypeError, ValueError):
         pass
     try:
-        pictures = {name: load_picture(folder / record["files"][key]) for name, key in entry["views"].items()}
+        pictures = {
+            name: load_picture(file_of_run(folder, record["files"][key], name)) for name, key in entry["views"].items()
+        }
         return Observation({name: View(name, name, 0.0, rgb) for name, rgb in pictures.items()})
     except (ConfigError, KeyError, TypeError, ValueError):
         return None

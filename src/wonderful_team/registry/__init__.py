@@ -1,7 +1,15 @@
 """Names to things: models, methods, worlds and tasks. The only place where a string picks an implementation."""
 
-from wonderful_team.registry.methods import ABLATIONS, METHODS, TeamMode, load_method, team_mode
-from wonderful_team.registry.models import DEFAULT_ROLE, MODEL_FORMS, MODELS, make_model, make_models, model_label
+from wonderful_team.registry.methods import METHODS, MethodSetup, TeamMode, load_method, make_method, team_mode
+from wonderful_team.registry.models import (
+    DEFAULT_ROLE,
+    MODEL_FORMS,
+    MODELS,
+    make_model,
+    make_models,
+    model_label,
+    named_by_profile,
+)
 from wonderful_team.registry.worlds import (
     WORLDS,
     check_ready,
@@ -15,20 +23,22 @@ from wonderful_team.registry.worlds import (
 )
 
 __all__ = [
-    "ABLATIONS",
     "DEFAULT_ROLE",
     "METHODS",
     "MODELS",
     "MODEL_FORMS",
+    "MethodSetup",
     "TeamMode",
     "WORLDS",
     "check_ready",
     "load_method",
     "made_in_main",
+    "make_method",
     "make_model",
     "make_models",
     "make_world",
     "model_label",
+    "named_by_profile",
     "own_tiers",
     "scene_name",
     "task_made_of",

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
 import importlib.util
 import inspect
 import sys
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextvars import ContextVar
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -18,6 +20,24 @@ from wonderful_team.errors import ConfigError, UnknownNameError, WonderfulTeamEr
 def is_file_name(name: str) -> bool:
     """Whether a name has the form `FILE.py:Name` (a lone `FILE.py` counts too, so that its error can say what is missing)."""
     return name.endswith(".py") or ".py:" in name
+
+
+_UNTRUSTED: ContextVar[str] = ContextVar("untrusted", default="")
+"""Whose words are being followed, while they are those of a file."""
+
+
+@contextlib.contextmanager
+def names_no_code(whose: str) -> Iterator[None]:
+    """Follow what a file (a record, a store, a profile) says: no code is loaded meanwhile, whatever the file names.
+
+    Args:
+        whose: Begins the message.
+    """
+    before = _UNTRUSTED.set(whose)
+    try:
+        yield
+    finally:
+        _UNTRUSTED.reset(before)
 
 
 def check_names_no_code(name: str, whose: str) -> str:
@@ -46,6 +66,8 @@ def load_from_file(name: str, what: str) -> Any:
     Raises:
         ConfigError: No such file, the file fails when run, or it does not define the name.
     """
+    if _UNTRUSTED.get():
+        check_names_no_code(name, _UNTRUSTED.get())
     name, _ = split_arguments(name)
     file_text, _, attribute = name.rpartition(":") if ".py:" in name else (name, "", "")
     path = user_path(file_text)

@@ -1,49 +1,114 @@
-"""Methods by name: the team's ways of working, and methods from a file."""
+"""Methods by name: one table from a name to its factory. A rival is one file of its own and one row here; or FILE.py:NAME."""
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal, cast
+from typing import cast
 
-from wonderful_team.core.protocols import Policy
+from wonderful_team.core.caps import Caps
+from wonderful_team.core.protocols import Model, Policy, Subscriber
 from wonderful_team.core.renamed import RenamedKeys
 from wonderful_team.errors import ConfigError, MethodCodeError, UnknownNameError
+from wonderful_team.models.budget import Budget
+from wonderful_team.models.client import ModelClient
+from wonderful_team.planning import ABLATIONS, TeamConfig, TeamPolicy
+from wonderful_team.planning.config import Mode
 from wonderful_team.registry.files import is_file_name, make_from_file
-
-if TYPE_CHECKING:
-    from wonderful_team.models.client import ModelClient
-
-
-ABLATIONS = tuple(f"s{number}" for number in range(1, 9))
-METHODS: dict[str, str] = {
-    "team": "the whole team, lean: few waiting rounds, the paper's loop only for boxes that fail",
-    "team:paper": "the whole team, the algorithms as published",
-    **{f"team:{name}": f"the lean team in the paper's ablation setting {name[1:]}" for name in ABLATIONS},
-    **{f"team:paper:{name}": f"the published algorithms in ablation setting {name[1:]}" for name in ABLATIONS},
-}
+from wonderful_team.registry.models import DEFAULT_ROLE
 
 
 @dataclass(frozen=True)
 class TeamMode:
     """What a `team…` name means: the way of working and which members are switched off."""
 
-    mode: Literal["lean", "paper"]
-    ablation: str
+    mode: Mode
+    ablation: str = "full"
+
+
+@dataclass(frozen=True)
+class MethodSetup:
+    """What a method is made from, anew for every trial.
+
+    Attributes:
+        models: By role of the team.
+        rest: For roles that the team has not.
+        config: How the team works; None for every other method.
+    """
+
+    models: Mapping[str, Model]
+    rest: Model
+    caps: Caps = Caps()
+    subscribers: Sequence[Subscriber] = ()
+    concurrency: int = 8
+    config: TeamConfig | None = None
+
+    def client(self) -> ModelClient:
+        """Where a method asks its models: capped, and told to subscribers."""
+        models = {DEFAULT_ROLE: self.rest, **self.models}
+        return ModelClient(models, budget=Budget(self.caps), subscribers=self.subscribers, concurrency=self.concurrency)
+
+
+@dataclass(frozen=True)
+class MethodRow:
+    """A method: a line of help, its factory, and what its name says about the team (None for a rival)."""
+
+    words: str
+    make: Callable[[MethodSetup], Policy]
+    team: TeamMode | None = None
+
+
+def _team(setup: MethodSetup) -> Policy:
+    """The team itself."""
+    return TeamPolicy(
+        setup.models,
+        setup.config,
+        caps=setup.caps,
+        subscribers=setup.subscribers,
+        concurrency=setup.concurrency,
+    )
+
+
+_ABLATED: tuple[tuple[str, Mode, str], ...] = (
+    ("team", "lean", "the lean team in the paper's"),
+    ("team:paper", "paper", "the published algorithms in"),
+)
+METHODS: dict[str, MethodRow] = {
+    "team": MethodRow(
+        "the whole team, lean: few waiting rounds, the paper's loop only for boxes that fail", _team, TeamMode("lean")
+    ),
+    "team:paper": MethodRow("the whole team, the algorithms as published", _team, TeamMode("paper")),
+    **{
+        f"{prefix}:{name}": MethodRow(
+            f"{words} ablation setting {name[1:]}: {members.words}", _team, TeamMode(mode, name)
+        )
+        for prefix, mode, words in _ABLATED
+        for name, members in ABLATIONS.items()
+        if name != "full"
+    },
+}
 
 
 def team_mode(name: str) -> TeamMode | None:
-    """What a method's name says about the team; None when it does not name the team.
+    """What a method's name says about the team; None when it names another method.
 
     Raises:
-        UnknownNameError: It starts with "team" but is not one of METHODS.
+        UnknownNameError: Neither one of METHODS nor a file's.
     """
     if is_file_name(name):
         return None
     if name not in METHODS:
         raise UnknownNameError("method", name, [*METHODS, "FILE.py:NAME"])
-    words = name.split(":")
-    ablation = words[-1] if words[-1] in ABLATIONS else "full"
-    return TeamMode("paper" if "paper" in words else "lean", ablation)
+    return METHODS[name].team
+
+
+def make_method(name: str, setup: MethodSetup) -> Policy:
+    """The method of that name, at work in one trial.
+
+    Raises:
+        ConfigError: A file's object has no `decide(situation)` or no name.
+    """
+    return load_method(name, setup.client()) if is_file_name(name) else METHODS[name].make(setup)
 
 
 def load_method(name: str, client: ModelClient) -> Policy:

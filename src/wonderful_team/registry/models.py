@@ -8,10 +8,12 @@ from typing import TYPE_CHECKING, Any, cast
 
 from wonderful_team.core.protocols import Model, World
 from wonderful_team.errors import ConfigError, ModelCodeError, UnknownNameError, code_of
+from wonderful_team.models.providers.vendors import VENDORS
 from wonderful_team.registry.files import check_names_no_code, is_file_name, make_from_file
 from wonderful_team.registry.simulated import SIMULATED, simulated_model
 
 if TYPE_CHECKING:
+    from wonderful_team.models.profiles import Profile
     from wonderful_team.models.providers import ModelOptions
 
 
@@ -20,10 +22,11 @@ MODELS: dict[str, str] = {
     "simulated:perfect": "a simulator's truth, as it is seen through the pictures shown: tests everything but the model",
 }
 MODEL_FORMS: dict[str, str] = {
-    "openai:NAME": "OpenAI (Responses); openai-chat:NAME for Chat Completions; key in OPENAI_API_KEY",
-    "anthropic:NAME": "Anthropic; key in ANTHROPIC_API_KEY",
-    "google:NAME": "Google Gemini; key in GOOGLE_API_KEY or GEMINI_API_KEY",
-    "openrouter:NAME": "OpenRouter; key in OPENROUTER_API_KEY",
+    **{
+        f"{name}:NAME": f"{vendor.words}; key in {' or '.join(vendor.keys)}"
+        for name, vendor in VENDORS.items()
+        if vendor.words
+    },
     "VENDOR:NAME@URL": "the same interface at another address",
     "http://HOST:8000/v1[#NAME]": "any OpenAI-compatible server; without #NAME it is asked which model it has",
     "simulated:PROFILE": "a simulator's truth with stated errors: coarse, hasty, or a profile that probe --full measured",
@@ -70,10 +73,24 @@ def make_model(
         made = make_provider(spec, profile=profile, thinking=thinking, price=price, local_only=asked.local_only)
         return cast(Model, made)
     if profile is not None:
-        return make_model(check_names_no_code(spec, f"profile {model!r}"), options, role, world)
+        return make_model(named_by_profile(profile), options, role, world)
     if model not in MODELS:
         raise UnknownNameError("model", model, [*MODELS, *profile_names(), *MODEL_FORMS])
     return cast(Model, importlib.import_module("wonderful_team.offline").OfflineModel())
+
+
+def named_by_profile(profile: Profile) -> str:
+    """The model that a profile was measured of.
+
+    Raises:
+        ConfigError: It names code, or another profile.
+    """
+    from wonderful_team.models.profiles import profile_names
+
+    name = check_names_no_code(profile.model, f"profile {profile.name!r}")
+    if name in profile_names():
+        raise ConfigError(f"profile {profile.name!r} names the profile {name!r}; valid is the name of a model")
+    return name
 
 
 def make_models(

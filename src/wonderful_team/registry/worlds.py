@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import importlib
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any, cast
 
 from wonderful_team.core.protocols import World, offers
@@ -17,27 +18,50 @@ from wonderful_team.errors import (
 from wonderful_team.registry.files import is_file_name, load_from_file, make_from_file
 from wonderful_team.registry.own_world import OwnWorld
 
-WORLDS: dict[str, str] = {
-    "tabletop": "MuJoCo table, 1.0 x 0.5 m, suction, top and front cameras with depth",
-    "vimabench": "VIMA-Bench itself: your own copy, in a process and a Python environment of its own; 256 x 128 px, no depth",
+
+@dataclass(frozen=True)
+class WorldRow:
+    """A simulator: what it is, and how its package is imported when it is first used.
+
+    The package has `make_world(task, seed=…, **tiers)`, `task_names()` and `partitions(task)`; it may have `TIERS` (kinds of
+    harder tier that it makes itself), `check_ready()`, and, where users' functions become tasks, `task_of(function)` and
+    `made_in_main(task)`.
+    """
+
+    words: str
+    load: Callable[[], Any]
+
+    def offer(self, name: str, otherwise: Any) -> Any:
+        """What the package has under a name that it may leave out."""
+        return getattr(self.load(), name, otherwise)
+
+
+WORLDS: dict[str, WorldRow] = {
+    "tabletop": WorldRow(
+        "MuJoCo table, 1.0 x 0.5 m, suction, top and front cameras with depth",
+        lambda: importlib.import_module("wonderful_team.sims.tabletop"),
+    ),
+    "vimabench": WorldRow(
+        "VIMA-Bench itself: your own copy, in a process and a Python environment of its own; 256 x 128 px, no depth",
+        lambda: importlib.import_module("wonderful_team.sims.vimabench"),
+    ),
 }
-_SIMULATORS: dict[str, str] = {
-    "tabletop": "wonderful_team.sims.tabletop",
-    "vimabench": "wonderful_team.sims.vimabench",
-}
+"""Every simulator by name; a task of it is WORLD/TASK."""
 
 
 def task_names() -> dict[str, str]:
     """Every task of every world, as WORLD/TASK, with a line of help."""
-    return {f"{world}/{name}": words for world in _SIMULATORS for name, words in _simulator(world).task_names().items()}
+    return {
+        f"{world}/{name}": words for world, row in WORLDS.items() for name, words in row.load().task_names().items()
+    }
 
 
 def task_partitions() -> dict[str, tuple[str, ...]]:
     """The generalisation levels of every task, as WORLD/TASK: a world is then made as WORLD/TASK@LEVEL."""
     return {
-        f"{world}/{name}": tuple(_simulator(world).partitions(name))
-        for world in _SIMULATORS
-        for name in _simulator(world).task_names()
+        f"{world}/{name}": tuple(row.load().partitions(name))
+        for world, row in WORLDS.items()
+        for name in row.load().task_names()
     }
 
 
@@ -48,17 +72,16 @@ def check_ready(names: Iterable[str]) -> None:
         ConfigError: One is not installed; says how to get it.
     """
     for world in dict.fromkeys(name.partition("/")[0] for name in names if not is_file_name(name)):
-        ready = getattr(_simulator(world), "check_ready", None) if world in _SIMULATORS else None
-        if ready is not None:
-            ready()
+        if world in WORLDS:
+            WORLDS[world].offer("check_ready", lambda: None)()
 
 
 def own_tiers(name: str) -> tuple[str, ...]:
     """Kinds of harder tier that a world makes itself, in its simulator; () where only its pictures can be changed."""
-    ours = name.partition("/")[0] == "tabletop"
     if is_file_name(name):
-        ours = task_made_of(load_from_file(name, "world")) is not None
-    return tuple(importlib.import_module("wonderful_team.sims.tabletop.options").TIERS) if ours else ()
+        name = task_made_of(load_from_file(name, "world")) or ""
+    world = name.partition("/")[0]
+    return tuple(WORLDS[world].offer("TIERS", ())) if world in WORLDS else ()
 
 
 def make_world(
@@ -139,7 +162,7 @@ def _named_world(name: str, seed: int, harder: Mapping[str, int]) -> World:
     world, _, task = name.partition("/")
     if world not in WORLDS:
         known = [*WORLDS, "FILE.py:NAME"]
-        worlds = [one for one in _SIMULATORS if name.partition("@")[0] in _simulator(one).task_names()]
+        worlds = [one for one, row in WORLDS.items() if name.partition("@")[0] in row.load().task_names()]
         if worlds:
             raise ConfigError(
                 f"unknown world {name!r}: it is a task; say {' or '.join(f'{one}/{name}' for one in worlds)}"
@@ -147,16 +170,17 @@ def _named_world(name: str, seed: int, harder: Mapping[str, int]) -> World:
         raise UnknownNameError("world", world, known)
     if not task:
         raise ConfigError(f"world {name!r}: say which task, one of: {', '.join(task_names())}")
-    if task.partition("@")[0] not in _simulator(world).task_names():
+    simulator = WORLDS[world].load()
+    if task.partition("@")[0] not in simulator.task_names():
         raise UnknownNameError("task", name, task_names())
-    return cast(World, _simulator(world).make_world(task, seed=seed, **harder))
+    return cast(World, simulator.make_world(task, seed=seed, **harder))
 
 
 def _world_from_file(name: str, seed: int, harder: Mapping[str, int], arguments: Mapping[str, Any]) -> Any:
     task = task_made_of(load_from_file(name, "world"))
     if task is not None:
         _take_none(name, arguments)
-        return _tabletop().make_world(task, seed=seed, **harder)
+        return _named_world(task, seed, harder)
     made = make_from_file(name, "world", {"seed": seed}, WorldUnavailableError, arguments)
     return _whole(made, f"world {name!r}")
 
@@ -174,24 +198,14 @@ def _whole(made: Any, what: str) -> Any:
 
 
 def task_made_of(thing: Any) -> str | None:
-    """The name of the tabletop task that a user's function was made into."""
-    registering = importlib.import_module("wonderful_team.sims.tabletop.registering")
-    return next((name for name in _tabletop().task_names() if registering.find_task(name).set_table is thing), None)
+    """The task, as WORLD/TASK, that a user's function was made into."""
+    found = ((world, row.offer("task_of", lambda _: None)(thing)) for world, row in WORLDS.items())
+    return next((f"{world}/{task}" for world, task in found if task is not None), None)
 
 
 def made_in_main(name: str) -> bool:
-    """Whether a task of the tabletop was made in the script that is running: only that script can make it again."""
-    task = name.removeprefix("tabletop/").partition("@")[0]
-    if not name.startswith("tabletop/") or is_file_name(name):
+    """Whether a task was made in the script that is running: only that script can make it again."""
+    world, _, task = name.partition("/")
+    if is_file_name(name) or world not in WORLDS:
         return False
-    registering = importlib.import_module("wonderful_team.sims.tabletop.registering")
-    return str(registering.find_task(task).set_table.__module__) in ("__main__", "__mp_main__")
-
-
-def _tabletop() -> Any:
-    return _simulator("tabletop")
-
-
-def _simulator(world: str) -> Any:
-    """The package of a simulated world: `make_world`, `task_names` and `partitions`; imported when it is first used."""
-    return importlib.import_module(_SIMULATORS[world])
+    return bool(WORLDS[world].offer("made_in_main", lambda _: False)(task.partition("@")[0]))

@@ -3,34 +3,27 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from dataclasses import fields, is_dataclass
+from typing import Any
 
 import numpy as np
 from shapely import LineString, Point
 
 from wonderful_team.core.actions import (
-    ACTION_TYPES,
-    GRIPPER_STATES,
-    STEP_TYPES,
+    ACTIONS,
+    STEPS,
     Action,
     CloseStep,
-    EndEffectorDelta,
     Gripper,
-    MoveTo,
-    Navigate,
     OpenStep,
-    PickPlace,
-    PickPlaceStep,
-    Push,
-    RotateGripper,
-    RotateGripperStep,
-    Trajectory,
     Vocabulary,
     places_of,
     steps_for,
 )
 from wonderful_team.core.geometry import wrap_angle
 from wonderful_team.core.geometry.arrays import Array
+from wonderful_team.core.motions import Slide
 from wonderful_team.core.values import GateCheck, NumberSource, PlannedAction, View
 
 MOST_TURN_RAD = 2 * math.pi
@@ -44,15 +37,15 @@ SAME_PX = 3.0
 
 def class_checks(actions: Sequence[PlannedAction]) -> list[GateCheck]:
     """A refusal for every action or step of a class that is not ours: nothing is known of what it would do."""
-    known = ", ".join(kind.__name__ for kind in ACTION_TYPES)
+    known = ", ".join(kind.__name__ for kind in ACTIONS.values())
     found = []
     for index, planned in enumerate(actions):
         foreign = [
             part
             for part, ours in (
                 (planned, (PlannedAction,)),
-                (getattr(planned, "step", None), STEP_TYPES),
-                (getattr(planned, "action", None), (*ACTION_TYPES, type(None))),
+                (getattr(planned, "step", None), tuple(STEPS.values())),
+                (getattr(planned, "action", None), (*ACTIONS.values(), type(None))),
             )
             if type(part) not in ours
         ]
@@ -69,55 +62,36 @@ def form_checks(planned: PlannedAction, vocabulary: Vocabulary) -> list[GateChec
     checks = [GateCheck(None, "vocabulary", kind in valid, kind, ", ".join(valid))]
     if action is not None:
         checks.append(_finite(action))
-        if isinstance(action, Gripper):
-            state = action.state
-            ok = state in GRIPPER_STATES
-            checks.append(GateCheck(None, "gripper", ok, repr(state), ", ".join(GRIPPER_STATES)))
         if checks[1].ok:
             checks += _turns(action)
+            checks += [GateCheck(None, name, ok, value, limit) for name, ok, value, limit in action.settings()]
     return checks
 
 
 def _finite(action: Action) -> GateCheck:
-    flat = np.concatenate([np.zeros(0), *(np.ravel(values) for values in _numbers(action))])
+    flat = np.concatenate([np.zeros(0), *_numbers(action)])
     bad = int((~np.isfinite(flat)).sum())
     return GateCheck(None, "numbers", bad == 0, f"{len(flat) - bad} of {len(flat)} finite", "all finite")
 
 
-def _numbers(action: Action) -> list[Array]:
-    match action:
-        case PickPlace():
-            return [action.pick_m, action.place_m, np.array([action.yaw_rad])]
-        case Push():
-            return [action.start_m, action.end_m]
-        case MoveTo():
-            return [action.pose.position_m, action.pose.quaternion_wxyz]
-        case RotateGripper():
-            return [np.array([action.yaw_rad])]
-        case Trajectory():
-            return [action.waypoints_m]
-        case Navigate():
-            return [action.path_m]
-        case EndEffectorDelta():
-            return [action.v7]
-    return []
+def _numbers(value: Any) -> Iterator[Array]:
+    """Every number of an action, whatever its fields are called."""
+    for item in fields(value):
+        content = getattr(value, item.name)
+        if is_dataclass(content):
+            yield from _numbers(content)
+        elif not isinstance(content, str):
+            yield np.ravel(content)
 
 
 def _turns(action: Action) -> list[GateCheck]:
-    if isinstance(action, PickPlace | RotateGripper):
-        turns = [float(action.yaw_rad)]
-    elif isinstance(action, EndEffectorDelta):
-        turns = [float(value) for value in action.v7[3:6]]
-    else:
+    turns = action.turns_rad()
+    if not turns:
         return []
     most = max(turns, key=abs)
     margin = MOST_TURN_RAD + SAME_RAD - abs(most)
     limit = f"[{-MOST_TURN_RAD:.3f}, {MOST_TURN_RAD:.3f}] rad"
-    checks = [GateCheck(None, "turn", margin >= 0, f"{most:.3g} rad", limit, f"{margin:+.3g} rad")]
-    if isinstance(action, EndEffectorDelta):
-        grip = float(action.v7[6])
-        checks.append(GateCheck(None, "gripper", 0.0 <= grip <= 1.0, f"{grip:.3g}", "[0, 1]"))
-    return checks
+    return [GateCheck(None, "turn", margin >= 0, f"{most:.3g} rad", limit, f"{margin:+.3g} rad")]
 
 
 def agreement_checks(planned: PlannedAction, view: View, reach_px: float) -> list[GateCheck]:
@@ -143,15 +117,16 @@ def agreement_checks(planned: PlannedAction, view: View, reach_px: float) -> lis
 
 
 def _turn_agrees(planned: PlannedAction) -> list[GateCheck]:
-    action, step = planned.action, planned.step
-    if not isinstance(action, PickPlace | RotateGripper) or not isinstance(step, PickPlaceStep | RotateGripperStep):
+    turns, said = (
+        () if planned.action is None else planned.action.turns_rad(),
+        getattr(planned.step, "rotate_deg", None),
+    )
+    if len(turns) != 1 or said is None:
         return []
-    stated = -math.radians(step.rotate_deg) if math.isfinite(step.rotate_deg) else math.nan
-    off = abs(wrap_angle(action.yaw_rad - stated)) if math.isfinite(stated) else math.inf
-    value = f"{math.degrees(-action.yaw_rad):.3f} degrees clockwise"
-    return [
-        GateCheck(None, "turn of the step", off <= SAME_RAD, value, f"{step.rotate_deg:.3f} degrees, as the step says")
-    ]
+    stated = -math.radians(said) if math.isfinite(said) else math.nan
+    off = abs(wrap_angle(turns[0] - stated)) if math.isfinite(stated) else math.inf
+    value = f"{math.degrees(-turns[0]):.3f} degrees clockwise"
+    return [GateCheck(None, "turn of the step", off <= SAME_RAD, value, f"{said:.3f} degrees, as the step says")]
 
 
 def _grip_agrees(planned: PlannedAction) -> list[GateCheck]:
@@ -164,26 +139,10 @@ def _grip_agrees(planned: PlannedAction) -> list[GateCheck]:
     return [GateCheck(None, "grip of the step", action.state == wanted, repr(action.state), repr(wanted))]
 
 
-def _points(action: Action) -> list[tuple[str, Array]] | None:
-    """Roles and points of an action's sources, shape (2,) or (3,) each; None where sources are not bound to numbers."""
-    match action:
-        case PickPlace():
-            return [("pick", action.pick_m), ("place", action.place_m)]
-        case Push():
-            return [("push_start", action.start_m), ("push_end", action.end_m)]
-        case MoveTo():
-            return [("waypoint", action.pose.position_m)]
-        case Trajectory():
-            return [("waypoint", point) for point in action.waypoints_m]
-        case Navigate():
-            return [("waypoint", point) for point in action.path_m]
-    return None
-
-
 def _sources(planned: PlannedAction, view: View, reach_px: float) -> list[GateCheck]:
     assert planned.action is not None
-    points = _points(planned.action)
-    if points is None:
+    points = planned.action.points()
+    if not points:
         return [GateCheck(None, "sources", False, f"{len(planned.sources)}", f"none for {planned.action.kind}")]
     roles, wanted = [source.role for source in planned.sources], [role for role, _ in points]
     if roles != wanted:
@@ -195,7 +154,8 @@ def _sources(planned: PlannedAction, view: View, reach_px: float) -> list[GateCh
     ]
     value = "; ".join(problems) or f"{len(roles)} of {len(roles)} agree"
     checks = [GateCheck(None, "sources", not problems, value, "targets, pixels and metres of the step and the action")]
-    start_outside = ("push_start",) if isinstance(planned.action, Push) else ()
+    # A tool that pushes may come down just outside of the picture.
+    start_outside = (roles[0],) if isinstance(planned.action.motion(None), Slide) else ()
     return [*checks, *_outside(planned.sources, view, start_outside)]
 
 

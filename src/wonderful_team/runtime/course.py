@@ -12,16 +12,14 @@ from shapely import MultiPolygon, affinity
 from wonderful_team.core.actions import (
     At,
     Beside,
-    Gripper,
     MoveStep,
     OriginOf,
-    PickPlace,
-    PickPlaceStep,
-    Push,
-    PushStep,
+    Place,
+    places_of,
 )
 from wonderful_team.core.geometry import Box
 from wonderful_team.core.geometry.arrays import Array
+from wonderful_team.core.motions import Carry, Motion, Slide, Stay
 from wonderful_team.core.values import GroundedTarget, Limits, Plan, PlannedAction, View
 from wonderful_team.images.keep_out import table_height_m
 from wonderful_team.images.relief import RAISED_M, Relief, covered, outline
@@ -62,6 +60,7 @@ class Stage:
     """One action against the scene as it is expected before it.
 
     Attributes:
+        motion: What the action does.
         relief: The surface; None without depth.
         own: Which of its points belong to what is carried or pushed, shape (N,) bool.
         carried: What is carried or pushed; None for the bare tool.
@@ -73,7 +72,7 @@ class Stage:
             plan puts there as well, shape (N,) bool.
     """
 
-    planned: PlannedAction
+    motion: Motion
     relief: Relief | None
     own: Array | None
     carried: Carried | None
@@ -108,31 +107,30 @@ class Course:
             tool_m: Where the tool stands before it, shape (3,) [m]; None when unknown.
         """
         action, step = planned.action, planned.step
-        if isinstance(action, PickPlace):
-            return self._pick_place(planned, action)
-        if isinstance(action, Push):
-            return self._push(planned, action)
-        if isinstance(action, Gripper):
-            self._grip(action, tool_m)
+        motion = Stay() if action is None else action.motion(tool_m)
+        if isinstance(motion, Carry):
+            return self._carry(planned, motion)
+        if isinstance(motion, Slide):
+            return self._slide(planned, motion)
+        if isinstance(motion, Stay):
+            self._grip(motion.grip, tool_m)
         if isinstance(step, MoveStep):
             self._at = (step.to.target, np.zeros(3)) if step.height == "at" else None
         carried = self._held[1] if self._held is not None else None
         own = self._mask(self._held[2]) if self._held is not None and self._relief is not None else None
-        return Stage(planned, self._relief, own, carried, self._met(planned), False, False)
+        return Stage(motion, self._relief, own, carried, self._met(planned), False, False)
 
-    def _pick_place(self, planned: PlannedAction, action: PickPlace) -> Stage:
-        step = planned.step
-        name = step.pick if isinstance(step, PickPlaceStep) else ""
-        own, base = self._own(name, action.pick_m)
-        carried = self._carried(name, own, action.pick_m, base)
-        meant, level, stated = self._place(step, action, own)
-        back = isinstance(step, PickPlaceStep) and isinstance(step.place, OriginOf) and step.place.target == name
-        back = back and action.yaw_rad == 0 and self._returns(name, action)
-        named = step.place.target if isinstance(step, PickPlaceStep) else ""
-        put = self._put(named)
-        stage = Stage(planned, self._relief, own, carried, meant, level, stated, back, put)
-        self._move(name, own, base, action.pick_m, action.place_m, action.yaw_rad)
-        self._lies_at[name] = named if isinstance(step, PickPlaceStep) and isinstance(step.place, At) else ""
+    def _carry(self, planned: PlannedAction, way: Carry) -> Stage:
+        places = dict(places_of(planned.step))
+        name, place = (places["pick"].target, places.get("place")) if "pick" in places else ("", None)
+        own, base = self._own(name, way.start_m)
+        carried = self._carried(name, own, way.start_m, base)
+        meant, level, stated = self._place(name, place, way, own)
+        back = isinstance(place, OriginOf) and place.target == name and way.yaw_rad == 0 and self._returns(name, way)
+        put = self._put("" if place is None else place.target)
+        stage = Stage(way, self._relief, own, carried, meant, level, stated, back, put)
+        self._move(name, own, base, way.start_m, way.end_m, way.yaw_rad)
+        self._lies_at[name] = place.target if isinstance(place, At) else ""
         return stage
 
     def _stated(self, place_m: Array, own: Array | None) -> Any | None:
@@ -142,47 +140,46 @@ class Course:
             return None
         return self._relief.standing(place_m[:2], self._table_z_m)
 
-    def _place(self, step: Any, action: PickPlace, own: Array | None) -> tuple[Any | None, bool, bool]:
+    def _place(self, name: str, place: Place | None, way: Carry, own: Array | None) -> tuple[Any | None, bool, bool]:
         """What a thing may rest on, whether the place must be level, and whether the plan names it."""
-        place = step.place if isinstance(step, PickPlaceStep) else None
         target = self._grounded.get(place.target) if place is not None else None
         if place is None or target is None:
-            return self._stated(action.place_m, own), False, False
-        if isinstance(place, OriginOf) or (isinstance(place, At) and place.target == step.pick):
+            return self._stated(way.end_m, own), False, False
+        if isinstance(place, OriginOf) or (isinstance(place, At) and place.target == name):
             return None, False, True
         if isinstance(place, Beside):
             return None, True, True
         if target.target.kind == "object":
-            return self.region(place.target, action.place_m), False, True
+            return self.region(place.target, way.end_m), False, True
         return None, True, True
 
-    def _push(self, planned: PlannedAction, action: Push) -> Stage:
-        step = planned.step
-        name = step.start.target if isinstance(step, PushStep) else ""
-        own, base = self._own(name, action.start_m) if name in self._grounded else (None, self._table_z_m)
+    def _slide(self, planned: PlannedAction, way: Slide) -> Stage:
+        places = dict(places_of(planned.step))
+        start, end = places.get("push_start"), places.get("push_end")
+        name = "" if start is None else start.target
+        own, base = self._own(name, way.start_m) if name in self._grounded else (None, self._table_z_m)
         meant = None
-        if isinstance(step, PushStep) and isinstance(step.end, At) and step.end.target in self._grounded:
-            meant = self.region(step.end.target, action.end_m)
-        carried = self._carried(name, own, action.start_m, base)
-        stage = Stage(planned, self._relief, own, carried, meant, False, name in self._grounded)
-        way = action.end_m[:2] - action.start_m[:2]
-        length = float(np.linalg.norm(way))
+        if isinstance(end, At) and end.target in self._grounded:
+            meant = self.region(end.target, way.end_m)
+        carried = self._carried(name, own, way.start_m, base)
+        stage = Stage(way, self._relief, own, carried, meant, False, name in self._grounded)
+        along_m = way.end_m[:2] - way.start_m[:2]
+        length = float(np.linalg.norm(along_m))
         if own is not None and self._relief is not None and own.any() and length > 1e-6:
-            along = (self._relief.xyz_m[own, :2] - action.start_m[:2]) @ (way / length)
-            shift = np.append(way / length * max(0.0, length - float(along.min())), 0.0)
-            self._move(
-                name, own, base, np.append(action.start_m[:2], base), np.append(action.start_m[:2], base) + shift, 0.0
-            )
+            along = (self._relief.xyz_m[own, :2] - way.start_m[:2]) @ (along_m / length)
+            shift = np.append(along_m / length * max(0.0, length - float(along.min())), 0.0)
+            at_m = np.append(way.start_m[:2], base)
+            self._move(name, own, base, at_m, at_m + shift, 0.0)
         return stage
 
-    def _returns(self, name: str, action: PickPlace) -> bool:
+    def _returns(self, name: str, way: Carry) -> bool:
         """Whether a thing really comes to lie where the view shows it."""
-        target, now = self._grounded.get(name), self.region(name, action.pick_m)
+        target, now = self._grounded.get(name), self.region(name, way.start_m)
         corners = None if target is None or target.box is None else self._corners(target.box, first=True)
         if corners is None or now is None:
             return False
         shown = outline(corners, 0.002).centroid
-        end = _shifted(now, action.pick_m, action.place_m, action.yaw_rad).centroid
+        end = _shifted(now, way.start_m, way.end_m, way.yaw_rad).centroid
         return float(shown.distance(end)) <= RETURNED_M
 
     def region(self, name: str, at_m: Array) -> Any | None:
@@ -282,8 +279,10 @@ class Course:
         own[indices] = True
         return own
 
-    def _grip(self, action: Gripper, tool_m: Array | None) -> None:
-        if action.state == "open":
+    def _grip(self, grip: str | None, tool_m: Array | None) -> None:
+        if grip is None:
+            return
+        if grip == "open":
             if self._held is not None and tool_m is not None and self._relief is not None:
                 name, carried, indices = self._held
                 own = self._mask(indices)

@@ -207,7 +207,7 @@ class Execution:
         regions = watched((planned,), plan, now.main, first=index)
         checks = staleness_checks(then, now, regions, expected_change=expected_change, max_age_s=self._age_limit_s)
         checks += staleness_checks(last, now, regions, max_age_s=self._max_age_s)
-        found = still_free_checks(planned, stage, now.main, self._world.limits)
+        found = still_free_checks(stage, now.main, self._world.limits)
         report = GateReport((*checks, *(replace(check, action=index) for check in found)))
         self._progress.passed_gate(f"before action {index + 1}", report)
         self.refusal = None if report.admitted else report

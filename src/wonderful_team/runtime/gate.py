@@ -12,10 +12,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from wonderful_team.core.actions import Action, EndEffectorDelta, PickPlace, Vocabulary
+from wonderful_team.core.actions import Vocabulary
 from wonderful_team.core.geometry import Box
 from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.jsonable import to_jsonable
+from wonderful_team.core.motions import Carry, Drive, Leave, Lost
 from wonderful_team.core.text import counted
 from wonderful_team.core.values import GateCheck, GateReport, KeepOut, Limits, Observation, Plan, PlannedAction
 from wonderful_team.images.keep_out import table_height_m
@@ -129,7 +130,7 @@ class _Passage:
         reach_px = 0.0 if held is None else math.hypot(held.width, held.height) / 2
         stage = self._course.next(planned, self._tool_m)
         sweep = sweep_of(planned.action, self._limits, self._tool_m)
-        found = self._metre_checks(planned.action, stage, sweep)
+        found = self._metre_checks(stage, sweep)
         found += agreement_checks(planned, self._now.main, reach_px)
         if self._now.main.camera is None:
             found += keep_out_px_checks(
@@ -145,34 +146,31 @@ class _Passage:
         target = self._plan.grounded.get(name) if self._plan is not None and name is not None else None
         return None if target is None else target.box
 
-    def _metre_checks(self, action: Action, stage: Stage, sweep: Sweep) -> list[GateCheck]:
-        limits = self._limits
+    def _metre_checks(self, stage: Stage, sweep: Sweep) -> list[GateCheck]:
+        limits, motion = self._limits, sweep.motion
         if sweep.path_m is None:
             found = []
-            if isinstance(action, EndEffectorDelta):
+            if isinstance(motion, Lost):
                 limit = "known, from the robot or from an action before"
                 found.append(GateCheck(None, "tool position", False, "not known", limit))
             camera = self._now.main.camera
-            if action.kind == "home":
-                found += keep_out_checks(action, sweep, None, self._regions, camera, limits, self._tool_radius_m)
+            if isinstance(motion, Leave):
+                found += keep_out_checks(sweep, None, self._regions, camera, limits, self._tool_radius_m)
             return found
         # The way from where the tool stands is the world's own doing: only what the action asks for must lie inside.
         checks = [_axis_check(sweep.path_m, axis, limits) for axis in range(2)]
-        if action.kind != "navigate":
+        if not isinstance(motion, Drive):
             checks.append(_axis_check(sweep.path_m, 2, limits))
-        if isinstance(action, PickPlace):
-            checks.append(_carry_check(action, limits))
-        if action.kind != "navigate":
-            checks += height_checks(action, stage, limits, self._measured)
-            checks += place_checks(action, stage, limits)
-            checks += way_checks(action, stage, sweep, self._tool_radius_m)
+        if isinstance(motion, Carry):
+            checks.append(_carry_check(motion, limits))
+        if not isinstance(motion, Drive):
+            checks += height_checks(stage, limits, self._measured)
+            checks += place_checks(stage, limits)
+            checks += way_checks(stage, sweep, self._tool_radius_m)
         camera = self._now.main.camera
-        return checks + keep_out_checks(
-            action, sweep, stage.carried, self._regions, camera, limits, self._tool_radius_m
-        )
+        return checks + keep_out_checks(sweep, stage.carried, self._regions, camera, limits, self._tool_radius_m)
 
     def _pixel_checks(self, planned: PlannedAction) -> list[GateCheck]:
-        needs_metres = planned.step.kind not in ("open", "close", "rotate_gripper", "home")
         limit = "metres from a camera" if self._must_run else "none"
         checks = [GateCheck(None, "metres", not self._must_run, "pixels only", limit)]
         points = np.array(swept_path_px(planned), dtype=np.float64).reshape(-1, 2)
@@ -181,7 +179,7 @@ class _Passage:
         if not finite:
             return checks
         if len(points) == 0:
-            if needs_metres:
+            if planned.step.points:
                 checks.append(GateCheck(None, "points", False, "none", "at least 1 pixel of the picture"))
             return checks
         width, height = self._now.main.size_px
@@ -235,9 +233,9 @@ def _axis_check(path: Array, axis: int, limits: Limits) -> GateCheck:
     return GateCheck(None, name, margin >= -TOLERANCE_M, shown, f"[{low:.3f}, {high:.3f}] m", f"{margin:+.3f} m")
 
 
-def _carry_check(action: PickPlace, limits: Limits) -> GateCheck:
-    carry = carry_height_m(action, limits)
-    ends = max(action.pick_m[2], action.place_m[2])
+def _carry_check(way: Carry, limits: Limits) -> GateCheck:
+    carry = carry_height_m(way, limits)
+    ends = max(way.start_m[2], way.end_m[2])
     room = float(carry - ends)
     return GateCheck(
         None, "carrying height", room > 0, f"{carry:.3f} m", f"above both ends ({ends:.3f} m)", f"{room:+.3f} m"

@@ -8,9 +8,10 @@ from typing import Any
 import numpy as np
 from shapely import MultiPoint, unary_union
 
-from wonderful_team.core.actions import Action, PickPlace, Push
+from wonderful_team.core.actions import places_of
 from wonderful_team.core.geometry import Box, Camera
 from wonderful_team.core.geometry.arrays import Array
+from wonderful_team.core.motions import Carry, Leave, Slide, Stay
 from wonderful_team.core.values import GateCheck, KeepOut, Limits, PlannedAction
 from wonderful_team.images.keep_out import line, region_m, region_px, table_height_m
 from wonderful_team.runtime.course import Carried
@@ -25,7 +26,6 @@ UNKNOWN_REACH_SHARE = 0.1
 
 
 def keep_out_checks(
-    action: Action,
     sweep: Sweep,
     carried: Carried | None,
     regions: Sequence[KeepOut],
@@ -36,8 +36,7 @@ def keep_out_checks(
     """One check for each region that has a place on the table.
 
     Args:
-        action: What will run.
-        sweep: Its path.
+        sweep: What will run, with its path.
         carried: What is carried or pushed along it; None for the bare tool.
         regions: Where nothing may be.
         camera: Follows regions in pixels down to the table.
@@ -52,28 +51,26 @@ def keep_out_checks(
             if camera is not None or region.unit == "m":
                 checks.append(GateCheck(None, name, False, "meets no table", "a region on the table"))
             continue
-        if action.kind == "home":
+        if isinstance(sweep.motion, Leave):
             checks.append(GateCheck(None, name, False, "the way home is not known", "a way that is known"))
             continue
         if sweep.path_m is None:
             continue
-        gap, margin = _gap(shape, action, sweep, carried, tool_radius_m)
+        gap, margin = _gap(shape, sweep, carried, tool_radius_m)
         value = "enters it" if gap == 0 else f"{gap:.3f} m away"
-        if gap and carried is not None and carried.offsets_m is None and not isinstance(action, Push):
+        if gap and carried is not None and carried.offsets_m is None and not isinstance(sweep.motion, Slide):
             value += f", if what is carried reaches {UNKNOWN_REACH_M:.3f} m: its size is not known"
         limit = f"at least {margin:.3f} m"
         checks.append(GateCheck(None, name, gap > 0.0 and gap >= margin, value, limit, f"{gap - margin:+.3f} m"))
     return checks
 
 
-def _gap(
-    shape: Any, action: Action, sweep: Sweep, carried: Carried | None, tool_radius_m: float
-) -> tuple[float, float]:
+def _gap(shape: Any, sweep: Sweep, carried: Carried | None, tool_radius_m: float) -> tuple[float, float]:
     """How near the tool or its load comes, whichever has less room, and what it must keep [m]."""
     assert sweep.path_m is not None
     ways = [line(sweep.path_m)] + ([line(sweep.transit_m)] if sweep.transit_m is not None else [])
     tool = float(shape.distance(unary_union(ways)))
-    load = _load(action, sweep, carried)
+    load = _load(sweep, carried)
     if load is None:
         return tool, tool_radius_m
     gap = float(shape.distance(load))
@@ -81,31 +78,31 @@ def _gap(
     return (tool, tool_radius_m) if tool - tool_radius_m < gap - least else (gap, least)
 
 
-def _load(action: Action, sweep: Sweep, carried: Carried | None) -> Any | None:
+def _load(sweep: Sweep, carried: Carried | None) -> Any | None:
     """What is carried or pushed covers this from above on the whole way; None without a load."""
     if carried is None:
         return None
     assert sweep.path_m is not None
-    offsets, path = carried.offsets_m, line(sweep.path_m)
+    motion, offsets, path = sweep.motion, carried.offsets_m, line(sweep.path_m)
     if offsets is None or not len(offsets):
-        return None if isinstance(action, Push) else path.buffer(UNKNOWN_REACH_M)
-    if isinstance(action, PickPlace) and action.yaw_rad == 0:
-        return MultiPoint(np.vstack([offsets + action.pick_m[:2], offsets + action.place_m[:2]])).convex_hull
-    if isinstance(action, Push):
-        return _pushed(action, offsets)
+        return None if isinstance(motion, Slide) else path.buffer(UNKNOWN_REACH_M)
+    if isinstance(motion, Carry) and motion.yaw_rad == 0:
+        return MultiPoint(np.vstack([offsets + motion.start_m[:2], offsets + motion.end_m[:2]])).convex_hull
+    if isinstance(motion, Slide):
+        return _pushed(motion, offsets)
     # It turns on the way, and which way round is the robot's own doing.
-    if sweep.transit_m is not None and not isinstance(action, PickPlace):
+    if sweep.transit_m is not None and not isinstance(motion, Carry):
         path = unary_union([path, line(sweep.transit_m)])
     return path.buffer(carried.radius_m)
 
 
-def _pushed(action: Push, offsets: Array) -> Any:
+def _pushed(slide: Slide, offsets: Array) -> Any:
     """What a pushed thing covers: from where it stands to where the tool stops behind it."""
-    way = action.end_m[:2] - action.start_m[:2]
+    way = slide.end_m[:2] - slide.start_m[:2]
     length = float(np.linalg.norm(way))
     along = offsets @ (way / length) if length > 1e-9 else np.zeros(len(offsets))
     shift = way / length * max(0.0, length - float(along.min())) if length > 1e-9 else way
-    corners = offsets + action.start_m[:2]
+    corners = offsets + slide.start_m[:2]
     return MultiPoint(np.vstack([corners, corners + shift])).convex_hull
 
 
@@ -130,7 +127,7 @@ def keep_out_px_checks(
         metres: The action has metres, so that regions in metres were checked there.
     """
     points = np.array(swept_path_px(planned), dtype=np.float64).reshape(-1, 2)
-    carries = planned.step.kind == "pick_place"
+    carries = "pick" in dict(places_of(planned.step))
     checks = []
     for region in regions:
         name = f"keep-out {region.name}"
@@ -156,7 +153,7 @@ def keep_out_px_checks(
 
 
 def _moves(planned: PlannedAction) -> bool:
-    return planned.action is None or planned.action.kind not in ("gripper", "rotate_gripper")
+    return planned.action is None or not isinstance(planned.action.motion(None), Stay)
 
 
 def _swept_px(points: Array, held: Box | None) -> Any:

@@ -8,9 +8,9 @@ import numpy as np
 import shapely
 from shapely import LineString, Point
 
-from wonderful_team.core.actions import Action, MoveTo, PickPlace, Push, Trajectory
 from wonderful_team.core.geometry.arrays import Array
-from wonderful_team.core.values import GateCheck, Limits, PlannedAction, View
+from wonderful_team.core.motions import Carry, Motion, Reach, Slide
+from wonderful_team.core.values import GateCheck, Limits, View
 from wonderful_team.images.relief import Relief, covered, outline
 from wonderful_team.runtime.course import Stage
 from wonderful_team.runtime.sweep import Sweep
@@ -31,16 +31,15 @@ AROUND_SHARE, LEAST_AROUND_M = 0.35, 0.012
 """How far round a place is looked at: share of the thing's reach, and at least [m]."""
 
 
-def height_checks(action: Action, stage: Stage, limits: Limits, measured: bool) -> list[GateCheck]:
+def height_checks(stage: Stage, limits: Limits, measured: bool) -> list[GateCheck]:
     """Whether the heights of what is touched are known, and agree with what is seen there.
 
     Args:
-        action: What will run.
-        stage: The scene before it.
+        stage: What will run, and the scene before it.
         limits: Gives the clearance under which surfaces must be known.
         measured: Refuse heights that no depth shows.
     """
-    points = _touched(action, limits)
+    points = _touched(stage.motion, limits)
     if not points:
         return []
     relief = stage.relief
@@ -68,59 +67,60 @@ def height_checks(action: Action, stage: Stage, limits: Limits, measured: bool) 
     return checks
 
 
-def _touched(action: Action, limits: Limits) -> list[tuple[str, Array]]:
-    match action:
-        case PickPlace():
-            return [("pick", action.pick_m), ("place", action.place_m)]
-        case Push():
-            return [("push_end", action.end_m)]
-        case MoveTo():
-            named = [("waypoint", np.asarray(action.pose.position_m))]
-        case Trajectory():
-            named = [(f"waypoint {k}", point) for k, point in enumerate(action.waypoints_m, start=1)]
-        case _:
-            return []
-    return [(role, point) for role, point in named if point[2] < limits.clearance_m]
+def _touched(motion: Motion, limits: Limits) -> list[tuple[str, Array]]:
+    match motion:
+        case Carry():
+            return [("pick", motion.start_m), ("place", motion.end_m)]
+        case Slide():
+            return [("push_end", motion.end_m)]
+        case Reach(planned=True):
+            several = len(motion.points_m) > 1
+            named = [
+                (f"waypoint {k}" if several else "waypoint", one) for k, one in enumerate(motion.points_m, start=1)
+            ]
+            return [(role, point) for role, point in named if point[2] < limits.clearance_m]
+    return []
 
 
-def place_checks(action: Action, stage: Stage, limits: Limits) -> list[GateCheck]:
+def place_checks(stage: Stage, limits: Limits) -> list[GateCheck]:
     """Whether the place is free, but for what the thing is meant to rest on."""
-    if not isinstance(action, PickPlace) or stage.relief is None:
+    motion = stage.motion
+    if not isinstance(motion, Carry) or stage.relief is None:
         return []
     others = np.ones(len(stage.relief.xyz_m), dtype=bool) if stage.own is None else ~stage.own
     if stage.restored:
         # What was seen beside it there left room for it; what the plan itself put there does not.
         others &= np.isnan(stage.relief.px[:, 0])
     put = stage.put if stage.put is not None else np.zeros(len(others), dtype=bool)
-    place_z_m = float(action.place_m[2])
-    placed = _placed(action, stage)
+    place_z_m = float(motion.end_m[2])
+    placed = _placed(motion, stage)
     checks = free_checks(placed, place_z_m, stage.relief, others, stage.meant, stage.level, limits, put)
     if stage.stated:
         checks += _drop(placed, place_z_m, stage.relief, others if stage.own is None else ~stage.own)
     return checks
 
 
-def still_free_checks(planned: PlannedAction, stage: Stage, view: View, limits: Limits) -> list[GateCheck]:
+def still_free_checks(stage: Stage, view: View, limits: Limits) -> list[GateCheck]:
     """The same for an action that comes later, by the depth of a picture that was taken just before it."""
-    action, relief = planned.action, Relief.of(view)
-    if not isinstance(action, PickPlace) or relief is None or stage.relief is None or stage.restored:
+    motion, relief = stage.motion, Relief.of(view)
+    if not isinstance(motion, Carry) or relief is None or stage.relief is None or stage.restored:
         return []
     others = np.ones(len(relief.xyz_m), dtype=bool)
     if stage.own is not None and stage.own.any():
         others = ~relief.inside(outline(stage.relief.xyz_m[stage.own, :2], 2 * OFF_M))
-    placed, place_z_m = _placed(action, stage), float(action.place_m[2])
+    placed, place_z_m = _placed(motion, stage), float(motion.end_m[2])
     checks = free_checks(placed, place_z_m, relief, others, stage.meant, False, limits)
     return checks + (_drop(placed, place_z_m, relief, others) if stage.stated else [])
 
 
-def _placed(action: PickPlace, stage: Stage) -> Array:
+def _placed(way: Carry, stage: Stage) -> Array:
     """What the thing will cover of the table, as points from above, shape (M, 2) [m]."""
     offsets = stage.carried.offsets_m if stage.carried is not None else None
     if offsets is None:
         angles = np.linspace(0, 2 * np.pi, 12, endpoint=False)
         offsets = 0.01 * np.column_stack([np.cos(angles), np.sin(angles)])
-    c, s = np.cos(action.yaw_rad), np.sin(action.yaw_rad)
-    return np.asarray(offsets @ np.array([[c, s], [-s, c]]) + action.place_m[:2])
+    c, s = np.cos(way.yaw_rad), np.sin(way.yaw_rad)
+    return np.asarray(offsets @ np.array([[c, s], [-s, c]]) + way.end_m[:2])
 
 
 def free_checks(
@@ -198,23 +198,23 @@ def _level(shape: Any, z_m: float, relief: Relief, others: Array, limits: Limits
     ]
 
 
-def way_checks(action: Action, stage: Stage, sweep: Sweep, tool_radius_m: float) -> list[GateCheck]:
+def way_checks(stage: Stage, sweep: Sweep, tool_radius_m: float) -> list[GateCheck]:
     """Whether what is seen is lower than what passes over it."""
     relief, carried = stage.relief, stage.carried
     if relief is None or not len(relief.xyz_m) or sweep.path_m is None:
         return []
     checks = []
-    if sweep.transit_m is not None and action.kind in ("pick_place", "push"):
+    if sweep.transit_m is not None and isinstance(stage.motion, Carry | Slide):
         low = float(sweep.transit_m[:, 2].min())
         checks.append(_over("on the way there", sweep.transit_m, tool_radius_m, low, relief, None))
-    if isinstance(action, PickPlace):
+    if isinstance(stage.motion, Carry):
         over = sweep.path_m[1:3]
         hanging = carried.hanging_m if carried is not None else 0.0
         reach = max(tool_radius_m, carried.radius_m if carried is not None else 0.0)
         checks.append(_over("under the way", over, reach, float(over[:, 2].min()) - hanging, relief, stage.own))
-    elif isinstance(action, Push):
-        checks += _pushed(action, stage, relief, tool_radius_m)
-    elif isinstance(action, MoveTo | Trajectory):
+    elif isinstance(stage.motion, Slide):
+        checks += _pushed(stage.motion, stage, relief, tool_radius_m)
+    elif isinstance(stage.motion, Reach) and stage.motion.planned:
         path = sweep.path_m if sweep.transit_m is None else np.vstack([sweep.transit_m, sweep.path_m])
         checks.append(_along(path, stage, relief, tool_radius_m))
     return checks
@@ -232,20 +232,20 @@ def _over(name: str, path: Array, reach_m: float, low_m: float, relief: Relief, 
     return GateCheck(None, name, room >= 0, value, f"below {low_m - PROUD_M:.3f} m", f"{room:+.3f} m")
 
 
-def _pushed(action: Push, stage: Stage, relief: Relief, tool_radius_m: float) -> list[GateCheck]:
+def _pushed(slide: Slide, stage: Stage, relief: Relief, tool_radius_m: float) -> list[GateCheck]:
     """The tool comes down on free ground, and meets nothing on its way that the plan does not push."""
-    way = action.end_m[:2] - action.start_m[:2]
+    way = slide.end_m[:2] - slide.start_m[:2]
     length = float(np.linalg.norm(way))
     if length < 1e-6:
         return []
-    lands = relief.near(action.start_m[:2] - way / length * tool_radius_m, tool_radius_m)
+    lands = relief.near(slide.start_m[:2] - way / length * tool_radius_m, tool_radius_m)
     if stage.own is not None:
         lands &= ~stage.own
     heights = np.sort(relief.xyz_m[lands, 2])[::-1]
-    top = float(heights[LEAST_SPECKS]) if len(heights) > LEAST_SPECKS else float(action.start_m[2])
-    room = float(action.start_m[2]) + PUSHED_M - top
+    top = float(heights[LEAST_SPECKS]) if len(heights) > LEAST_SPECKS else float(slide.start_m[2])
+    room = float(slide.start_m[2]) + PUSHED_M - top
     value = f"{top:.3f} m is the highest there"
-    limit = f"at most {float(action.start_m[2]) + PUSHED_M:.3f} m"
+    limit = f"at most {float(slide.start_m[2]) + PUSHED_M:.3f} m"
     return [GateCheck(None, "push starts on free ground", room >= 0, value, limit, f"{room:+.3f} m")]
 
 

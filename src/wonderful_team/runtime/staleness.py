@@ -8,9 +8,10 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
-from wonderful_team.core.actions import PickPlace, Push, places_of
+from wonderful_team.core.actions import places_of
 from wonderful_team.core.geometry import Box
 from wonderful_team.core.geometry.arrays import Array
+from wonderful_team.core.motions import Carry, Motion, Slide
 from wonderful_team.core.pictures import Point
 from wonderful_team.core.values import GateCheck, Observation, Plan, PlannedAction, View
 from wonderful_team.images import CHANGED, region_change
@@ -53,18 +54,23 @@ def points_px(planned: PlannedAction, view: View) -> tuple[tuple[str, Point], ..
     """Points of an action as (role, pixel of the main view); projected when no sources name them."""
     if planned.sources or view.camera is None:
         return tuple((source.role, source.point_px) for source in planned.sources)
-    match planned.action:
-        case PickPlace() as action:
-            named = (("pick", action.pick_m), ("place", action.place_m))
-        case Push() as action:
-            named = (("push_start", action.start_m), ("push_end", action.end_m))
-        case _:
-            return ()
+    if planned.action is None or not _touches(planned):
+        return ()
+    named = planned.action.points()
     try:
         pixels = view.camera.project(np.array([point_m for _, point_m in named]))
     except ValueError:
         return ()  # behind the camera: outside the picture, so there is nothing to watch
     return tuple((role, (float(x), float(y))) for (role, _), (x, y) in zip(named, pixels, strict=True))
+
+
+def _motion(planned: PlannedAction) -> Motion | None:
+    return None if planned.action is None else planned.action.motion(None)
+
+
+def _touches(planned: PlannedAction) -> bool:
+    """Whether an action is there to move something in the picture."""
+    return isinstance(_motion(planned), Carry | Slide)
 
 
 def watched(actions: Sequence[PlannedAction], plan: Plan | None, view: View, first: int = 0) -> tuple[Region, ...]:
@@ -76,9 +82,9 @@ def watched(actions: Sequence[PlannedAction], plan: Plan | None, view: View, fir
     found: list[Region] = []
     for index, planned in enumerate(actions, start=first):
         regions = [_region(role, point, planned, plan, view, index) for role, point in points_px(planned, view)]
-        if not regions and isinstance(planned.action, PickPlace | Push):
+        if not regions and _touches(planned):
             regions = [Region("whole picture", whole, index)]
-        if isinstance(planned.action, Push) and len(regions) == 2 and regions[0].box.intersection(whole) is None:
+        if isinstance(_motion(planned), Slide) and len(regions) == 2 and regions[0].box.intersection(whole) is None:
             # A tool may come down just outside of the picture: what shows of its way is watched.
             ends = (*regions[0].box.corners, *regions[1].box.corners)
             regions[0] = Region(regions[0].name, Box.bounding(ends), index)
@@ -104,10 +110,10 @@ def touched(planned: PlannedAction, plan: Plan | None, before: View, after: View
     """
     points = points_px(planned, before)
     held = _held_box(planned, plan)
-    match planned.action:
-        case PickPlace():
+    match _motion(planned):
+        case Carry():
             return tuple(_window(point, held, before).scaled(1.6) for _, point in points)
-        case Push():
+        case Slide():
             ends = [_window(point, held, before).scaled(1.6) for _, point in points]
             return (Box.bounding([corner for box in ends for corner in box.corners]),) if ends else ()
         case _:

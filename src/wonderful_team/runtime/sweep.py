@@ -6,15 +6,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from wonderful_team.core.actions import Action, EndEffectorDelta, MoveTo, Navigate, PickPlace, Push, Trajectory
+from wonderful_team.core.actions import Action
 from wonderful_team.core.geometry.arrays import Array
+from wonderful_team.core.motions import Carry, Drive, Leave, Lost, Motion, Reach, Slide, Stay
 from wonderful_team.core.pictures import Point
 from wonderful_team.core.values import Limits, PlannedAction
 
 
-def carry_height_m(action: PickPlace, limits: Limits) -> float:
+def carry_height_m(way: Carry, limits: Limits) -> float:
     """Height at which a picked object travels [m]: the world's clearance, or higher where an end lies higher."""
-    return float(max(limits.clearance_m, action.pick_m[2], action.place_m[2]))
+    return float(max(limits.clearance_m, way.start_m[2], way.end_m[2]))
 
 
 @dataclass(frozen=True, eq=False)
@@ -22,12 +23,14 @@ class Sweep:
     """The path of the tool in one action; straight in between.
 
     Attributes:
+        motion: What the action does to the scene.
         path_m: Corners of what the action asks for, shape (N, 3) [m], N >= 1; None for an action that does not move the
             tool, or whose path the world alone knows.
         transit_m: The way from where the tool stands to the first of them, shape (2, 3) [m]; None when that is unknown.
         after_m: Where the tool stands afterwards, shape (3,) [m]; None when only the world knows.
     """
 
+    motion: Motion
     path_m: Array | None
     transit_m: Array | None
     after_m: Array | None
@@ -41,34 +44,25 @@ def sweep_of(action: Action, limits: Limits, tool_m: Array | None) -> Sweep:
         limits: Gives the clearance at which things are carried.
         tool_m: Where the tool stands before, shape (3,), or None when unknown.
     """
-    match action:
-        case PickPlace():
-            carry = carry_height_m(action, limits)
-            lifted, over = action.pick_m.copy(), action.place_m.copy()
-            lifted[2] = over[2] = carry
-            path = np.array([action.pick_m, lifted, over, action.place_m])
-            return Sweep(path, _high(tool_m, lifted), over)
-        case Push():
-            over = np.array([*action.end_m[:2], max(limits.clearance_m, action.end_m[2])])
-            above = np.array([*action.start_m[:2], max(limits.clearance_m, action.start_m[2])])
-            return Sweep(np.array([action.start_m, action.end_m]), _high(tool_m, above), over)
-        case MoveTo():
-            return _straight(tool_m, action.pose.position_m[None])
-        case Trajectory():
-            return _straight(tool_m, action.waypoints_m)
-        case Navigate():
-            if len(action.path_m) == 0:
-                return Sweep(None, None, tool_m)
-            return Sweep(np.column_stack([action.path_m, np.zeros(len(action.path_m))]), None, tool_m)
-        case EndEffectorDelta():
-            if tool_m is None:
-                return Sweep(None, None, None)
-            return _straight(tool_m, (tool_m + action.v7[:3])[None])
-    return Sweep(None, None, None if action.kind == "home" else tool_m)
-
-
-def _straight(tool_m: Array | None, points_m: Array) -> Sweep:
-    return Sweep(points_m, None if tool_m is None else np.array([tool_m, points_m[0]]), np.asarray(points_m[-1]))
+    motion = action.motion(tool_m)
+    match motion:
+        case Carry(start_m=start, end_m=end):
+            lifted, over = start.copy(), end.copy()
+            lifted[2] = over[2] = carry_height_m(motion, limits)
+            return Sweep(motion, np.array([start, lifted, over, end]), _high(tool_m, lifted), over)
+        case Slide(start_m=start, end_m=end):
+            over = np.array([*end[:2], max(limits.clearance_m, end[2])])
+            above = np.array([*start[:2], max(limits.clearance_m, start[2])])
+            return Sweep(motion, np.array([start, end]), _high(tool_m, above), over)
+        case Reach(points_m=points):
+            transit = None if tool_m is None else np.array([tool_m, points[0]])
+            return Sweep(motion, points, transit, np.asarray(points[-1]))
+        case Drive(path_m=path) if len(path):
+            return Sweep(motion, np.column_stack([path, np.zeros(len(path))]), None, tool_m)
+        case Drive() | Stay():
+            return Sweep(motion, None, None, tool_m)
+        case Leave() | Lost():
+            return Sweep(motion, None, None, None)
 
 
 def _high(tool_m: Array | None, above_m: Array) -> Array | None:

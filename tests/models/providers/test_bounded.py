@@ -24,6 +24,7 @@ from wonderful_team.models.client import ModelClient
 from wonderful_team.models.providers import make_provider
 from wonderful_team.models.providers.bounded import FACTS_BYTES, ReplyTooLargeError, fetch_json, limit_replies
 from wonderful_team.models.providers.listing import server_models
+from wonderful_team.models.providers.vendors import VENDORS
 from wonderful_team.models.wire import encodable, read_json
 
 Send = Callable[[socket.socket], None]
@@ -140,7 +141,7 @@ def test_a_list_of_models_has_a_deadline_in_all(send: Send) -> None:
 @pytest.mark.parametrize("send", [endless, drip])
 def test_facts_of_a_server_that_cannot_be_read_are_unknown(send: Send) -> None:
     with answering(send) as url:
-        assert context_length("openai-chat", url, "m", None, timeout_s=0.3) is None
+        assert context_length(VENDORS["openai-chat"], url, "m", None, timeout_s=0.3) is None
 
 
 def test_a_deep_list_of_models_is_no_list() -> None:

@@ -6,7 +6,8 @@ import pytest
 
 from wonderful_team.errors import ConfigError, LocalOnlyError, ModelAuthError
 from wonderful_team.models.providers import SERVER_KEY, is_provider_spec, make_provider, parse_spec
-from wonderful_team.models.providers.specs import VENDORS, find_key, require_local
+from wonderful_team.models.providers.specs import find_key, require_local
+from wonderful_team.models.providers.vendors import VENDORS
 
 
 @pytest.mark.parametrize(
@@ -27,7 +28,7 @@ from wonderful_team.models.providers.specs import VENDORS, find_key, require_loc
 def test_names_are_taken_apart(text: str, api: str, model: str, url: str, official: bool) -> None:
     spec = parse_spec(text)
     assert is_provider_spec(text)
-    assert (spec.api, spec.model, spec.base_url, spec.official) == (api, model, url, official)
+    assert (spec.service.api, spec.model, spec.base_url, spec.official) == (api, model, url, official)
 
 
 @pytest.mark.parametrize(

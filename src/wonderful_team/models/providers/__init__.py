@@ -5,7 +5,8 @@ from wonderful_team.models.providers.make import make_provider
 from wonderful_team.models.providers.options import ModelOptions, PriceChoice, check_prices, model_options
 from wonderful_team.models.providers.provider import Provider
 from wonderful_team.models.providers.settings import Thinking
-from wonderful_team.models.providers.specs import SERVER_KEY, VENDORS, is_provider_spec, parse_spec
+from wonderful_team.models.providers.specs import is_provider_spec, parse_spec
+from wonderful_team.models.providers.vendors import SERVER_KEY, VENDORS
 
 __all__ = [
     "SERVER_KEY",

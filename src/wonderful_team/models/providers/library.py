@@ -1,4 +1,4 @@
-"""The one file that touches the client library: it builds its models and messages, and nothing else imports it early.
+"""The one file that asks through the client library; the models that it asks are built in `vendors`. Nothing imports it early.
 
 Only `pydantic_ai.models.*.request` is used: no agent, no tools, no retries of its own, so every word that goes out is ours.
 """
@@ -21,11 +21,6 @@ if TYPE_CHECKING:
     from pydantic_ai.models import Model as LibraryModel
 
 LIBRARY = "pydantic-ai-slim"
-_MODULES = {
-    "anthropic": "pydantic_ai.models.anthropic",
-    "google": "pydantic_ai.models.google",
-    "openrouter": "pydantic_ai.models.openrouter",
-}
 NO_KEY = "none"
 """Sent to servers that ask for no key: the clients insist on some word."""
 
@@ -42,14 +37,14 @@ def library_version() -> str:
         raise MissingExtraError("models of vendors and servers", "vendors") from error
 
 
-def preload(api: str, text: str) -> None:
+def preload(module: str, text: str) -> None:
     """Import what a service needs, now: it takes seconds, which no request's deadline should pay for.
 
     Raises:
         MissingExtraError: It is not installed.
     """
     try:
-        for name in ("httpx2", "pydantic_ai.direct", _MODULES.get(api, "pydantic_ai.models.openai")):
+        for name in ("httpx2", "pydantic_ai.direct", module):
             importlib.import_module(name)
     except ImportError as error:
         raise MissingExtraError(f"model {text!r}", "vendors") from error
@@ -73,89 +68,9 @@ def build_model(spec: Spec, model: str, key: str | None, client: httpx2.AsyncCli
         MissingExtraError: A vendor's client is not installed.
     """
     try:
-        return _BUILDERS[spec.api](spec, model, key or NO_KEY, client)
+        return spec.service.build(spec.base_url, model, key or NO_KEY, client)
     except ImportError as error:
         raise MissingExtraError(f"model {spec.text!r}", "vendors") from error
-
-
-def _openai_client(spec: Spec, key: str, client: httpx2.AsyncClient) -> Any:
-    from openai import AsyncOpenAI
-
-    return AsyncOpenAI(base_url=spec.base_url, api_key=key, http_client=client, max_retries=0)
-
-
-def _chat(spec: Spec, model: str, key: str, client: httpx2.AsyncClient) -> LibraryModel:
-    from pydantic_ai.models.openai import OpenAIChatModel
-    from pydantic_ai.providers.openai import OpenAIProvider
-
-    return OpenAIChatModel(model, provider=OpenAIProvider(openai_client=_openai_client(spec, key, client)))
-
-
-def _responses(spec: Spec, model: str, key: str, client: httpx2.AsyncClient) -> LibraryModel:
-    from pydantic_ai.models.openai import OpenAIResponsesModel
-    from pydantic_ai.providers.openai import OpenAIProvider
-
-    return OpenAIResponsesModel(model, provider=OpenAIProvider(openai_client=_openai_client(spec, key, client)))
-
-
-def _server(spec: Spec, model: str, key: str, client: httpx2.AsyncClient) -> LibraryModel:
-    from pydantic_ai.models.openai import OpenAIChatModel
-    from pydantic_ai.profiles.openai import OpenAIJsonSchemaTransformer, OpenAIModelProfile
-    from pydantic_ai.providers.openai_compatible import OpenAICompatibleProvider
-
-    # A served name says nothing about the server, so the library's guesses by name are replaced by the plain protocol.
-    profile = OpenAIModelProfile(
-        json_schema_transformer=OpenAIJsonSchemaTransformer,
-        supports_json_schema_output=True,
-        supports_json_object_output=True,
-        native_output_requires_schema_in_instructions=False,
-        openai_chat_supports_max_completion_tokens=False,
-        openai_supports_strict_tool_definition=False,
-    )
-    provider = OpenAICompatibleProvider(
-        "server", openai_client=_openai_client(spec, key, client), profile=lambda _: profile
-    )
-    return OpenAIChatModel(model, provider=provider)
-
-
-def _openrouter(spec: Spec, model: str, key: str, client: httpx2.AsyncClient) -> LibraryModel:
-    from pydantic_ai.models.openrouter import OpenRouterModel
-    from pydantic_ai.providers.openrouter import OpenRouterProvider
-
-    class Lenient(OpenRouterModel):
-        """The library insists on the name of who ran the model; gateways that speak the format may leave it out."""
-
-        def _validate_completion(self, response: Any) -> Any:
-            response.provider = getattr(response, "provider", None) or "unknown"
-            return super()._validate_completion(response)
-
-    return Lenient(model, provider=OpenRouterProvider(openai_client=_openai_client(spec, key, client)))
-
-
-def _anthropic(spec: Spec, model: str, key: str, client: httpx2.AsyncClient) -> LibraryModel:
-    from anthropic import AsyncAnthropic
-    from pydantic_ai.models.anthropic import AnthropicModel
-    from pydantic_ai.providers.anthropic import AnthropicProvider
-
-    sdk = AsyncAnthropic(base_url=spec.base_url, api_key=key, http_client=client, max_retries=0)
-    return AnthropicModel(model, provider=AnthropicProvider(anthropic_client=sdk))
-
-
-def _google(spec: Spec, model: str, key: str, client: httpx2.AsyncClient) -> LibraryModel:
-    from pydantic_ai.models.google import GoogleModel
-    from pydantic_ai.providers.google import GoogleProvider
-
-    return GoogleModel(model, provider=GoogleProvider(api_key=key, base_url=spec.base_url, http_client=client))
-
-
-_BUILDERS = {
-    "openai-chat": _chat,
-    "openai-responses": _responses,
-    "server": _server,
-    "openrouter": _openrouter,
-    "anthropic": _anthropic,
-    "google": _google,
-}
 
 
 def messages_of(composed: Composed, turns: Sequence[tuple[str, str]]) -> list[ModelMessage]:

@@ -13,7 +13,7 @@ from wonderful_team.models.providers import library
 from wonderful_team.models.providers.listing import only_model, server_models
 from wonderful_team.models.providers.provider import Provider
 from wonderful_team.models.providers.settings import FIRST_WAIT_S, MAX_TOKENS, SERVER_MAX_TOKENS, Settings, Thinking
-from wonderful_team.models.providers.specs import VENDORS, Spec, find_key, parse_spec, require_local
+from wonderful_team.models.providers.specs import Spec, find_key, parse_spec, require_local
 
 if TYPE_CHECKING:
     from wonderful_team.models.profiles import Profile
@@ -36,8 +36,7 @@ def make_provider(
     """A provider for a vendor's model or a server. Nothing is sent, except that a server without #NAME is asked for its models.
 
     Args:
-        spec: openai:NAME, openai-chat:NAME, anthropic:NAME, google:NAME, openrouter:NAME (each also NAME@URL), or
-            http://host:8000/v1[#NAME].
+        spec: VENDOR:NAME such as openai:NAME (also VENDOR:NAME@URL), or http://host:8000/v1[#NAME].
         profile: What `probe` measured; it takes the place of what the name suggests.
         thinking: off, low, medium or high; None leaves the service's default.
         max_tokens: Most tokens of one answer, thinking included.
@@ -61,7 +60,7 @@ def make_provider(
     if local_only:
         require_local(parsed)
     key = find_key(parsed, api_key)
-    library.preload(parsed.api, spec)
+    library.preload(parsed.service.module, spec)
     model = parsed.model or only_model(
         parsed.base_url, server_models(parsed.base_url, key, timeout_s=min(10.0, deadline_s), local_only=local_only)
     )
@@ -104,6 +103,6 @@ def _prices(spec: Spec, model: str, given: GivenPrice | None, profile: Profile |
         return given
     if profile is not None and profile.usd_in is not None and profile.usd_out is not None:
         return GivenPrice(profile.usd_in, profile.usd_out)
-    if spec.official and spec.vendor is not None:
-        return TablePrice(VENDORS[spec.vendor].price_id, model)
+    if spec.official:
+        return TablePrice(spec.service.price_id, model)
     return Unpriced()

@@ -27,10 +27,12 @@ from wonderful_team.models.budget import Ticket, current_ticket
 from wonderful_team.models.conventions import Convention
 from wonderful_team.models.prices import Prices
 from wonderful_team.models.providers import library
-from wonderful_team.models.providers.faults import Fault, fault_of, scrubbed
+from wonderful_team.models.providers.faults import Fault, fault_of
 from wonderful_team.models.providers.settings import LONGEST_WAIT_S, Settings
-from wonderful_team.models.providers.specs import SERVER_KEY, VENDORS, Spec
+from wonderful_team.models.providers.specs import Spec
+from wonderful_team.models.providers.vendors import SERVER_KEY
 from wonderful_team.models.wire import Composed, Reading, Unreadable, compose, encodable, ticks_of
+from wonderful_team.redaction import keep_secret, redact, redact_known
 
 if TYPE_CHECKING:
     from pydantic_ai.messages import ModelResponse
@@ -75,6 +77,7 @@ class Provider:
     )
 
     def __post_init__(self) -> None:
+        keep_secret(self.key)
         self._learned = _Learned(self.settings.schemas, self.settings.max_pictures)
 
     @property
@@ -87,7 +90,7 @@ class Provider:
         """What decides the answer beside the request: for cache keys and records."""
         return {
             "model": self.model,
-            "api": self.spec.api,
+            "api": self.spec.service.api,
             "server": self.spec.base_url,
             "thinking": self.settings.thinking,
             "max_tokens": self.settings.max_tokens,
@@ -175,7 +178,7 @@ class Provider:
         self, request: Request, composed: Composed, ticket: Ticket, left_s: float
     ) -> tuple[ModelResponse, int] | Fault:
         """One HTTP request: the library's reply with the limit of tokens it had, or what went wrong."""
-        keys = VENDORS[self.spec.vendor].keys if self.spec.official and self.spec.vendor else (SERVER_KEY,)
+        keys = self.spec.service.keys if self.spec.official else (SERVER_KEY,)
         limit = self.settings.max_tokens if ticket.max_out is None else min(self.settings.max_tokens, ticket.max_out)
         # A hang must leave time for another try.
         longest = max(0.001, min(left_s, self.settings.deadline_s / 2 if self.settings.tries > 1 else left_s))
@@ -199,25 +202,11 @@ class Provider:
         except WonderfulTeamError:
             raise
         except Exception as error:  # noqa: BLE001  every fault of the library or the wire is sorted
-            return fault_of(error, self.name, self.spec.base_url, self.key, " or ".join(keys))
+            return fault_of(error, self.name, self.spec.base_url, " or ".join(keys))
 
     def _settings(self, max_tokens: int) -> dict[str, Any]:
-        settings: dict[str, Any] = {"max_tokens": max_tokens, "max_retries": 0}
-        thinking = self.settings.thinking
-        if self.spec.api == "google":
-            # Google's client takes no such setting; it does not try again by itself.
-            settings.pop("max_retries")
-        if self.spec.api == "openai-responses":
-            settings["openai_store"] = False
-        if thinking is not None and self.spec.vendor is None:
-            # Servers have no common switch: this is the one of vLLM, SGLang and llama.cpp for models that think.
-            body: dict[str, Any] = {"chat_template_kwargs": {"enable_thinking": thinking != "off"}}
-            if thinking != "off":
-                body["reasoning_effort"] = thinking
-            settings["extra_body"] = body
-        elif thinking is not None:
-            settings["thinking"] = False if thinking == "off" else thinking
-        return settings
+        thinking, service = self.settings.thinking, self.spec.service
+        return {"max_tokens": max_tokens, **service.settings, **({} if thinking is None else service.think(thinking))}
 
     def _complaint(self, request: Request, composed: Composed) -> str:
         """What was wrong with the last answer, in a further turn."""
@@ -269,7 +258,7 @@ class Provider:
         response, limit = reply
         said = "".join(part.content for part in response.parts if isinstance(part, TextPart))
         thought = "".join(part.content for part in response.parts if isinstance(part, ThinkingPart))
-        said, thought = (encodable(scrubbed_key(text, self.key)) for text in (said, thought))
+        said, thought = (encodable(redact_known(text)) for text in (said, thought))
         usage = self._usage(request, response, said, thought, tries)
         ticket.answered = usage
         details = response.provider_details or {}
@@ -297,7 +286,7 @@ class Provider:
     def _declined(self, request: Request, details: Mapping[str, Any], said: str) -> WonderfulTeamError:
         why = str(details.get("refusal") or "")
         reason = str(details.get("finish_reason") or "")
-        text = scrubbed(why or said, self.key)[:200]
+        text = redact(why or said)[:200]
         if why or "refusal" in reason:
             return ModelRefusalError(f"{self.name} refused to answer {request.contract}: {text}", stage=request.stage)
         kind = reason or "content_filter"
@@ -339,11 +328,6 @@ class Provider:
             out = round(len(said) / CHARACTERS_PER_TOKEN)
             usage = Usage(tries, reckoned.tokens_in, tokens_out=out, pictures=len(request.pictures))
         return replace(usage, usd=self.prices.usd(usage))
-
-
-def scrubbed_key(text: str, key: str | None) -> str:
-    """What a model said, without the key (a server may echo it)."""
-    return text.replace(key, "[key]") if key and len(key) > 3 else text
 
 
 async def _keep_open(client: Any) -> AsyncGenerator[None]:

@@ -7,43 +7,16 @@ import os
 import socket
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Literal, TypeAlias
 from urllib.parse import urlsplit, urlunsplit
 
 from wonderful_team.errors import ConfigError, LocalOnlyError, ModelAuthError
-
-Api: TypeAlias = Literal["openai-chat", "openai-responses", "anthropic", "google", "openrouter", "server"]
-
-SERVER_KEY = "WONDERFUL_TEAM_SERVER_KEY"
-"""Environment variable with the key for servers named by their address."""
+from wonderful_team.models.providers.vendors import SERVER, SERVER_KEY, VENDORS, Vendor
+from wonderful_team.redaction import keep_secret
 
 _PRIVATE = tuple(
     ipaddress.ip_network(text)
     for text in ("10.0.0.0/8", "172.16.0.0/12", "192.168.0.0/16", "169.254.0.0/16", "fc00::/7", "fe80::/10")
 )
-
-
-@dataclass(frozen=True)
-class Vendor:
-    """A maker's own service: which format it speaks, where it is, and which variables may hold its key."""
-
-    api: Api
-    base_url: str
-    keys: tuple[str, ...]
-    price_id: str
-
-
-_OPENAI = ("https://api.openai.com/v1", ("OPENAI_API_KEY",), "openai")
-VENDORS: dict[str, Vendor] = {
-    "openai": Vendor("openai-responses", *_OPENAI),
-    "openai-responses": Vendor("openai-responses", *_OPENAI),
-    "openai-chat": Vendor("openai-chat", *_OPENAI),
-    "anthropic": Vendor("anthropic", "https://api.anthropic.com", ("ANTHROPIC_API_KEY",), "anthropic"),
-    "google": Vendor(
-        "google", "https://generativelanguage.googleapis.com", ("GOOGLE_API_KEY", "GEMINI_API_KEY"), "google"
-    ),
-    "openrouter": Vendor("openrouter", "https://openrouter.ai/api/v1", ("OPENROUTER_API_KEY",), "openrouter"),
-}
 
 
 @dataclass(frozen=True)
@@ -58,11 +31,15 @@ class Spec:
     """
 
     text: str
-    api: Api
     vendor: str | None
     model: str
     base_url: str
     official: bool
+
+    @property
+    def service(self) -> Vendor:
+        """What speaks at the address: the vendor's format, or that of servers."""
+        return SERVER if self.vendor is None else VENDORS[self.vendor]
 
 
 def is_provider_spec(text: str) -> bool:
@@ -83,7 +60,7 @@ def parse_spec(text: str, base_url: str | None = None) -> Spec:
     head, _, rest = text.partition(":")
     if head.lower() in ("http", "https"):
         address, _, model = text.partition("#")
-        return Spec(text, "server", None, model, checked_url(address), False)
+        return Spec(text, None, model, checked_url(address), False)
     vendor = VENDORS.get(head.lower())
     if vendor is None:
         raise ConfigError(
@@ -95,9 +72,9 @@ def parse_spec(text: str, base_url: str | None = None) -> Spec:
     if not name:
         raise ConfigError(f"model {text!r}: the model's name is missing, as in {head}:NAME")
     if base_url is None:
-        return Spec(text, vendor.api, head.lower(), name, vendor.base_url, True)
+        return Spec(text, head.lower(), name, vendor.base_url, True)
     url = checked_url(base_url)
-    return Spec(text, vendor.api, head.lower(), name, url, url == vendor.base_url)
+    return Spec(text, head.lower(), name, url, url == vendor.base_url)
 
 
 def checked_url(address: str) -> str:
@@ -128,14 +105,10 @@ def find_key(spec: Spec, given: str | None, environment: Mapping[str, str] | Non
         ModelAuthError: A vendor needs a key and none is set; names the variable.
     """
     held = os.environ if environment is None else environment
-    if given:
-        return given
-    if not spec.official:
-        return held.get(SERVER_KEY) or None
-    assert spec.vendor is not None
-    names = VENDORS[spec.vendor].keys
-    key = next((held[name] for name in names if held.get(name)), None)
-    if key is None:
+    names = spec.service.keys if spec.official else (SERVER_KEY,)
+    key = given or next((held[name] for name in names if held.get(name)), None)
+    keep_secret(key)
+    if key is None and spec.official:
         raise ModelAuthError(f"model {spec.text!r} needs a key: set the environment variable {' or '.join(names)}")
     return key
 

@@ -49,7 +49,11 @@ def derive(understood: Understood, eyes: Eyes, *, strict: bool = True, literal: 
     stay = _staying(understood, eyes, result)
     for command in understood.commands:
         first = len(result.aims)
-        for aim in _of_command(command, eyes, result, strict):
+        aims = _of_command(command, eyes, result, strict)
+        kept = command.off or command.limit
+        if kept is not None and aims and not any(aim.off or aim.limit for aim in aims):
+            result.absent.append(f"no way is known there that keeps off the {kept.text}")
+        for aim in aims:
             if aim.thing.number in stay:
                 result.notes.append(f"{aim.thing.words} stays where it is, as asked")
                 continue
@@ -203,6 +207,9 @@ def _one(
     matches = as_pictured(single, matches, eyes)
     if holds is not None and single.noun in HOLDERS:
         matches = [m for m in matches if m.thing is None or m.thing.area_px > LARGER * holds.area_px]
+    compared = replace(single, superlative=None, ordinal=1)
+    if matches and len(fits := eyes.find(compared)) < description.number:
+        result.absent.append(f"{description.number} are spoken of, but only {len(fits)} fit '{render(compared)}'")
     equal = _equal(single, matches)
     if len(equal) > 1:
         equal = _by_size(equal, holds, fits_in) or equal

@@ -36,18 +36,25 @@ _KEEP = r"(?:(?:stay|keep|steer|remain)(?:ing)?\s+(?:well\s+)?(?:clear|away|off)
 _SHORT = (
     r"(?:stay|stop|keep|remain)(?:s|p?ing)?\s+(?:short\s+of|before|behind|in\s+front\s+of|on\s+this\s+side\s+of|within)"
 )
+_FORBIDDEN = (
+    r"\s+(?:is|are)\s+(?:(?:not|never)\s+(?:allowed|permitted|ok|okay|acceptable)|forbidden|prohibited|off\s+limits)"
+)
+_CLEAR_OF = (rf"{_LEAD}{_KEEP}{_WHAT}",)
+"""What is said of a way along the table: whatever is asked for with it is a push."""
 _OFF = (
     rf"{_LEAD}{_NEG}\s+{_TOUCH}{_WHAT}",
+    rf"{_LEAD}{_TOUCH}\s+{_X}{_FORBIDDEN}",
+    *_CLEAR_OF,
+    rf"{_LEAD}(?:(?:go|mov|steer|pass)(?:e|ing)?\s+|(?:taking|take)\s+(?:a\s+)?(?:way|path|route)\s+)?(?<!the )(?<!a )(?:a)?round{_WHAT}",
     rf"{_LEAD}{_X}{_BE}(?:touched|hit|bumped\s+into|contacted|moved|disturbed)",
     rf"{_LEAD}{_X}{_MUST_STAY}",
-    rf"{_LEAD}{_KEEP}{_WHAT}",
-    rf"{_LEAD}(?:(?:go|mov|steer|pass)(?:e|ing)?\s+|(?:taking|take)\s+(?:a\s+)?(?:way|path|route)\s+)?(?:a)?round{_WHAT}",
     rf"{_LEAD}(?:leave|leaving|keep|keeping)\s+{_X}\s+(?:untouched|alone)",
 )
 _LIMIT = (
     rf"{_LEAD}{_NEG}\s+{_EXCEED}{_WHAT}",
     rf"{_LEAD}{_X}{_BE}(?:exceeded|crossed|passed|overstepped|surpassed)",
     rf"{_LEAD}{_X}\s+(?:is|marks)\s+(?:the|our|your)\s+(?:limit|border|boundary|end|line)",
+    rf"{_LEAD}{_EXCEED}\s+{_X}{_FORBIDDEN}",
     rf"{_LEAD}{_SHORT}{_WHAT}",
 )
 _AGAIN = rf"{_LEAD}{_NEG}\s+(?:{_TOUCH}|{_EXCEED})\s+(?:it|that|this)\b"
@@ -55,7 +62,6 @@ _SINGLE = re.compile(
     rf"\b(?P<verb>{_PUSH})\s+(?:exactly\s+|just\s+|only\s+)?(?:any|one|a\s+single|1)\s+(?!of\b|by\b|and\b|into\b)",
     re.IGNORECASE,
 )
-_COUNTED = re.compile(rf"\b(?P<verb>{_PUSH})\s+(?:exactly|just|only)\s+", re.IGNORECASE)
 
 
 @dataclass(frozen=True)
@@ -78,15 +84,15 @@ def set_bounds(text: str, describe: Callable[[str], Description | None]) -> Boun
     """Part an instruction to push from what must be kept off; any other text comes back as it is."""
     pushes = re.search(rf"\b{_PUSH}\b|\b{_TOOL}", text, re.IGNORECASE) is not None
     plain, limit = _taken(text, _LIMIT, describe)
-    if not pushes and limit is None:
+    text_without, off = _taken(plain, _OFF if pushes or limit is not None else _CLEAR_OF, describe)
+    if not pushes and limit is None and off is None:
         return Bounds(text)
-    text, off = _taken(plain, _OFF, describe)
+    text = text_without
     if limit is not None or off is not None:
         text = re.sub(_AGAIN, " ", text, flags=re.IGNORECASE)
     text = _plainly(text)
     # "any block" asks for one of them, and it is free which.
     text = _SINGLE.sub(lambda found: f"{found.group('verb')} one of the ", text)
-    text = _COUNTED.sub(lambda found: f"{found.group('verb')} ", text)
     return Bounds(text, off, limit, pushes=True)
 
 
@@ -97,15 +103,11 @@ def _plainly(text: str) -> str:
     return text
 
 
-_COUNT = r"(?:any|one|a\s+single|1)"
 _PLAIN = (
     (rf"\b{_TOOL}\b\s*,?", " "),
     (rf"\bby\s+{_PUSH}(?:\s+(?:it|them))?\b", " "),
     (rf"[;,.]\s*(?:and\s+)?{_PUSH}\s+(?:it|them)\s*(?=[.,;!]|$)", " "),
     (rf"^\s*[,;:.]?\s*(?:while|when|as)\s+(?:you\s+)?(?=(?:are\s+)?{_PUSH})", " "),
-    (r"\b(?:exactly|just|only|precisely)\s+(?=(?:any|one|two|three|four|five|a|\d)\b)", ""),
-    (rf"\b{_COUNT}\s+(?:(?:piece|item|object)\s+)?(?:of\s+)?(?:(?:the|these|those|this)\s+)*(?=\{{)", "one of the "),
-    (r"\b(?P<n>two|three|four|five|all|both)\s+(?:of\s+)?(?:the|these|those|this)\s+(?=\{)", r"\g<n> "),
     (r"\b(?P<verb>[a-z]+)\s+(?:the\s+)?(?P<what>\{[^{}]+\})(?P<rest>[^.;]*?),\s*all\s+of\s+them\b", r"\g<verb> all \g<what>\g<rest>"),
 )  # fmt: skip
 

@@ -35,7 +35,9 @@ def thing_of(tree: Tree[Token]) -> Description:
     some = {token.type for adj in trees(tree, "adj") for token in tokens_in(adj)} & {"OF_TWO", "OF", "ONE_OF"}
     both_of_a_list = description.number > 1 and not any(_is_many(head) for head in trees(tree, "head"))
     if description.quantity == "all" and (both_of_a_list or some):
-        description = replace(description, quantity="one", number=1)
+        description = replace(
+            description, quantity="one", number=1 if both_of_a_list and not some else description.number
+        )
     return replace(description, text=render(description))
 
 
@@ -73,7 +75,7 @@ def related_of(tree: Tree[Token]) -> Related:
 
 def _quantity(tree: Tree[Token]) -> Change:
     kinds = {token.type: token for token in tokens_in(tree)}
-    if "ONE_OF" in kinds and "NUMBER" not in kinds:
+    if "ONE_OF" in kinds:
         # Any of several will do.
         return lambda d: replace(d, quantity="each" if "EACH" in kinds else "number", number=1)
     if "NUMBER" in kinds:
@@ -142,14 +144,8 @@ def _adj(tree: Tree[Token]) -> Change:
     return change
 
 
-_FIELDS: dict[str, str] = {
-    "PATTERN": "pattern",
-    "MATERIAL": "material",
-    "SUPER": "superlative",
-    "SIDE": "superlative",
-    "SIDE_POST": "superlative",
-    "FREE": "name",
-}
+_FIELDS = {"PATTERN": "pattern", "MATERIAL": "material", "SUPER": "superlative", "SIDE": "superlative",
+           "SIDE_POST": "superlative", "FREE": "name"}  # fmt: skip
 """Words whose value is that of one field."""
 
 
@@ -164,6 +160,8 @@ def _adjective(description: Description, token: Token) -> Description:
             return replace(description, shape=value[0])
         case "ORDINAL":
             return replace(description, ordinal=value, superlative=description.superlative or "leftmost")
+        case "OF_TWO" | "NUMBER":
+            return replace(description, number=int(float(value)))
         case "SLOT":
             return replace(description, like=value, like_only="texture" if "texture" in value else None)
         case "SHAPED" | "ASPECT" if description.like:

@@ -261,7 +261,7 @@ def _placed_pairs(parts: Parts) -> tuple[list[tuple[str, Description]], Descript
     word, out = "", False
     for kind, value in parts.items:
         if kind == "place":
-            word = str(value)
+            word, out = str(value), False  # "drop it off in the bowl": nothing is taken off the bowl
         elif kind in ("off", "from"):
             out = True
         elif kind == "np":
@@ -292,11 +292,15 @@ def _between(parts: Parts, meaning: Meaning, kind: str) -> None:
 
 
 def _where(parts: Parts, meaning: Meaning, kind: str) -> None:
-    """The words "the bowl is where the block belongs", "put the banana where the apple is"."""
+    """The words "the bowl (the top left corner) is where the block belongs", "put the banana where the apple is"."""
     position = next(k for k, (name, _) in enumerate(parts.items) if name == "where")
     before = [value for name, value in parts.items[:position] if name == "np"]
     after = [value for name, value in parts.items[position:] if name == "np"]
-    if len(before) != 1 or len(after) != 1:
+    sides = [value for name, value in parts.items[:position] if name == "side"]
+    if sides and not before and len(after) == 1:
+        meaning.put(after[0], Destination("side", side=str(sides[-1])), kind)
+        return
+    if len(before) != 1 or len(after) != 1 or sides:
         raise Unclear("it is not clear what goes where")
     if "AUX" in {name for name, _ in parts.items[:position]} and not parts.kinds & {"PUT", "PUSH"}:
         meaning.put(after[0], Destination("in", before[0]), kind)

@@ -49,7 +49,9 @@ def open_conditions(text: str) -> tuple[str, bool]:
     text, named = _leading(text)
     if named:
         return text, True
-    inside = re.compile(rf"[,(]?\s*\b(?:but |and )?(?:only )?{_OPENERS}\b[^.,;(){{}}]*\)?", re.IGNORECASE)
+    inside = re.compile(
+        rf"[,(]?\s*\b(?:but |and )?(?:only )?(?<!is )(?<!are ){_OPENERS}\b[^.,;(){{}}]*\)?", re.IGNORECASE
+    )
     text, conditional = _without(text, inside, _CONDITION_WORDS | {"if", "when", "only", "wherever", "whenever", "as",
                                                                  "long", "case", "assuming", "given", "so", "but"})  # fmt: skip
     if not conditional and leaves:

@@ -29,7 +29,7 @@ _NOTHING_MORE = re.compile(
     r"\b(?:no|nothing) (?:more|else)\b(?: than (?:it|this|that|i|we) (?:says?|said)\b)?", re.IGNORECASE
 )
 _GENERAL = frozenset("AUX GIVE WANT TAKE IN ON TO FOR OF AS AND WITH FROM BY THAT IT THEY THERE ALL ONE TABLE ON_TABLE COMMA SEP THEN "
-                     "BEFORE BELOW NUMBER EVERYTHING SHARE".split())  # fmt: skip
+                     "BEFORE BELOW NUMBER ONE_OF EVERYTHING SHARE".split())  # fmt: skip
 """Kinds of words that name and order nothing by themselves."""
 
 

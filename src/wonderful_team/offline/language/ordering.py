@@ -8,23 +8,7 @@ _HAVING = r"(?:(?:you(?: have| ve|'ve)?|having|we have|it is|the robot has)\s+)?
 _AFTER = r"(?:after|once|when|as soon as)"
 _VERBISH = r"(?:put|plac|mov|rotat|turn|stack|push|sort|swap|drop|spin|set|bring|brought|rearrang|arrang|follow|sweep|swept|transfer|slid|pick|lift|done|finish)[a-z]*"
 _OPENED = (
-    (r"\b(?:whatever|anything that|all that|everything which)\s+(?:is|are)\b", "everything that is"),
-    (r"\banything\b(?! else)", "everything"),
     (r"\bthe same\s+(?=\{)", "the "),
-    (
-        r"\b(in|into|onto|on|inside) the same (?:one|place|container|bowl|box|area|object|region|spot)\b(?! (?:of|colou?r|as))",
-        r"\1 it",
-    ),
-    (
-        r"(?:\b(?:that|which)\s+)?(?:\b(?:was|is|stood|lay|had been|sat)\s+)?(?:\b(?:previously|formerly|originally|initially|before|at "
-        r"first|once)\s+)?(?:just |right |directly |immediately )?\b(?:at|to|on|in|towards)\s+its\s+(?:immediate\s+)?(?P<side>north|south|east|"
-        r"west|left|right|top|bottom|upper|lower)(?:\s+(?:hand )?side)?\b(?:\s+(?:before|at first|originally|previously))?",
-        r" beside_\g<side> ",
-    ),
-    (
-        r"(?:\b(?:that|which)\s+)?(?:\bwas\s+)?(?:\b(?:previously|formerly|originally|initially)\s+)(?=(?:north|south|east|west|left|right) of )",
-        " ",
-    ),
     (
         r"\bwhat(?:ever)?\s+(?:is(?: shown)?|you (?:can )?see|can be seen|shows)\s+in\s+(?:the (?:picture|image) )?(?=\{)",
         "the object shown in ",
@@ -33,8 +17,6 @@ _OPENED = (
     (r"(^|[.;,]\s*)(?:and )?(?:second|third|fourth|fifth|sixth)(?:ly)?\s*,", r"\1 then "),
     (r"(^|[.;]\s*)(?:step )?\(?\d\s*[.):]\s+(?=[a-z])", r"\1 "),
     (r"(?<![\w.])[-\u2212](?=\d)", "minus "),
-    (r"\b(?:do|proceed) (?:as follows|the following|this|these things)\s*[:.]", " "),
-    (r"\bhere is what (?:to do|you should do)\s*[:.]", " "),
 )
 _THEN_A = (
     rf"^\s*(?:please,?\s+)?before\s+{_HAVING}(?P<second>[^,;.]+),\s*(?P<first>[^;.]+)\.?\s*$",

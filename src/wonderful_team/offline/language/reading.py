@@ -58,16 +58,19 @@ def _understand(text: str) -> Understood:
     later = _LATER.search(text)
     if later is not None:
         raise NotUnderstoodError(refusal([], [later.group(0)]))
-    bounds = set_bounds(put_plainly(turned(without_reasons(_ACCORDINGLY.sub("", text)))), try_describe)
+    bounds = set_bounds(put_plainly(turned(without_reasons(text))), try_describe)
     asides = set_aside(in_order(bounds.text), try_describe)
     plain, conditional = open_conditions(asides.text)
     tokens = _turns(_joined(tokenise(plain)))
-    commands = _with_what_is_shared(_commands(tokens, asides.text, text), tokens, asides.text, text)
-    commands = with_nouns(commands)
+    commands = with_nouns(_commands(tokens, asides.text, text))
     if conditional or asides.others_without:
         commands = tuple(replace(command, conditional=True) for command in commands)
     if bounds.off is not None or bounds.limit is not None:
         commands = tuple(_kept_off(command, bounds) for command in commands)
+        if all(command.off is None and command.limit is None for command in commands):
+            raise NotUnderstoodError(
+                _no_sentence(text, tokens, "what must be kept off is said of nothing that is pushed")
+            )
     lost = passed_over(tokens, commands)
     if lost:
         raise NotUnderstoodError(_no_sentence(text, tokens, f"it is not clear what is meant by {', '.join(lost)}"))
@@ -85,41 +88,6 @@ def _kept_off(command: Command, bounds: Bounds) -> Command:
 
 _LATER = re.compile(r"\b(?:that|which|who) will (?:be|stand|lie|sit)\b", re.IGNORECASE)
 """Speaks of how things will stand, which no picture shows."""
-_ACCORDINGLY = re.compile(
-    r"[.;,]?\s*(?:and |so |then |please )*(?:place|put|sort|move|arrange|distribute)\s+(?:them|it|these|everything)(?:\s+all)?\s+accordingly\b",
-    re.IGNORECASE,
-)
-"""Says once more to do what was just said."""
-_SHARED = re.compile(r"\b(?:its|their|same|match\w*|own)\s+(?:\w+\s+)?colou?rs?\b|\bcolou?rs?\s+match", re.IGNORECASE)
-"""Words that make two things share a colour."""
-
-
-def _with_what_is_shared(
-    commands: tuple[Command, ...], tokens: list[Token], words: str, text: str
-) -> tuple[Command, ...]:
-    """The commands, unless "its colour" was said of many things and got lost on the way: then the gist, or a refusal.
-
-    A plan that forgets it would put everything anywhere, which is worse than not to understand.
-    """
-    many = [command for command in commands if command.kind == "put" and command.thing.quantity in ("each", "all")]
-    lost = [command for command in many if _goes_anywhere(command)]
-    if not lost or not _SHARED.search(words):
-        return commands
-    gist = matching_template(tokens)
-    if gist is None:
-        raise NotUnderstoodError(_no_sentence(text, tokens, "which things share a colour"))
-    return (gist,)
-
-
-def _goes_anywhere(command: Command) -> bool:
-    """Whether nothing but the kind of place is said."""
-    to = command.to
-    return (
-        to is not None
-        and to.how in ("in", "on")
-        and to.what is not None
-        and not (command.thing.related or to.what.related or to.what.colours)
-    )
 
 
 def _commands(tokens: list[Token], words: str, text: str) -> tuple[Command, ...]:
@@ -269,6 +237,8 @@ def _without_and(tokens: list[Token]) -> list[Token]:
         if token.kind == "SEP" and out and out[-1].kind == "STACK":
             continue
         after = tokens[at + 1].kind if at + 1 < len(tokens) else ""
+        if token.kind == "SUPER" and after == "STACK":
+            continue  # "a small tower" is as large as what it is made of
         many = any(item.kind in ("EACH", "ALL", "EVERYTHING") for item in out[-4:])
         if (
             token.text == "but"

@@ -18,13 +18,17 @@ def with_nouns(commands: Iterable[Command]) -> tuple[Command, ...]:
     place: Description | None = None
     for item in map(_excepted, commands):
         to = item.to
-        thing = with_noun(item.thing, thing or place or (None if to is None else to.what))
+        thing = with_noun(item.thing, thing or place or (None if to is None or _holds(to.what) else to.what))
         if to is not None:
             what = None if to.what is None else with_noun(to.what, place or thing)
             other = None if to.other is None else with_noun(to.other, what or thing)
             to, place = replace(to, what=what, other=other), what or place
         done.append(replace(item, thing=thing, to=to))
     return tuple(done)
+
+
+def _holds(what: Description | None) -> bool:
+    return what is not None and what.noun in ("container", "area")
 
 
 def with_noun(description: Description, before: Description | None) -> Description:

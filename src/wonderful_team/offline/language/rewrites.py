@@ -28,14 +28,11 @@ _PLACES_BEFORE = r"where (?:it|they|everything|each(?: of them)?) (?:came from|s
 _HOME = (
     (r"\b(?:to|into|in|back (?:to|into|in))?\s*(?:the|its|that)\s+(?:(?:original|own|first|old|initial)\s+)?(?:container|bowl|box|place|spot|holder)\s+(?:that\s+|which\s+)?"
      r"(?:it|they) (?:came from|started in|was in(?: at first| before| originally)?|was taken from|came out of|stood in|lay in)\b", " back to where it was"),
-    (r"\bthen into (?:the|its) (?:container|bowl|box|place|spot) where (?:it|they) (?:started|was|were|stood|came from|began)\b", "then put it back to where it was"),
     (rf"\b(?:to|into|in|back (?:to|into|in))?\s*(?:the|its) (?:container|bowl|box|place|spot) {_PLACES_BEFORE}", " back to where it was"),
     (r"\b(?:back )?(?:to|into|in) its (?:very )?(?:first|own|old|original|former|initial|starting|home) (?:container|bowl|box|place|spot|position|holder)(?: again)?\b", "back to where it was"),
     (r"\b(?:bring|take|move|carry|send|put) (?P<it>it|them) (?:back )?home\b", r"put \g<it> back to where it was"),
     (r"\bback home\b|\bback (?:in)?to its container\b|\bback in its container\b", "back to where it was"),
-    (r"\b(?P<it>it|\{[^{}]+\}) (?:returns|goes back|comes back)(?: again)?(?: to where it was| back to where it was)?\b(?! to| into| in)", r"\g<it> goes back to where it was"),
     (r"\breturns? back to where it was\b", "goes back to where it was"),
-    (r"\b(?P<back>(?:return|restore) (?:it|them|\{[^{}]+\})|undo (?:it|this|that|the change|the changes))\s*,?\s+(?:at the end|in the end)", r"\g<back>"),
 )  # fmt: skip
 _ONE = r"(?:the )?\{[^{}]+\}"
 _PAIR = rf"(?P<a>{_ONE})\s*(?:,|and|,\s*and)\s*(?P<b>{_ONE})"
@@ -45,35 +42,27 @@ _ASIDES = (
     (r"\bwithout (?:shifting|displacing|relocating|sliding|dragging) (?:it|them)\b", " "),
     (r"\bwithout (?:moving|shifting) (?:it|them) (?:anywhere else|away|elsewhere)\b", " "),
     (rf"\bin (?:this|that) order\s*,?\s*(?P<head>[^.;]*?)\b(?P<w>into|in|to) {_LIST}", r"\g<head> into \g<a>, then into \g<b>, then into \g<c>"),
-    (rf"(?P<w>\b(?:into|in|to)) {_LIST},? in (?:this|that) order\b", r"into \g<a>, then into \g<b>, then into \g<c>"),
-    (rf"(?P<w>\b(?:into|in|to)) {_PAIR},? in (?:this|that) order\b", r"into \g<a>, then into \g<b>"),
-    (r"\b(?P<w>into|in|to) (?P<a>(?:the )?\{[^{}]+\})\s*,?\s*(?:and )?then (?=(?:the )?\{[^{}]+\}\s*(?:[.,;]|and\b|$))", r"into \g<a>, then into "),
     (r"(?P<a>\{[^{}]+\}|\bit|\bthere) (?:second|third|last|secondly|lastly)(?=\s*[.,;]|\s*$)", r"\g<a>"),
     (r"\bin (?:this|that|the given) order\b", " "),
-    (r"\bto (?:change|adjust) the (?:heading|orientation|direction) of\b", "to rotate"),
     (r"\bchange the (?:heading|orientation|direction|facing) of\b", "rotate"),
-    (r"\bwants? (?:turning|rotating|spinning)\b", "should be turned"),
     (r"\b(?:is|are) how far (?P<what>[^.,;:]+?) (?:has|have|needs?|is|are) to be (?:turned|rotated|spun)\b", r"is the turn for \g<what>"),
     (r"\b(?P<n>half|a third|a quarter|two thirds|three quarters|a sixth|an eighth) of (?:a|one) (?:full |whole |complete )?(?:circle|revolution)\b", r"\g<n> of a turn"),
     (r"\bthe (?:first|former) (?P<where>into|in|inside|onto|on) the (?:second|latter)\b", r"the former \g<where> the latter"),
     (r"^\s*look at (?P<a>(?:the |this )?\{[^{}]+\}) and (?:at )?(?P<b>(?:the |this )?\{[^{}]+\})\s*[:.;,]", r"you see \g<a> and \g<b>."),
-    (r"\bthe (?:right |proper |correct )?place (?:for|of) (?P<a>\{[^{}]+\}) is (?P<where>inside|in|on)\b", r"put \g<a> \g<where>"),
     (r"\b(?P<n>two|three|four|five|six) (?:pieces |items |objects |copies |of )?of (?:the |these |those |this )?(?=\{|[a-z]+ (?:blocks|objects|things))", r"\g<n> "),
     (r"\ba (?:couple|pair) of (?:the |these |those )?(?=\{|[a-z])", "two "),
     (r"^\s*(?:start|begin) by (?=[a-z]+ing\b)", " "),
     (r"^\s*with (?P<a>(?:the )?\{[^{}]+\})\s*[:;,]\s*(?=into\b|in\b)", r"put \g<a> "),
-    (r"(?P<w>\b(?:into|to|in)) (?P<a>(?:the )?\{[^{}]+\})\s*,?\s*(?:and\s+)?(?:then\s+)?from (?P=a)\s+(?=(?:in)?to\b|back\b)", r"\g<w> \g<a>, then "),
     (r"(?P<n>\bdegrees|°) (?:further|more)\b", r"\g<n>"),
     (r"\bfrom there\s*,?\s+(?P<w>(?:in)?to)\b", r"then \g<w>"),
     (rf"(?P<x>{_ONE}) (?:(?:should|must|shall|has to|is to|needs to|will) )?(?:visits?|(?:go(?:es)?|pass(?:es)?) through) (?P<a>{_ONE})\s*(?:,\s*then|and then|,\s*and|and|,|then)\s*(?P<b>{_ONE})", r"put \g<x> into \g<a>, then into \g<b>"),
     (r"\b(?:is|are) (?:covered|decorated|painted|patterned|textured|surfaced) like\b|\b(?:covered|decorated|patterned|textured) like\b", "with the same texture as"),
     (r"\b(?:whatever|anything) (?=with the same)", "everything "),
-    (r"\b(?:whatever|anything) (?=(?:has|have|shares|bears|matches)\b)", "everything that "),
+    (r"\b(?:whatever|anything) (?=(?:has|have|shares|bears|matches|looks like)\b)", "everything that "),
     (r",\s*(?:and\s+)?(?:then\s+)?on to (?=(?:the )?\{)", ", then into "),
     (r"\b(?:that|which) (?P<a>\{[^{}]+\}) (?:shows|depicts|pictures)\b", r"in \g<a>"),
     (r"\bfrom (?:its|the) (?:own |original |old )?(?:container|place|spot|position) (?=(?:in)?to (?:the )?\{)", " "),
     (r"\b(?:and )?(?:do|repeat) (?:exactly )?the same (?:thing )?(?:with|for|to)\b", "and put there"),
-    (r"\bfollowed by (?!the (?:object|one|thing)\b)(?P<what>\{[^{}]+\})", r"then into \g<what>"),
 )  # fmt: skip
 _MENTION = re.compile(
     r"(?:^|(?<=[.;:!?]))\s*(?:(?:in|on|from|at)\s+(?:the (?:picture|image)\s+)?\{[^{}]*\}\s*,?\s*)?(?:(?:you|we|one|i) (?:can )?(?:see|find|have|notice)s?|there (?:is|are)|here (?:is|are)|\{[^{}]*\} (?:contains|shows|has|holds|depicts|"
@@ -81,11 +70,6 @@ _MENTION = re.compile(
     re.IGNORECASE,
 )
 """A sentence that only names a thing which the next one calls "it"."""
-_SEEN_IN = re.compile(
-    r"(?:^|(?<=[.;:!?]))\s*(?P<what>(?:the|a|an)\s+[^.;:,!?{}]+?)\s+(?:is|can be)\s+(?:seen|shown|found|pictured|visible|depicted)\s+in\s+\{[^{}]*\}\s*[.;:,!]\s*(?:(?:please|now|then|and)\s+)*(?P<rest>[^.;!?]*?)\b"
-    r"(?P<it>it|this one|that one)\b",
-    re.IGNORECASE,
-)
 _WHAT_IS = re.compile(r"\b(?:what|whatever|the one) (?:is|looks) (?P<look>[a-z]+(?: [a-z]+){0,5}?)(?=\s+in\s+\{|\s+(?:into|onto|inside|in|on|and|goes|should|must)\b|\s*[.,;!?]|\s*$)", re.IGNORECASE)  # fmt: skip
 
 
@@ -98,9 +82,7 @@ def put_plainly(text: str) -> str:
     text = re.sub(r"beside_(above|over|top)\b", "beside_north", text)
     text = re.sub(r"beside_(below|under|bottom)\b", "beside_south", text)
     text = _WHAT_IS.sub(lambda found: f"the {found.group('look')} object", text)
-    for mention in (_MENTION, _SEEN_IN):
-        text = mention.sub(lambda found: f" {found.group('rest')} {_definite(found.group('what'))}", text)
-    return text
+    return _MENTION.sub(lambda found: f" {found.group('rest')} {_definite(found.group('what'))}", text)
 
 
 def _definite(words: str) -> str:

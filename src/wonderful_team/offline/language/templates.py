@@ -19,6 +19,7 @@ _SAID = frozenset(
 _GATHER = _SAID | frozenset(
     "PUT SORT IN INTO TO ON ONTO CONTAIN FILL SLOT NOUN ALL EACH EVERYTHING SHARE SAME MATCH ASPECT SHAPED WHOSE ITS BY WHERE THEN".split()
 )
+_SHARED = frozenset("SAME MATCH SHARE OF WITH ITS WHOSE SLOT".split())
 _SAME = {"texture": "same_pattern", "colour": "same_colour", "shape": "same_shape"}
 
 
@@ -59,16 +60,7 @@ def _receives(token: Token) -> bool:
 
 def _is_aspect(token: Token, before: Token) -> bool:
     """Whether "shape" is what is shared, not another word for an object."""
-    return token.text in ("shape", "shapes") and before.kind in (
-        "SAME",
-        "MATCH",
-        "SHARE",
-        "OF",
-        "WITH",
-        "ITS",
-        "WHOSE",
-        "SLOT",
-    )
+    return token.text in ("shape", "shapes") and before.kind in _SHARED
 
 
 def _meant_elsewhere(tokens: Sequence[Token]) -> bool:

@@ -11,23 +11,8 @@ from wonderful_team.offline.language.vocabulary import ARTICLES, FILLERS, NUMBER
 
 _PIECE = re.compile(r"\{[^{}]+\}|beside_[a-z]+|\d+(?:\.\d+)?(?:nd|rd|th)?|°|[^\W\d_]+|[,;.:!?()]", re.UNICODE)
 _LONGEST = max(len(phrase) for phrase in PHRASES)
-_LETTER_WORDS = ("letter", "letters", "character")
 _STARTS_NOUN_PHRASE = frozenset(
-    (
-        "NOUN",
-        "SHAPE",
-        "COLOUR",
-        "ORANGE",
-        "PATTERN",
-        "ONE",
-        "SIDE",
-        "SLOT",
-        "DARK",
-        "SUPER",
-        "LETTER",
-        "MATERIAL",
-        "LOOK",
-    )
+    "NOUN SHAPE COLOUR ORANGE PATTERN ONE SIDE SLOT DARK SUPER LETTER MATERIAL LOOK".split()
 )
 
 
@@ -59,7 +44,8 @@ def tokenise(text: str) -> list[Token]:
 
 def cut(text: str) -> tuple[list[Token], list[str]]:
     """Tokens of a text in order, and the words that are not in the vocabulary."""
-    pieces = [piece for piece in _with_heads(_PIECE.findall(_plain(text))) if piece not in ARTICLES]
+    pieces = _with_verbs(_with_heads(_PIECE.findall(_plain(text))))
+    pieces = [piece for piece in pieces if piece not in ARTICLES]
     tokens: list[Token] = []
     unknown: list[str] = []
     position = 0
@@ -73,6 +59,8 @@ def cut(text: str) -> tuple[list[Token], list[str]]:
     return tokens, unknown
 
 
+_CLAUSE_STARTS = frozenset((*",;.:!?", "and", "then", "to"))
+_PUTTING = frozenset(("lower", "centre", "center"))
 _BEFORE_HEAD = ("COLOUR", "ORANGE", "PATTERN", "MATERIAL", "LOOK", "SUPER", "SIDE", "DARK", "ORDINAL", "LETTER", "SLOT")
 
 
@@ -91,6 +79,20 @@ def _with_heads(pieces: list[str]) -> list[str]:
                 and all(WORDS.get(word, ("",))[0] in (*_BEFORE_HEAD, "AND") or word in (",", "the") for word in words)
             ):
                 out.append(noun)
+        out.append(piece)
+    return out
+
+
+def _with_verbs(pieces: list[str]) -> list[str]:
+    """Words for a side, a size or free room that start a clause before an article are verbs: "lower the block" puts it."""
+    out: list[str] = []
+    for at, piece in enumerate(pieces):
+        starts = at == 0 or pieces[at - 1] in _CLAUSE_STARTS or (pieces[at - 1] in FILLERS and pieces[at - 1] != "all")
+        named = pieces[at + 1 : at + 2]
+        before_thing = bool(named) and (named[0] in ARTICLES or named[0] in ("it", "them") or named[0][0] == "{")
+        kind = WORDS.get(piece, ("",))[0]
+        if starts and before_thing and kind in ("SIDE", "SUPER", "FREE") and (piece,) not in PHRASES:
+            piece = "put" if piece in _PUTTING else f"to {piece}"
         out.append(piece)
     return out
 
@@ -156,6 +158,9 @@ def _next(pieces: list[str], start: int) -> tuple[Token | None, int]:
         if entry is None or (entry[0] == "SIDE_POST" and _noun_phrase_follows(pieces, start + length)):
             continue
         return (None if entry[0] == "SKIP" else Token(entry[0], entry[1], " ".join(words))), length
+    before = WORDS.get(pieces[start - 1], ("",))[0] if start else ""
+    if piece == "one" and _noun_phrase_follows(pieces, start + 1) and before not in (*_BEFORE_HEAD, "ALL", "EACH"):
+        return Token("ONE_OF", 1.0, piece), 1  # "one pink block": any of them
     angle = _angle(pieces, start)
     if angle is not None:
         return angle

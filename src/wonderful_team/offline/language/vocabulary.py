@@ -6,7 +6,8 @@ by name. The canonical values are those of `description.py`.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+import re
+from collections.abc import Iterable, Iterator
 from difflib import get_close_matches
 
 Entry = tuple[str, object]
@@ -86,24 +87,25 @@ _PLURALS = {"strawberry": "strawberries", "blueberry": "blueberries", "cherry": 
             "mango": "mangoes", "kiwi": "kiwis", "blackberry": "blackberries"}  # fmt: skip
 
 _VERBS: dict[str, str] = {
-    "PUT": "put place move bring drop set lay transfer relocate deposit shift position carry deliver insert load placed "
-    "moved brought dropped laid transferred relocated deposited shifted carried delivered inserted loaded putting "
-    "placing moving bringing dropping transferring stick store throw toss slot pop stow stash dump "
-    "plop tuck serve tidy add hand send haul release convey transport lower slip pass stored thrown",
-    "TAKE": "take grab pick get lift fetch find locate grasp identify seize collect gather see spot notice consider taking "
-    "picking grabbing choose select look use",
-    "ROTATE": "rotate turn spin rotated turned rotates turns spins spun rotation twist rotating turning spinning revolve swivel reorient orient pivot",
-    "STACK": "stack pile stacked piled stacking",
-    "SWAP": "swap exchange interchange switch swapped exchanged switched swapping exchanging switching trade",
-    "RETURN": "return restore returned restored returning restoring undo reset",
-    "REMOVE": "remove removed removing",
-    "FACE": "point face points faces pointing facing pointed",
-    "PUSH": "push slide pushed slid shove nudge pushing sliding drag sweep swept sweeping shoved shoving brush wipe",
-    "SORT": "sort distribute pair unite combine couple  group sorted distributed sorting allocate assign organise organize arrange",
-    "GIVE": "give perform apply make do execute undergo undergoes receive receives does makes",
+    "PUT": "put place move bring brought drop set lay laid transfer relocate deposit shift position carry deliver insert load stick "
+    "store throw thrown toss slot pop stow stash dump plop tuck serve tidy add hand send sent haul release convey transport slip pass "
+    "park plant perch mount install situate settle nestle lodge plonk plunk wedge squeeze stuff cram ship",
+    "TAKE": "take taken grab pick get lift fetch find locate grasp identify seize collect gather see spot notice consider choose chosen "
+    "select look use pluck snatch retrieve raise hoist scoop",
+    "ROTATE": "rotate turn spin spun rotation twist revolve swivel reorient orient pivot",
+    "STACK": "stack pile tower",
+    "SWAP": "swap exchange interchange switch trade",
+    "RETURN": "return restore undo reset",
+    "REMOVE": "remove eject extract withdraw",
+    "FACE": "point face",
+    "PUSH": "push slide slid shove nudge drag sweep swept brush wipe scoot",
+    "SORT": "sort distribute pair unite combine couple group allocate assign organise organize arrange",
+    "GIVE": "give perform apply make do does execute undergo undergoes receive build create form construct erect assemble",
     "WANT": "want wish prefer",
     "LEAVE": "leave ignore skip keep",
 }
+"""Ways of moving things, from the classes of verbs of putting, sending, removing and turning; their regular forms are made."""
+_AS_THEY_STAND = frozenset(("see", "use", "look", "do"))
 _SMALL: dict[str, str] = {
     "IN": "in inside within",
     "INTO": "into",
@@ -120,7 +122,7 @@ _SMALL: dict[str, str] = {
     "FROM": "from",
     "AS": "as",
     "AND": "and but",
-    "CONTAIN": "contain hold",
+    "CONTAIN": "contain hold holding holds enclose",
     "FILL": "fill cover",
     "THEN": "then afterwards afterward subsequently thereafter",
     "THAT": "that which until till",
@@ -133,7 +135,7 @@ _SMALL: dict[str, str] = {
     "MATCH": "match matches matching matched suits suit suiting fits corresponds correspond fitting belonging",
     "SAME": "same identical corresponding equal",
     "SHARE": "shares share sharing has have shows contains holds",
-    "AUX": "should must shall be is are been being goes go belongs belong was were stood ends end ought gets lies lie stands stand sits sit rests wants wait comes come going",
+    "AUX": "should must shall be is are been being live lives goes go belongs belong was were stood ends end ought gets lies lie stands stand sits sit rests wants wait comes come going",
     "EACH": "each every",
     "ALL": "all",
     "ONE": "one ones",
@@ -186,21 +188,8 @@ _SUPERLATIVES: dict[str, str] = {
 }
 _SIDES = {"left": "leftmost", "right": "rightmost", "top": "topmost", "bottom": "bottommost", "upper": "topmost",
           "lower": "bottommost"}  # fmt: skip
-_ORDINALS = {
-    "first": 1,
-    "1st": 1,
-    "last": -1,
-    "sixth": 6,
-    "6th": 6,
-    "second": 2,
-    "third": 3,
-    "fourth": 4,
-    "fifth": 5,
-    "2nd": 2,
-    "3rd": 3,
-    "4th": 4,
-    "5th": 5,
-}
+_ORDINALS = {"first": 1, "1st": 1, "last": -1, "second": 2, "third": 3, "fourth": 4, "fifth": 5, "sixth": 6, "2nd": 2,
+             "3rd": 3, "4th": 4, "5th": 5, "6th": 6}  # fmt: skip
 NUMBERS = {"two": 2, "three": 3, "four": 4, "five": 5, "six": 6, "seven": 7, "eight": 8, "nine": 9, "ten": 10,
            "fifteen": 15, "twenty": 20, "thirty": 30, "forty": 40, "fortyfive": 45, "fifty": 50, "sixty": 60,
            "seventy": 70, "eighty": 80, "ninety": 90, "hundred": 100}  # fmt: skip
@@ -235,6 +224,7 @@ def _words() -> dict[str, Entry]:
     for table in (_VERBS, _SMALL):
         for kind, listing in table.items():
             words |= {word: (kind, kind.lower()) for word in listing.split()}
+    words = _verb_forms() | words
     words |= {word: ("SIDE", side) for word, side in _SIDES.items()}
     words |= {word: ("ORDINAL", number) for word, number in _ORDINALS.items()}
     words |= {word: ("NUMBER", float(number)) for word, number in NUMBERS.items()}
@@ -247,6 +237,28 @@ def _shape_words() -> dict[str, Entry]:
         words |= {word: ("SHAPE", (shape, False)) for word in listing.split()}
         words |= {plural(word): ("SHAPE", (shape, True)) for word in listing.split() if plural(word) not in words}
     return words
+
+
+def _verb_forms() -> dict[str, Entry]:
+    inflected = (
+        (kind, word) for kind, listing in _VERBS.items() if kind not in ("WANT", "LEAVE") for word in listing.split()
+    )
+    return {
+        form: (kind, kind.lower())
+        for kind, word in inflected
+        if word not in _AS_THEY_STAND
+        for form in _forms(word, kind)
+    }
+
+
+def _forms(verb: str, kind: str) -> Iterator[str]:
+    """The regular forms of a verb: "dropped", "dropping"; "turns" of those that things do by themselves."""
+    doubled = re.fullmatch(r"[^aeiou]+[aeiou][bdglmnpt]|[aeiou][bdglmnpt]", verb) is not None
+    stem = verb[:-1] if verb.endswith("e") else verb + verb[-1] * doubled
+    yield f"{stem}ing"
+    yield f"{verb[:-1]}ied" if verb.endswith("ry") else f"{stem}ed"
+    if kind in ("ROTATE", "FACE", "GIVE"):
+        yield f"{verb}s"
 
 
 def plural(word: str) -> str:

@@ -27,7 +27,7 @@ FRUITS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
     "melon": (("green", "yellow"), ("round", "oval")),
     "orange": (("orange",), ("round",)),
     "peach": (("orange", "pink"), ("round",)),
-    "pear": (("green", "yellow", "olive"), ("oval", "round")),
+    "pear": (("green", "yellow", "olive"), ("tapered",)),
     "plum": (("purple", "blue"), ("round", "oval")),
     "strawberry": (("red",), ("round", "heart", "triangle", "oval")),
     "tangerine": (("orange",), ("round",)),
@@ -76,6 +76,9 @@ def _form(look: Look, outline: str) -> float:
         return smooth * float(np.clip((1.45 - aspect) / 0.25, 0, 1))
     if outline == "oval":
         return smooth * float(np.clip((aspect - 1.05) / 0.12, 0, 1)) * float(np.clip((2.4 - aspect) / 0.4, 0, 1))
+    if outline == "tapered":
+        ends = np.abs(look.outline.profile - np.roll(look.outline.profile, len(look.outline.profile) // 2))
+        return smooth * float(np.clip((ends.max() - 0.12) / 0.12, 0, 1))
     if outline == "long":
         return float(np.clip((aspect - 1.6) / 0.4, 0, 1))
     if outline == "crescent":
@@ -112,6 +115,8 @@ def container_score(thing: Thing) -> float:
 
 ROOMY = 0.3
 """What holds things is at least this share of the largest object of its table."""
+BENT = 0.3
+"""Fit of a crescent from which a thing is no block."""
 BLOCKS = 4.0
 """A round object more than so many times the smallest of its table is no block."""
 
@@ -150,6 +155,7 @@ def kind_score(thing: Thing, description: Description) -> float:
         case "container":
             return container_score(thing)
         case "object" | "block" | "toy":
-            return 0.3 if thing.flat else 1.0
+            bent = look.shapes["crescent"] > BENT or look.shapes["oval"] >= max(look.shapes.values())
+            return 0.3 if thing.flat or (bent and description.noun == "block" and not description.shape) else 1.0
         case _:
             return 0.8 if thing.flat else 1.0

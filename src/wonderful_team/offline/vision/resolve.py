@@ -169,18 +169,18 @@ def _aliases(name: str, dark: bool | None) -> tuple[tuple[str, float], ...]:
     """Names under which a colour may show: dark orange looks brown, dark yellow olive, …"""
     near: dict[str, tuple[tuple[str, float], ...]] = {
         "orange": (("brown", 0.9 if dark else 0.2), ("red", 0.05)),
-        "yellow": (("olive", 0.9 if dark else 0.3), ("brown", 0.4 if dark else 0.0)),
+        "yellow": (("olive", 0.9 if dark else 0.2), ("brown", 0.4 if dark else 0.0)),
         "pink": (("purple", 0.7 if dark else 0.15), ("red", 0.4 if dark else 0.1)),
         "purple": (("pink", 0.15), ("blue", 0.12)),
         "red": (("brown", 0.5 if dark else 0.15), ("pink", 0.15)),
         "cyan": (("blue", 0.2), ("green", 0.2)),
         "blue": (("cyan", 0.2), ("purple", 0.1)),
-        "green": (("olive", 0.35), ("cyan", 0.2)),
-        "olive": (("green", 0.45), ("yellow", 0.4), ("brown", 0.35)),
-        "brown": (("orange", 0.5), ("red", 0.2), ("olive", 0.3)),
-        "grey": (("white", 0.25), ("black", 0.3)),
-        "white": (("grey", 0.35),),
-        "black": (("grey", 0.4),),
+        "green": (("olive", 0.2), ("cyan", 0.2)),
+        "olive": (("green", 0.2), ("yellow", 0.2), ("brown", 0.2)),
+        "brown": (("orange", 0.2), ("red", 0.2), ("olive", 0.2)),
+        "grey": (("white", 0.2), ("black", 0.2)),
+        "white": (("grey", 0.2),),
+        "black": (("grey", 0.2),),
     }
     return ((name, 1.0), *near.get(name, ()))
 

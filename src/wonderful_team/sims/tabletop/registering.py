@@ -150,6 +150,16 @@ def task_names() -> dict[str, str]:
     return {name: found.help for name, found in _TASKS.items()}
 
 
+def task_of(function: object) -> str | None:
+    """The name of the task that a function was made into; None when it was made into none."""
+    return next((name for name, found in _TASKS.items() if found.set_table is function), None)
+
+
+def made_in_main(name: str) -> bool:
+    """Whether a task was made in the script that is running."""
+    return str(find_task(name).set_table.__module__) in ("__main__", "__mp_main__")
+
+
 def partitions(name: str) -> tuple[str, ...]:
     """The generalisation levels at which a task exists; `make_world("rotate@L3")` sets its table at one.
 

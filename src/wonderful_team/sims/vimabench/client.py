@@ -17,6 +17,7 @@ from typing import Any, BinaryIO, cast
 
 from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.errors import ConfigError, WorldUnavailableError
+from wonderful_team.redaction import names_secret
 from wonderful_team.sims.vimabench.finding import Installation, find_installation, missing
 from wonderful_team.sims.vimabench.remote.frames import read_message, write_message
 from wonderful_team.sims.vimabench.remote.launch import CANNOT_RUN
@@ -30,7 +31,6 @@ STEP_TIMEOUT_S = 600.0
 ASK_TIMEOUT_S = 120.0
 CLOSE_TIMEOUT_S = 3.0
 TAIL_LINES = 12
-SECRET_ENDINGS = ("_KEY", "_TOKEN", "_SECRET")
 NOISE = re.compile(r"text argument:[^\n]*\n|int args: \[")
 """What its physics engine prints at every picture of a scene, without an end of line."""
 
@@ -64,7 +64,7 @@ class Simulator:
         self._end = weakref.finalize(self, _end, self._process, self._scratch)
 
     def _start(self) -> subprocess.Popen[bytes]:
-        environment = {name: value for name, value in os.environ.items() if not name.endswith(SECRET_ENDINGS)}
+        environment = {name: value for name, value in os.environ.items() if not names_secret(name)}
         environment.update(TMPDIR=str(self._scratch), TEMP=str(self._scratch), TMP=str(self._scratch))
         with self._said.open("wb") as said:
             return subprocess.Popen(

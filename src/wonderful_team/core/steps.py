@@ -1,0 +1,216 @@
+"""Steps: what a planner writes, target ids and stated quantities. A kind of step brings its words with it.
+
+A step never holds a coordinate; `motion` turns it into actions. Angles stated to or by people are degrees, clockwise
+seen from above.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import ClassVar, Literal, TypeAlias, get_args
+
+Side: TypeAlias = Literal["left", "right", "above", "below"]
+"""A side of an object as the picture shows it: above is towards the picture's top edge."""
+Height: TypeAlias = Literal["above", "at", "clear"]
+SIDES: tuple[Side, ...] = ("left", "right", "above", "below")
+
+
+@dataclass(frozen=True)
+class At:
+    """At the chosen point of a target."""
+
+    target: str
+
+
+@dataclass(frozen=True)
+class Beside:
+    """Next to a target, on the named side as the picture shows it."""
+
+    target: str
+    side: Side
+
+
+@dataclass(frozen=True)
+class OriginOf:
+    """Where the target stood when the plan was made."""
+
+    target: str
+
+
+Place: TypeAlias = At | Beside | OriginOf
+
+
+@dataclass(frozen=True)
+class StepWords:
+    """A kind of step in words; {field} stands for a field, {turned} and {at} for what goes before or behind one.
+
+    Attributes:
+        does: What a planner is told that the robot can do.
+        told: A step of that kind as a model reads it.
+        shown: As a page shows it; the same when left out.
+        line: Its beginning in a terminal; the kind when left out.
+    """
+
+    does: str
+    told: str
+    shown: str = ""
+    line: str = "{kind}"
+
+
+@dataclass(frozen=True)
+class _Step:
+    """What every kind of step has. Its first line and the metadata of its fields are what a model reads of its schema.
+
+    Attributes:
+        roles: Which point of a grounded target each field stands for, as (role, field).
+        points: Without a point of the picture it means nothing.
+    """
+
+    kind: ClassVar[str]
+    words: ClassVar[StepWords]
+    roles: ClassVar[tuple[tuple[str, str], ...]] = ()
+    points: ClassVar[bool] = True
+    subgoal: str
+
+
+_TURN = {"ge": -360, "le": 360}
+"""Limits of a turn [degrees]."""
+
+
+@dataclass(frozen=True)
+class PickPlaceStep(_Step):
+    """Pick a target up, put it down at a place, turned clockwise."""
+
+    kind: ClassVar[str] = "pick_place"
+    words: ClassVar[StepWords] = StepWords(
+        "pick one target up, carry it, and put it down at a place, turned by an angle if one is stated",
+        told="pick {pick}, put it at {place}{turned}",
+        shown="pick {pick}, place {at}{place}{turned}",
+    )
+    roles: ClassVar[tuple[tuple[str, str], ...]] = (("pick", "pick"), ("place", "place"))
+    pick: str
+    place: Place
+    rotate_deg: float = field(
+        default=0.0, metadata={**_TURN, "description": "Clockwise seen from above; 0 when nothing is said."}
+    )
+
+
+@dataclass(frozen=True)
+class PushStep(_Step):
+    """Push along the table."""
+
+    kind: ClassVar[str] = "push"
+    words: ClassVar[StepWords] = StepWords(
+        "push along the table from one place to another", told="push from {start} to {end}"
+    )
+    roles: ClassVar[tuple[tuple[str, str], ...]] = (("push_start", "start"), ("push_end", "end"))
+    start: Place
+    end: Place
+
+
+@dataclass(frozen=True)
+class MoveStep(_Step):
+    """Move the tool.
+
+    To a place: above it, at it, or clear of everything.
+    """
+
+    kind: ClassVar[str] = "move"
+    words: ClassVar[StepWords] = StepWords(
+        "move the tool above a place, down to it (at), or up until it is clear of everything",
+        told="move the tool {height} {to}",
+        shown="move {height} {to}",
+        line="move {height}",
+    )
+    roles: ClassVar[tuple[tuple[str, str], ...]] = (("place", "to"),)
+    to: Place
+    height: Height = "above"
+
+
+@dataclass(frozen=True)
+class OpenStep(_Step):
+    """Open the gripper."""
+
+    kind: ClassVar[str] = "open"
+    words: ClassVar[StepWords] = StepWords("open the gripper", told="open the gripper", line="open gripper")
+    points: ClassVar[bool] = False
+
+
+@dataclass(frozen=True)
+class CloseStep(_Step):
+    """Close the gripper.
+
+    `tight` keeps squeezing.
+    """
+
+    kind: ClassVar[str] = "close"
+    words: ClassVar[StepWords] = StepWords(
+        "close the gripper; tight keeps squeezing", told="close the gripper{tight}", line="close gripper{tight}"
+    )
+    points: ClassVar[bool] = False
+    tight: bool = False
+
+
+@dataclass(frozen=True)
+class RotateGripperStep(_Step):
+    """Turn the gripper."""
+
+    kind: ClassVar[str] = "rotate_gripper"
+    words: ClassVar[StepWords] = StepWords(
+        "turn the gripper by an angle, clockwise seen from above", told="turn the gripper {rotate_deg}"
+    )
+    points: ClassVar[bool] = False
+    rotate_deg: float = field(metadata={**_TURN, "description": "Clockwise seen from above."})
+
+
+@dataclass(frozen=True)
+class FollowStep(_Step):
+    """Follow the path of the subgoal's helper function."""
+
+    kind: ClassVar[str] = "follow"
+    words: ClassVar[StepWords] = StepWords(
+        "move the tool along the path that a helper function computed",
+        told="follow the path of {function}",
+        line="follow {function}",
+    )
+    function: str = field(metadata={"description": "Id of the subgoal that asked for the function."})
+
+
+@dataclass(frozen=True)
+class HomeStep(_Step):
+    """Go to the home pose."""
+
+    kind: ClassVar[str] = "home"
+    words: ClassVar[StepWords] = StepWords("go to the home pose", told="go to the home pose", shown="go home")
+    points: ClassVar[bool] = False
+
+
+@dataclass(frozen=True)
+class NavigateStep(_Step):
+    """Drive to a place."""
+
+    kind: ClassVar[str] = "navigate"
+    words: ClassVar[StepWords] = StepWords("drive the mobile base to a place", told="drive to {to}")
+    roles: ClassVar[tuple[tuple[str, str], ...]] = (("place", "to"),)
+    to: Place
+
+
+Step: TypeAlias = (
+    PickPlaceStep
+    | PushStep
+    | MoveStep
+    | OpenStep
+    | CloseStep
+    | RotateGripperStep
+    | FollowStep
+    | HomeStep
+    | NavigateStep
+)
+STEPS: dict[str, type[Step]] = {step.kind: step for step in get_args(Step)}
+"""Every kind of step that a planner may write."""
+
+
+def places_of(step: Step) -> tuple[tuple[str, Place], ...]:
+    """Every place a step refers to, as (role, place); roles name the points of a grounded target."""
+    found = ((role, getattr(step, name)) for role, name in step.roles)
+    return tuple((role, At(place) if isinstance(place, str) else place) for role, place in found)

@@ -1,0 +1,36 @@
+"""Google Gemini."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from wonderful_team.models.providers.vendors.vendor import Place, Vendor
+
+if TYPE_CHECKING:
+    import httpx2
+    from pydantic_ai.models import Model as LibraryModel
+
+
+def _build(base_url: str, model: str, key: str, client: httpx2.AsyncClient) -> LibraryModel:
+    from pydantic_ai.models.google import GoogleModel
+    from pydantic_ai.providers.google import GoogleProvider
+
+    return GoogleModel(model, provider=GoogleProvider(api_key=key, base_url=base_url, http_client=client))
+
+
+def _context(base_url: str, model: str) -> tuple[Place, ...]:
+    return (("GET", f"{base_url}/v1beta/models/{model}", None),)
+
+
+GOOGLE = Vendor(
+    "google",
+    "pydantic_ai.models.google",
+    _build,
+    "https://generativelanguage.googleapis.com",
+    ("GOOGLE_API_KEY", "GEMINI_API_KEY"),
+    "google",
+    "Google Gemini",
+    settings={},  # its client knows no max_retries; it does not try again by itself
+    context=_context,
+    key_header=("x-goog-api-key", ""),
+)

@@ -126,6 +126,10 @@ def test_a_plan_for_another_seed_or_instruction_moves_nothing(
     record = read_record(runs_folder / "latest")["planner"]
     assert record["executions"] == []
     assert len(record["plans"]) == 1
+    page = (runs_folder / "latest" / "page.html").read_text(encoding="utf-8")
+    assert "<h3>First plan</h3>" in page, "the plan is drawn on the picture it was made from, beside the scene of now"
+    assert "<h3>The scene when it was to run</h3>" in page
+    assert record["plan_scene"]["hash"] == record["plans"][0]["plan"]["scene_hash"]
     reason = "unchanged: T1 (pick)" if how == "seed" else "instruction of the plan"
     assert reason in told.err
     assert "executed" in told.out

@@ -35,9 +35,10 @@ def target_words(plan: dict[str, Any] | None) -> dict[str, str]:
 
 
 def scene_of(record: dict[str, Any], plan: dict[str, Any] | None) -> dict[str, Any] | None:
-    """The observation a plan was made from, else the first one."""
+    """The observation a plan was made from, be it in an earlier run, else the first one."""
     observations: list[dict[str, Any]] = record["planner"]["observations"]
-    for observation in observations:
+    plan_scene: dict[str, Any] | None = record["planner"].get("plan_scene")
+    for observation in [*observations, *([plan_scene] if plan_scene else [])]:
         if plan is not None and observation["hash"] == plan["scene_hash"]:
             return observation
     return observations[0] if observations else None

@@ -34,6 +34,9 @@ def overviews(record: dict[str, Any], album: Album) -> list[dict[str, Any]]:
         (name, content) for _, name, content in chapters(record) if content["grounded"] or content["actions"]
     ]
     scenes = [(name, content, scene_of(record, content)) for name, content in drawn or [("", None)]]
+    planner = record["planner"]
+    if planner.get("plan_scene") and planner["observations"] and not planner["executions"]:
+        scenes.append(("The scene when it was to run", None, planner["observations"][0]))
     return [_overview(record, album, *one) for one in scenes if one[2] is not None]
 
 

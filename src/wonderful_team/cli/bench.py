@@ -14,6 +14,7 @@ import click
 
 from wonderful_team.cli.options import PATH
 from wonderful_team.cli.output import finish
+from wonderful_team.core.deadline import limited
 from wonderful_team.core.interrupts import as_keyboard, exit_code
 
 if TYPE_CHECKING:
@@ -98,15 +99,28 @@ QUIET_S = 10.0
 @click.option("--max-calls", type=click.IntRange(1), help="Of the whole study.")
 @click.option("--max-tokens", type=click.IntRange(1), help="Of the whole study.")
 @click.option("--max-usd", type=click.FloatRange(0, min_open=True), help="Of the whole study, where prices are known.")
-@click.option("--max-seconds", type=click.FloatRange(0, min_open=True), help="Of this command.")
+@click.option(
+    "--max-seconds",
+    type=click.FloatRange(0, min_open=True),
+    help="Of this command; trials in flight are then cut and given back.",
+)
 @click.option("--trial-max-calls", type=click.IntRange(1), help="Of one trial: it then fails at stage budget.")
 @click.option("--trial-max-tokens", type=click.IntRange(1), help="Of one trial.")
-@click.option("--trial-max-seconds", type=click.FloatRange(0, min_open=True), help="Of one trial.")
+@click.option(
+    "--trial-max-seconds",
+    type=click.FloatRange(0, min_open=True),
+    help="Of one trial: models, world, drawing and judging.",
+)
 @click.option("--trial-max-usd", type=click.FloatRange(0, min_open=True), help="Of one trial.")
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON document instead of text.")
 @click.option("--open", "open_page", is_flag=True, help="Write the report beside the store and open it when done.")
 def command(**options: Any) -> int:
     """Run methods and models over suites with controls; what ended stays in the store, and the same command resumes."""
+    with limited(options["max_seconds"]):
+        return _bench(options)
+
+
+def _bench(options: dict[str, Any]) -> int:
     from wonderful_team.api.study import PILOT, Study
 
     words = shlex.join(["wonderful-team", *(click.get_current_context().obj or ())])

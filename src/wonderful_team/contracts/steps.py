@@ -8,7 +8,7 @@ from typing import Annotated, Any, Literal, TypeAlias, Union
 
 from pydantic import Field, create_model
 
-from wonderful_team.contracts.shown import AnswerModel, Reasoning, known
+from wonderful_team.contracts.shown import AnswerModel, Reasoning, fits, known
 from wonderful_team.core import actions
 from wonderful_team.core.actions import Beside, OriginOf, Place, Side, Step
 
@@ -177,6 +177,7 @@ def check_steps(
     steps: Sequence[Step], subgoals: Sequence[str], targets: Sequence[str], functions: Sequence[str]
 ) -> None:
     """Raise ValueError when a step refers to a subgoal, target or function that does not exist, or serves none."""
+    fits(actions=len(steps))
     if subgoals and not steps:
         raise ValueError("the plan has subgoals but no steps")
     known([step.subgoal for step in steps], subgoals, "subgoal")

@@ -246,8 +246,13 @@ class Store:
             if spent is not None:
                 _correct(base, trial, owner, spent)
 
-    def crashed(self, pid: int, host: str) -> list[str]:
+    def crashed(self, pid: int, host: str, ended_by_us: str = "") -> list[str]:
         """Free the claims of a worker process that died; a trial that keeps killing workers becomes an error.
+
+        Args:
+            pid: The process.
+            host: Its machine.
+            ended_by_us: Why we ended it: then no trial is blamed.
 
         Returns:
             The scenes that were in flight.
@@ -257,8 +262,8 @@ class Store:
             held = "SELECT * FROM trials WHERE state='claimed' AND owner LIKE ?"
             for row in base.execute(held, (f"{host}|{pid}|%",)).fetchall():
                 scenes.append(_spec(row).scene)
-                crashes = row["crashes"] + 1
-                _lose(base, row, "its process died")
+                crashes = row["crashes"] + (not ended_by_us)
+                _lose(base, row, ended_by_us or "its process died")
                 base.execute("UPDATE trials SET crashes=? WHERE id=?", (crashes, row["id"]))
                 if crashes >= MAX_CRASHES:
                     reason = f"the worker process died {crashes} times while it ran this trial"

@@ -13,11 +13,15 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
+from wonderful_team.core.deadline import GRACE_S
+from wonderful_team.core.interrupts import in_thread
 from wonderful_team.evals.leases import RENEW_EVERY_S, Owner
 from wonderful_team.evals.spending import CapReached
 from wonderful_team.evals.store import CUT, Claim, Store
 from wonderful_team.evals.trials import RunSettings, SpendingCaps, TrialRow, TrialRunner, TrialSpec
 
+LATE = "cut by the limit on time"
+"""Why an attempt was discarded that the command had no time left for."""
 POLL_S = 0.2
 """How long a worker waits before it looks again for a trial that another process holds [s]."""
 
@@ -30,7 +34,8 @@ class Work:
         store: Path of the store's file.
         study: Name of the study in the store.
         caps: Of the whole study.
-        deadline_s: Unix time after which no trial is begun; None for none.
+        ends_s: When the time of the command is over, by the clock of this machine that never jumps; trials in flight are then cut. None
+            for never.
         at_once: Trials in flight in one process: more than one helps only where models are waited for.
         parent: Process that started the worker; when it is gone the worker ends after its trial.
     """
@@ -40,9 +45,23 @@ class Work:
     runner: TrialRunner
     settings: RunSettings
     caps: SpendingCaps = SpendingCaps()
-    deadline_s: float | None = None
+    ends_s: float | None = None
     at_once: int = 1
     parent: int | None = None
+
+    @property
+    def left_s(self) -> float | None:
+        """Time that is left, never none at all [s]; None without a limit."""
+        return None if self.ends_s is None else max(0.001, self.ends_s - time.monotonic())
+
+    @property
+    def late(self) -> bool:
+        return self.ends_s is not None and time.monotonic() >= self.ends_s
+
+    @property
+    def overdue(self) -> bool:
+        """Whether trials in flight had time enough to end by themselves."""
+        return self.ends_s is not None and time.monotonic() >= self.ends_s + GRACE_S
 
 
 def worker_main(work: Work, stopping: Any) -> None:
@@ -68,7 +87,7 @@ async def _work(work: Work, store: Store, stopping: Callable[[], bool]) -> None:
 
 
 async def _slot(work: Work, store: Store, owner: Owner, stopping: Callable[[], bool]) -> None:
-    while not (stopping() or _orphaned(work) or _late(work)):
+    while not (stopping() or _orphaned(work) or work.late):
         try:
             claim = store.claim(work.study, owner, work.caps)
         except CapReached:
@@ -82,14 +101,23 @@ async def _slot(work: Work, store: Store, owner: Owner, stopping: Callable[[], b
 
 
 async def _run(work: Work, store: Store, owner: Owner, claim: Claim) -> None:
-    settings = replace(work.settings, caps=tighter(work.settings.caps, claim.left))
+    left_s = work.left_s
+    caps = tighter(work.settings.caps, replace(claim.left, seconds=left_s))
     try:
         async with _kept(store, claim, owner):
-            result = await asyncio.to_thread(run_safely, work.runner, claim.spec, settings)
+            trial = in_thread(run_safely, work.runner, claim.spec, replace(work.settings, caps=caps), name="trial")
+            result = await asyncio.wait_for(trial, None if left_s is None else left_s + GRACE_S)
+    except TimeoutError:
+        # Its thread is left behind: what it still does counts for nothing.
+        store.give_back(claim.trial, owner, LATE)
+        return
     except BaseException:
         # Interrupted: nothing of it counts, and somebody else may take it at once.
         store.give_back(claim.trial, owner)
         raise
+    if work.late and result.stage == "budget" and result.outcome != "success":
+        store.give_back(claim.trial, owner, LATE, result)
+        return
     settle(store, owner, claim, work.settings.caps, result)
 
 
@@ -167,7 +195,3 @@ async def _kept(store: Store, claim: Claim, owner: Owner) -> AsyncIterator[None]
 
 def _orphaned(work: Work) -> bool:
     return work.parent is not None and os.getppid() != work.parent
-
-
-def _late(work: Work) -> bool:
-    return work.deadline_s is not None and time.time() >= work.deadline_s

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
+from wonderful_team.core.deadline import for_record
 from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.pictures import Picture
 from wonderful_team.core.values import Observation, View
@@ -15,6 +16,8 @@ from wonderful_team.images import Ticks, to_png
 from wonderful_team.images.drawn import drawn, drawn_hash
 
 FOLDER = "pictures"
+DRAWING = "drawing pictures for the record"
+"""What the run's limit on time names."""
 
 
 class PictureStore:
@@ -38,7 +41,8 @@ class PictureStore:
         key = drawn_hash(picture, self._ticks)
         if key not in self._sent:
             self._sent.add(key)
-            self._write(key, f"{len(self._sent):03d}_{_slug(picture.name)}.png", drawn(picture, self._ticks))
+            rgb = for_record(DRAWING, drawn, picture, self._ticks)
+            self._write(key, f"{len(self._sent):03d}_{_slug(picture.name)}.png", rgb)
         return key
 
     def keep_view(self, view: View, where: str) -> str:

@@ -8,20 +8,22 @@ import threading
 import time
 from collections.abc import Callable, Mapping, Sequence
 from datetime import UTC, datetime
+from functools import partial
 from pathlib import Path
 from types import TracebackType
 from typing import Any
 
+from wonderful_team.core.deadline import for_record
 from wonderful_team.core.interrupts import held
 from wonderful_team.core.jsonable import to_jsonable
 from wonderful_team.core.protocols import Event
 from wonderful_team.core.text import counted, picture_names, spoken, visible
 from wonderful_team.core.values import GateCheck, GateReport, Instruction, Limits, Observation, Plan, Request, Trial
-from wonderful_team.errors import ActionRefusedError, WonderfulTeamError
+from wonderful_team.errors import ActionRefusedError, BudgetReached, WonderfulTeamError
 from wonderful_team.images import Ticks, action_arrows, overview, to_png
 from wonderful_team.images.keep_out import outlines
 from wonderful_team.record import entries
-from wonderful_team.record.picture_store import PictureStore
+from wonderful_team.record.picture_store import DRAWING, PictureStore
 from wonderful_team.record.plan_file import plan_to_json
 from wonderful_team.record.record_schema import RECORD_SCHEMA_VERSION
 from wonderful_team.record.redact import redact, redact_all, secrets_of_environment
@@ -220,7 +222,8 @@ class Recorder:
         regions = (*plan.keep_out, *(self._limits.keep_out if self._limits is not None else ()))
         self._planner["outlines"] = outlines(dict.fromkeys(regions), self._limits, view.camera)
         said = plan.instruction
-        rgb = overview(
+        drawing = partial(
+            overview,
             view,
             plan.grounded,
             names=picture_names(said.text, said.slots),
@@ -228,6 +231,11 @@ class Recorder:
             keep_out=plan.keep_out,
             workspace=self._limits,
         )
+        try:
+            rgb = for_record(DRAWING, drawing)
+        except BudgetReached as error:
+            self._log("warning", f"the picture of the plan is missing: {error}")
+            return
         (self.folder / "final.png").write_bytes(to_png(rgb))
 
     def _on_asking(self, event: Event) -> None:

@@ -6,6 +6,7 @@ import importlib
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, cast
 
+from wonderful_team.core import deadline
 from wonderful_team.core.protocols import World, offers
 from wonderful_team.core.values import Instruction, KeepOut
 from wonderful_team.errors import (
@@ -98,7 +99,7 @@ def make_world(
             world = _world_from_file(name, seed, harder, arguments)
         else:
             _take_none(name, arguments)
-            world = _named_world(name, seed, harder)
+            world = deadline.bounded(f"setting up world {name!r}", _named_world, name, seed, harder)
     with code_of(f"instruction of world {name!r}", WorldUnavailableError):
         own = getattr(world, "instruction", None)
         whole = offers(world, World)
@@ -156,7 +157,8 @@ def _world_from_file(name: str, seed: int, harder: Mapping[str, int], arguments:
     task = task_made_of(load_from_file(name, "world"))
     if task is not None:
         _take_none(name, arguments)
-        return _tabletop().make_world(task, seed=seed, **harder)
+        tabletop = _tabletop()
+        return deadline.bounded(f"setting up world {name!r}", lambda: tabletop.make_world(task, seed=seed, **harder))
     made = make_from_file(name, "world", {"seed": seed}, WorldUnavailableError, arguments)
     return _whole(made, f"world {name!r}")
 

@@ -16,6 +16,8 @@ from importlib import metadata
 from pathlib import Path
 from typing import ClassVar
 
+from wonderful_team.redaction import redact
+
 _PACKAGE = Path(__file__).parent
 MESSAGE_LIMIT = 2_000
 """Longest text of somebody else's exception that becomes part of ours [characters]."""
@@ -49,7 +51,7 @@ class WonderfulTeamError(Exception):
     folder: Path | None = None
 
     def __init__(self, message: str, *, stage: str | None = None, cause: BaseException | None = None) -> None:
-        super().__init__(message if cause is None else f"{message} {raised(cause)}")
+        super().__init__(redact(message if cause is None else f"{message} {raised(cause)}"))
         if stage is not None:
             self.stage = stage
         if cause is not None:
@@ -59,7 +61,7 @@ class WonderfulTeamError(Exception):
 def raised(error: BaseException) -> str:
     """What somebody else's code raised and where, in one line: `raised KeyError: 'x' (mine.py:12, in decide)`."""
     try:
-        text = str(error)
+        text = redact(str(error))
     except Exception:  # noqa: BLE001  an exception of somebody else's whose own text cannot be made
         text = "(its text cannot be shown)"
     text = text if len(text) <= MESSAGE_LIMIT else f"{text[:MESSAGE_LIMIT]}…"
@@ -77,7 +79,8 @@ def own_trace(error: BaseException) -> str:
     trace = error.__traceback__
     for _ in range(skipped):
         trace = None if trace is None else trace.tb_next
-    return "".join(traceback.format_exception(type(error), error, trace, limit=40))[-20 * MESSAGE_LIMIT :]
+    text = redact("".join(traceback.format_exception(type(error), error, trace, limit=40)))
+    return text[-20 * MESSAGE_LIMIT :]
 
 
 @contextlib.contextmanager
@@ -121,7 +124,7 @@ def reading(what: str, valid: str = "", error_class: type[WonderfulTeamError] | 
     except OSError as error:
         raise kind(f"{what} cannot be read: {error.strerror or error}{_valid(valid)}") from error
     except Exception as error:
-        said = str(error) if type(error) is ValueError else f"{type(error).__name__}: {error}"
+        said = redact(str(error) if type(error) is ValueError else f"{type(error).__name__}: {error}")
         raise kind(f"{what} cannot be read: {said[:MESSAGE_LIMIT]}{_valid(valid)}") from error
 
 

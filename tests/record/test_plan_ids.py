@@ -8,8 +8,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from test_plan_file import rich_plan
 
+from tests.record.test_plan_file import rich_plan
 from tests.runtime.runtime_fakes import SquaresWorld, make_plan
 from wonderful_team.core.geometry import Box
 from wonderful_team.core.values import Critique, Instruction, Subgoal, Target, content_hash

@@ -6,6 +6,7 @@ import contextlib
 import importlib
 import io
 import sys
+import traceback
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -14,6 +15,7 @@ import click
 from wonderful_team._version import __version__
 from wonderful_team.cli.output import Document, say, wants_json
 from wonderful_team.core.interrupts import Interrupted, ends_on_signal, leave
+from wonderful_team.redaction import redacted_streams
 
 if TYPE_CHECKING:
     from wonderful_team.errors import WonderfulTeamError
@@ -112,7 +114,7 @@ def run(argv: list[str]) -> int:
             [word for word in argv if word not in foreign], "UsageError", f"{foreign[0]!r} is not text in UTF-8", 2
         )
     try:
-        with ends_on_signal(force=True):
+        with redacted_streams(), ends_on_signal(force=True):
             code: Any = group.main(args=argv, prog_name="wonderful-team", standalone_mode=False, obj=tuple(argv))
         return code if isinstance(code, int) else 0
     except click.exceptions.Exit as ending:
@@ -127,7 +129,7 @@ def run(argv: list[str]) -> int:
         return 0
     except Exception as error:  # noqa: BLE001  the top: every error becomes a message and an exit code here
         if "--debug" in argv:
-            raise
+            say("".join(traceback.format_exception(error)), err=True)
         return _tell(argv, error)
 
 

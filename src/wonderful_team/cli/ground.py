@@ -9,6 +9,8 @@ from typing import Any
 import click
 
 from wonderful_team.cli.options import PATH, Common, common
+from wonderful_team.core.filesystem import write_redacted
+from wonderful_team.redaction import redact_all
 
 
 @click.command(
@@ -65,6 +67,6 @@ def coco_document(image: Path, size_px: tuple[int, int], targets: Any) -> dict[s
 
 def _write(path: Path, document: dict[str, Any]) -> None:
     try:
-        path.write_text(json.dumps(document, indent=1), encoding="utf-8")
+        write_redacted(path, json.dumps(redact_all(document), indent=1))
     except OSError as error:
         raise click.UsageError(f"--coco {str(path)!r}: {error.strerror}") from error

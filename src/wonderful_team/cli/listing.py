@@ -9,6 +9,7 @@ import click
 
 from wonderful_team.cli.options import PATH
 from wonderful_team.cli.output import finish
+from wonderful_team.core.filesystem import make_private_folder
 from wonderful_team.core.text import counted, visible
 from wonderful_team.errors import ConfigError
 
@@ -53,7 +54,7 @@ def _write_table(path: Path, out: Path | None, open_page: bool) -> str:
     from wonderful_team.record.run_folders import all_runs
 
     try:
-        path.parent.mkdir(parents=True, exist_ok=True)
+        make_private_folder(path.parent)
         write_runs_table(all_runs(out), path)
     except OSError as error:
         raise ConfigError(f"--html {str(path)!r}: {error.strerror or error}") from error

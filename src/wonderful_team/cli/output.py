@@ -11,6 +11,7 @@ from typing import Any
 import click
 
 from wonderful_team.core.text import visible, visible_json
+from wonderful_team.redaction import redact, redact_all
 
 SCHEMA_VERSION = 1
 COLOURS: dict[str, dict[str, Any]] = {
@@ -48,7 +49,7 @@ class Document:
             "result": dict(self.result),
             "error": None if self.error is None else dict(self.error),
         }
-        click.echo(visible_json(json.dumps(held, indent=2, ensure_ascii=False)))
+        click.echo(visible_json(json.dumps(redact_all(held), indent=2, ensure_ascii=False)))
 
 
 def wants_json(argv: Sequence[str]) -> bool:
@@ -58,7 +59,7 @@ def wants_json(argv: Sequence[str]) -> bool:
 
 def say(text: str, *, err: bool = False) -> None:
     """Print text of one or several lines: what it holds of hidden characters is shown as escapes."""
-    click.echo("\n".join(map(_coloured, visible(text, layout=True).split("\n"))), err=err)
+    click.echo("\n".join(map(_coloured, visible(redact(text), layout=True).split("\n"))), err=err)
 
 
 def finish(command: str, *, text: str, result: Mapping[str, Any], as_json: bool, code: int, last_line: str = "") -> int:

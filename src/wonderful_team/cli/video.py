@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 from PIL import Image
 
+from wonderful_team.core.filesystem import write_private
 from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.protocols import Event
 from wonderful_team.core.values import Observation
@@ -58,6 +59,7 @@ class Film:
         pictures = [Image.fromarray(frame) for frame in self.frames]
         shown_ms = [*self.shown_ms[:-1], LAST_MS]
         kind = FORMATS[path.suffix.lower()]
+        write_private(path, b"")
         pictures[0].save(path, kind, save_all=True, append_images=pictures[1:], duration=shown_ms, loop=0)
 
     def _keep(self, views: Mapping[str, Array], shown_ms: int) -> None:

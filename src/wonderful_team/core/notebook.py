@@ -12,6 +12,7 @@ import numpy as np
 
 from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.text import visible
+from wonderful_team.redaction import redact
 
 WIDTH_PX = 720
 """Pictures are made no wider than this: a notebook keeps every one."""
@@ -65,4 +66,4 @@ def _smaller(rgb: Array) -> Array:
 
 
 def _safe(text: str) -> str:
-    return html.escape(visible(text), quote=True)
+    return html.escape(visible(redact(text)), quote=True)

@@ -9,6 +9,7 @@ from pathlib import Path
 import cv2
 import numpy as np
 
+from wonderful_team.core.filesystem import make_private_folder, write_private
 from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.intervals import Rate
 from wonderful_team.core.protocols import World
@@ -146,8 +147,8 @@ def contact_sheet(tiles: Sequence[tuple[str, Array]], path: Path, columns: int =
     padded = [np.vstack([tile, blank[: height - tile.shape[0]]]) for tile in drawn]
     padded += [blank] * (-len(padded) % columns)
     rows = [np.hstack(padded[start : start + columns]) for start in range(0, len(padded), columns)]
-    path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_bytes(to_png(np.vstack(rows)))
+    make_private_folder(path.parent)
+    write_private(path, to_png(np.vstack(rows)))
     return path
 
 

@@ -16,13 +16,14 @@ from typing import Any
 
 from pydantic import TypeAdapter
 
-from wonderful_team.core.filesystem import network_file_system
+from wonderful_team.core.filesystem import make_private_folder, network_file_system, private
 from wonderful_team.errors import ConfigError, reading
 from wonderful_team.evals.leases import LEASE_S, Owner, Surroundings
 from wonderful_team.evals.names import NO_MODEL
 from wonderful_team.evals.schema import CONDITION, JSON, RESULT, SCHEMA_VERSION, SPEC, check_values, make_tables
 from wonderful_team.evals.spending import UNITS, Allowance, Costs, Likely, Spending, WaitForCost, allow
 from wonderful_team.evals.trials import Condition, Row, SpendingCaps, TrialRow, TrialSpec
+from wonderful_team.redaction import redact_all
 
 CUT = "cut by the study's cap"
 """Why an attempt was discarded that had all it was allowed and wanted more."""
@@ -51,7 +52,9 @@ class Store:
         if must_exist and not self.path.is_file():
             raise ConfigError(f"store {str(self.path)!r}: there is no such file")
         try:
-            self.path.parent.mkdir(parents=True, exist_ok=True)
+            make_private_folder(self.path.parent)
+            with suppress(OSError), open(self.path, "ab", opener=private):
+                pass  # SQLite keeps the mode of a file that is there, and gives it to those beside it
             self._base = sqlite3.connect(self.path, timeout=60.0, isolation_level=None, check_same_thread=False)
             self._base.row_factory = sqlite3.Row
             self._open()
@@ -223,7 +226,7 @@ class Store:
 
     def finish(self, trial: int, owner: Owner, result: TrialRow) -> bool:
         """Write a result; False when the claim was lost: then only what it cost is booked, in place of what it held."""
-        values = ((name, getattr(result, name)) for name in RESULT)
+        values = ((name, redact_all(getattr(result, name))) for name in RESULT)
         texts = [json.dumps(value, default=dict) if name in JSON else value for name, value in values]
         sets = ", ".join(f"{name}=?" for name in RESULT)
         with self._writing() as base:

@@ -19,6 +19,7 @@ from wonderful_team.evals.leases import RENEW_EVERY_S, Owner
 from wonderful_team.evals.spending import CapReached
 from wonderful_team.evals.store import CUT, Claim, Store
 from wonderful_team.evals.trials import RunSettings, SpendingCaps, TrialRow, TrialRunner, TrialSpec
+from wonderful_team.redaction import redacted_streams
 
 LATE = "cut by the limit on time"
 """Why an attempt was discarded that the command had no time left for."""
@@ -67,7 +68,8 @@ class Work:
 def worker_main(work: Work, stopping: Any) -> None:
     """Entry of a worker process; an interrupt from the keyboard is the parent's to answer."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    work_until_done(work, stopping.is_set)
+    with redacted_streams():
+        work_until_done(work, stopping.is_set)
 
 
 def work_until_done(work: Work, stopping: Callable[[], bool]) -> None:

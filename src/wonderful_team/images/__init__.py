@@ -7,7 +7,7 @@ from wonderful_team.images.compare import CHANGED, region_change
 from wonderful_team.images.cut import Edge, StripSide, crop, crop_pair, edge_strips, whole
 from wonderful_team.images.draw import draw
 from wonderful_team.images.encode import to_png
-from wonderful_team.images.load import load_picture
+from wonderful_team.images.load import OWN_FORMATS, load_picture, open_picture
 from wonderful_team.images.overview import action_arrows, overview
 from wonderful_team.images.resample import picture_of, resampled, resampled_depth, valid_mask
 
@@ -25,6 +25,8 @@ __all__ = [
     "inside_points",
     "load_depth",
     "load_picture",
+    "open_picture",
+    "OWN_FORMATS",
     "overview",
     "picture_of",
     "region_change",

@@ -17,7 +17,7 @@ from wonderful_team.core.geometry import AffineCamera, Camera, PinholeCamera, Pl
 from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.values import NO_WORKSPACE, Limits
 from wonderful_team.errors import BadPictureError, ConfigError
-from wonderful_team.images.load import GREY_16, bad_file, check_size, checked_file, size_rule
+from wonderful_team.images.load import GREY_16, bad_file, check_size, checked_file, open_picture, size_rule
 
 NEAREST_DEPTH_M, FARTHEST_DEPTH_M = 0.02, 50.0
 """Depth whose middle value lies outside is in a wrong unit and refused; single values outside count as unknown."""
@@ -224,7 +224,7 @@ def _depth_from_png(file: Path) -> Array:
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
-            with Image.open(file) as opened:
+            with open_picture(file, ("PNG", "TIFF")) as opened:
                 check_size(file, opened.size)
                 if opened.mode not in GREY_16:
                     raise _bad(file, f"it is a picture of mode {opened.mode}, not of depth", VALID_DEPTH)

@@ -9,6 +9,7 @@ import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
 from wonderful_team.core.geometry.arrays import Array
+from wonderful_team.redaction import redact
 
 MAX_LABEL = 28
 """Longest label drawn, in characters; the rest becomes three dots."""
@@ -16,7 +17,7 @@ MAX_LABEL = 28
 
 def plain(text: str, longest: int = MAX_LABEL) -> str:
     """The text in printable ASCII (accents dropped, other signs as ?), shortened: the built-in font has no more."""
-    spelled = unicodedata.normalize("NFKD", text.replace("ß", "ss"))
+    spelled = unicodedata.normalize("NFKD", redact(text).replace("ß", "ss"))
     kept = "".join(c for c in spelled if not unicodedata.combining(c))
     shown = "".join(c if " " <= c <= "~" else "?" for c in " ".join(kept.split()))
     return shown if len(shown) <= longest else shown[: longest - 3].rstrip() + "..."

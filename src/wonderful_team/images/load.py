@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import warnings
 from pathlib import Path
+from typing import IO
 
 import numpy as np
 from PIL import Image, ImageOps, UnidentifiedImageError
@@ -20,7 +21,21 @@ MAX_PICTURE_ASPECT = 20
 """Longest side over shortest."""
 
 _VALID_PICTURE = "a PNG, JPEG, WebP, BMP, TIFF or GIF picture"
+FORMATS = ("PNG", "JPEG", "WEBP", "BMP", "TIFF", "GIF")
+"""What is read; anything else that Pillow knows may start programs (EPS: Ghostscript), whatever the file is called."""
+OWN_FORMATS = ("PNG",)
+"""What our own folders and files hold."""
 GREY_16 = ("I;16", "I;16B", "I;16L", "I;16N", "I")
+
+
+def open_picture(file: str | os.PathLike[str] | IO[bytes], formats: tuple[str, ...] = FORMATS) -> Image.Image:
+    """Open a picture of one of these formats, told by its content; every picture is opened here.
+
+    Raises:
+        UnidentifiedImageError: It is none of them.
+        OSError: It cannot be read.
+    """
+    return Image.open(file, formats=formats)
 
 
 def load_picture(path: str | os.PathLike[str]) -> Array:
@@ -39,7 +54,7 @@ def load_picture(path: str | os.PathLike[str]) -> Array:
         with warnings.catch_warnings():
             # Pillow warns of large and slightly odd files; ours are bounded by MAX_PICTURE_PIXELS.
             warnings.simplefilter("ignore")
-            with Image.open(file) as opened:
+            with open_picture(file) as opened:
                 check_size(file, opened.size)
                 rgb = _as_rgb(ImageOps.exif_transpose(opened), file)
     except UnidentifiedImageError:

@@ -18,8 +18,10 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from wonderful_team.core.filesystem import make_private_folder, private
 from wonderful_team.core.text import user_path
 from wonderful_team.errors import ConfigError
+from wonderful_team.redaction import redact_all
 
 APPLICATION_ID = 0x57544331
 """Marks the file as ours in SQLite's header: "WTC1"."""
@@ -118,7 +120,7 @@ class CacheStore:
         return None if row is None else self._read(key, row)
 
     def put(self, key: str, entry: Stored) -> Stored:
-        """Keep an answer; one that stands already stays.
+        """Keep an answer, without any key in it; one that stands already stays.
 
         Returns:
             The answer that stands: another process may have been first.
@@ -131,7 +133,7 @@ class CacheStore:
             "repairs": list(entry.repairs),
             "cost": dict(entry.cost),
         }
-        text = json.dumps(kept, ensure_ascii=False)
+        text = json.dumps(redact_all(kept), ensure_ascii=False)
         now_s = int(time.time())
         with self._told() as connection:
             connection.execute(
@@ -200,13 +202,15 @@ class CacheStore:
             return self._connection
         # A connection must not be carried over a fork: the child opens its own.
         try:
-            self.path.parent.mkdir(parents=True, exist_ok=True)
+            make_private_folder(self.path.parent)
         except OSError as error:
             raise ConfigError(
                 f"cache folder {str(self.path.parent)!r} cannot be made: {error.strerror}; {_WAYS_OUT}"
             ) from error
         if self.path.is_dir():
             raise ConfigError(f"cache file {str(self.path)!r} is a folder; give a file (--cache-file FILE)")
+        with contextlib.suppress(OSError), open(self.path, "ab", opener=private):
+            pass  # SQLite keeps the mode of a file that is there, and gives it to those beside it
         connection = sqlite3.connect(self.path, timeout=BUSY_S, isolation_level=None, check_same_thread=False)
         try:
             if self._is_new(connection):

@@ -33,6 +33,7 @@ from wonderful_team.errors import (
 from wonderful_team.models.budget import Budget, Ticket, hand_over
 from wonderful_team.models.wire import chat as _chat  # noqa: F401  gives requests their messages()
 from wonderful_team.models.wire.unreadable import Unreadable
+from wonderful_team.redaction import redact_all, redact_known
 
 UNSENT = frozenset({"cached", "replayed"})
 """Provenance of answers for which no model was called: they cost nothing."""
@@ -221,8 +222,10 @@ def as_answer(result: Any, model: Model) -> Answer:
             raise ModelCodeError(
                 f"model {_name(model)!r} answered with usage {type(result.usage).__name__}; valid: a wt.Usage"
             )
-        return result if result.model_id else replace(result, model_id=_name(model))
-    raw = result if isinstance(result, str) else ""
+        return replace(
+            result, model_id=redact_known(result.model_id or _name(model)), raw=redact_known(str(result.raw))
+        )
+    raw = redact_known(result) if isinstance(result, str) else ""
     return Answer(value=result, model_id=_name(model), raw=raw, usage=Usage(calls=1, usd=None))
 
 
@@ -231,10 +234,12 @@ def validate_answer(request: Request, value: Any) -> tuple[Any, tuple[str, ...]]
     output: type[BaseModel] = request.output
     if isinstance(value, Unreadable):
         raise ValueError(value.problem)
-    if isinstance(value, str):
-        parsed = output.model_validate_json(value)
-    else:
-        parsed = output.model_validate(_plain(value))
+    try:
+        # A model of one's own may have read a key, as a server may echo it.
+        value = redact_all(_plain(value), looks=False)
+    except RecursionError as error:
+        raise ValueError(_explain(error)) from error
+    parsed = output.model_validate_json(value) if isinstance(value, str) else output.model_validate(value)
     question = request.question
     return question.validate(parsed) if isinstance(question, Question) else (parsed, ())
 

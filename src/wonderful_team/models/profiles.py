@@ -16,6 +16,7 @@ from typing import Any, Literal, TypeAlias
 
 from pydantic import TypeAdapter, ValidationError
 
+from wonderful_team.core.filesystem import make_private_folder, write_redacted
 from wonderful_team.core.text import user_path
 from wonderful_team.errors import ConfigError, UnknownNameError, reading
 from wonderful_team.models.conventions import PIXELS, Convention, Resize, Shape
@@ -239,8 +240,8 @@ def save_profile(profile: Profile, folder: Path | None = None) -> Path:
     path = place / f"{check_name(profile.name)}.json"
     fresh = place / f".{profile.name}.{os.getpid()}.tmp"
     try:
-        place.mkdir(parents=True, exist_ok=True)
-        fresh.write_text(profile_to_json(profile) + "\n", encoding="utf-8")
+        make_private_folder(place)
+        write_redacted(fresh, profile_to_json(profile) + "\n")
         fresh.replace(path)
     except OSError as error:
         raise ConfigError(

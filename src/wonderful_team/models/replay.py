@@ -23,10 +23,10 @@ from wonderful_team.errors import (
     reading,
 )
 from wonderful_team.models.client import as_answer, call_model
+from wonderful_team.redaction import HIDDEN
 
 STAGES = ("plan", "ground", "act", "replan")
 """Stages of an attempt that a run can branch at; `replan` comes after the first execution."""
-_HIDDEN = "[redacted]"
 _PATIENCE_S = 0.5
 """How long a request that was never answered waits to be cancelled, as it was when it was recorded [s]."""
 
@@ -193,9 +193,9 @@ def _same_text(now: str, then: str) -> bool:
     """Whether the texts agree; what was hidden in the record may have been anything."""
     if now == then:
         return True
-    if _HIDDEN not in then:
+    if HIDDEN not in then:
         return False
-    return re.fullmatch(".+?".join(map(re.escape, then.split(_HIDDEN))), now, re.DOTALL) is not None
+    return re.fullmatch(".+?".join(map(re.escape, then.split(HIDDEN))), now, re.DOTALL) is not None
 
 
 def _excerpts(now: str, then: str) -> str:

@@ -9,9 +9,9 @@ from pathlib import Path
 from typing import Any
 
 from markupsafe import Markup, escape
-from PIL import Image
 
 from wonderful_team.core.text import PLACEHOLDER
+from wonderful_team.images import OWN_FORMATS, open_picture
 
 MOST_BYTES = 3_600_000
 """Bytes of pictures that a page may hold before base64 (4.8 MB of text); beyond, pictures get coarser, not fewer."""
@@ -63,7 +63,7 @@ class Album:
         if not path.is_relative_to(self._folder.resolve()):
             return None
         try:
-            with Image.open(path) as image:
+            with open_picture(path, OWN_FORMATS) as image:
                 return Shown(len(self._shown) + 1, image.size, file)
         except OSError:
             return None
@@ -94,7 +94,7 @@ class Album:
         return Markup("\n").join(lines)
 
     def _coded(self, shown: Shown, most_px: int, quality: int) -> bytes:
-        with Image.open(self._folder / shown.file) as opened:
+        with open_picture(self._folder / shown.file, OWN_FORMATS) as opened:
             image = opened.convert("RGB")
         lossless = image.width * image.height < _LOSSLESS_BELOW_PX and quality > 70
         image.thumbnail((most_px, most_px))

@@ -15,10 +15,11 @@ from typing import Any
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
-from PIL import Image
 
+from wonderful_team.core.filesystem import write_redacted
 from wonderful_team.core.text import counted, visible
 from wonderful_team.errors import ConfigError
+from wonderful_team.images import OWN_FORMATS, open_picture
 from wonderful_team.pages.sections import summary
 from wonderful_team.pages.words import brief, money, seconds
 from wonderful_team.pages.write import PAGE_NAME
@@ -46,7 +47,7 @@ def write_runs_table(folders: Sequence[Path], path: Path) -> Path:
         script=Markup(script),  # noqa: S704  our own file
         script_hash=base64.b64encode(hashlib.sha256(script.encode()).digest()).decode(),
     )
-    path.write_text(visible(html, layout=True), encoding="utf-8")
+    write_redacted(path, visible(html, layout=True), errors="xmlcharrefreplace")
     return path
 
 
@@ -74,7 +75,7 @@ def thumbnail(folder: Path, width_px: int = THUMBNAIL_PX) -> str:
     views = [folder / "final.png", *sorted((folder / "pictures").glob("view_*.png"), reverse=True)]
     for path in views:
         try:
-            with Image.open(path) as opened:
+            with open_picture(path, OWN_FORMATS) as opened:
                 image = opened.convert("RGB")
         except OSError:
             continue

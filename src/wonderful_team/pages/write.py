@@ -8,6 +8,7 @@ from typing import Any
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
+from wonderful_team.core.filesystem import write_redacted
 from wonderful_team.core.text import counted, visible
 from wonderful_team.errors import reading
 from wonderful_team.pages import cost, planted, requests, sections
@@ -33,7 +34,7 @@ def write_page(folder: Path) -> Path:
     with reading(f"{folder}: the record"):
         html = _html(folder, record)
     path = folder / PAGE_NAME
-    path.write_text(visible(html, layout=True), encoding="utf-8", errors="xmlcharrefreplace")
+    write_redacted(path, visible(html, layout=True), errors="xmlcharrefreplace")
     return path
 
 

@@ -9,11 +9,13 @@ from pathlib import Path
 import numpy as np
 
 from wonderful_team.core.deadline import for_record
+from wonderful_team.core.filesystem import make_private_folder, private, write_private
 from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.pictures import Picture
 from wonderful_team.core.values import Observation, View
 from wonderful_team.images import Ticks, to_png
 from wonderful_team.images.drawn import drawn, drawn_hash
+from wonderful_team.redaction import redact
 
 FOLDER = "pictures"
 DRAWING = "drawing pictures for the record"
@@ -34,7 +36,7 @@ class PictureStore:
         self._views = 0
         self._depths: dict[str, str] = {}
         self.files: dict[str, str] = {}
-        (folder / FOLDER).mkdir(parents=True, exist_ok=True)
+        make_private_folder(folder / FOLDER)
 
     def keep_sent(self, picture: Picture) -> str:
         """Store a picture as it is sent, marks drawn; returns the hash of what was drawn."""
@@ -63,14 +65,15 @@ class PictureStore:
         key = hashlib.sha256(view.depth_m.tobytes()).hexdigest()
         if key not in self._depths:
             name = f"depth_{len(self._depths) + 1:03d}_{_slug(where)}_{_slug(view.camera_name)}.npz"
-            np.savez_compressed(self._folder / FOLDER / name, depth_m=view.depth_m)
+            with open(self._folder / FOLDER / name, "wb", opener=private) as file:
+                np.savez_compressed(file, depth_m=view.depth_m)
             self._depths[key] = f"{FOLDER}/{name}"
         return self._depths[key]
 
     def _write(self, key: str, name: str, rgb: Array) -> None:
-        (self._folder / FOLDER / name).write_bytes(to_png(rgb))
+        write_private(self._folder / FOLDER / name, to_png(rgb))
         self.files[key] = f"{FOLDER}/{name}"
 
 
 def _slug(words: str) -> str:
-    return re.sub(r"[^a-z0-9]+", "-", words.lower()).strip("-")[:32] or "picture"
+    return re.sub(r"[^a-z0-9]+", "-", redact(words).lower()).strip("-")[:32] or "picture"

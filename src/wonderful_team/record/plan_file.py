@@ -11,9 +11,11 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from wonderful_team.core.filesystem import write_private
 from wonderful_team.core.values import Plan, size_problem
 from wonderful_team.errors import ConfigError
 from wonderful_team.record.values_file import decode, encode
+from wonderful_team.redaction import redact_all
 
 PLAN_SCHEMA_VERSION = 2
 _SHORT_IDS = 1
@@ -70,7 +72,8 @@ def has_short_id(data: Mapping[str, Any]) -> bool:
 
 def write_plan(plan: Plan, path: Path) -> None:
     """Write `plan.json`."""
-    path.write_text(json.dumps(plan_to_json(plan), indent=1, ensure_ascii=False), encoding="utf-8")
+    text = json.dumps(redact_all(plan_to_json(plan)), indent=1, ensure_ascii=False)
+    write_private(path, text.encode("utf-8", errors="backslashreplace"))
 
 
 def read_plan(path: Path) -> Plan:

@@ -10,7 +10,7 @@ from wonderful_team.core.values import Observation, Plan, ReadPlan, View
 from wonderful_team.errors import ConfigError
 from wonderful_team.images import load_picture
 from wonderful_team.record.plan_file import read_plan
-from wonderful_team.record.stored import stored_observation
+from wonderful_team.record.stored import file_of_run, stored_observation
 
 
 def read_run_plan(folder: Path) -> ReadPlan:
@@ -55,7 +55,9 @@ def _stored(folder: Path, record: Any, number: int) -> Observation | None:
         pass
     try:
         seen = record["planner"]["observations"][number]
-        pictures = {name: load_picture(folder / record["files"][key]) for name, key in seen["views"].items()}
+        pictures = {
+            name: load_picture(file_of_run(folder, record["files"][key], name)) for name, key in seen["views"].items()
+        }
         return Observation({name: View(name, name, 0.0, rgb) for name, rgb in pictures.items()})
     except (ConfigError, KeyError, TypeError, ValueError):
         return None

@@ -14,6 +14,7 @@ from types import TracebackType
 from typing import Any
 
 from wonderful_team.core.deadline import for_record
+from wonderful_team.core.filesystem import make_private_folder, write_private
 from wonderful_team.core.interrupts import held
 from wonderful_team.core.jsonable import to_jsonable
 from wonderful_team.core.protocols import Event
@@ -26,8 +27,8 @@ from wonderful_team.record import entries
 from wonderful_team.record.picture_store import DRAWING, PictureStore
 from wonderful_team.record.plan_file import plan_to_json
 from wonderful_team.record.record_schema import RECORD_SCHEMA_VERSION
-from wonderful_team.record.redact import redact, redact_all, secrets_of_environment
 from wonderful_team.record.versions import versions
+from wonderful_team.redaction import redact, redact_all
 
 _REWRITE_EVERY_S = 0.3
 """Least time between two rewrites of record.json; important events are written at once."""
@@ -48,9 +49,8 @@ class Recorder:
 
     def __init__(self, folder: Path, *, ticks: Ticks = Ticks.PIXELS, command: str | None = None) -> None:
         self.folder = Path(folder)
-        self.folder.mkdir(parents=True, exist_ok=True)
+        make_private_folder(self.folder)
         self._store = PictureStore(self.folder, ticks)
-        self._secrets = secrets_of_environment()
         self._lock = threading.RLock()
         self._zero = time.monotonic()
         self._last_write = -1.0
@@ -91,7 +91,7 @@ class Recorder:
             "crash": self._on_crash,
             "done": self._on_done,
         }
-        (self.folder / "log.txt").write_text("", encoding="utf-8")
+        write_private(self.folder / "log.txt", b"")
         self._write()
 
     def on_event(self, event: Event) -> None:
@@ -211,7 +211,7 @@ class Recorder:
         self._planner["plans"].append(kept)
         if self._planner["instruction"] is None:
             self._planner["instruction"] = entries.instruction_entry(plan.instruction, self._store)
-        _write_whole(self.folder / "plan.json", json.dumps(self._clean(data), indent=1, ensure_ascii=False))
+        _write_whole(self.folder / "plan.json", json.dumps(redact_all(data), indent=1, ensure_ascii=False))
         self._draw_final(plan)
 
     def _draw_final(self, plan: Plan) -> None:
@@ -236,7 +236,7 @@ class Recorder:
         except BudgetReached as error:
             self._log("warning", f"the picture of the plan is missing: {error}")
             return
-        (self.folder / "final.png").write_bytes(to_png(rgb))
+        write_private(self.folder / "final.png", to_png(rgb))
 
     def _on_asking(self, event: Event) -> None:
         self._planner.setdefault("asked", []).append({**event.content, "so_far": self._so_far()})
@@ -336,11 +336,8 @@ class Recorder:
     def _elapsed_s(self) -> float:
         return time.monotonic() - self._zero
 
-    def _clean(self, value: Any) -> Any:
-        return redact_all(value, self._secrets)
-
     def _log(self, name: str, text: str) -> None:
-        line = redact(f"{self._elapsed_s():6.1f} s  {name:10s} {text}", self._secrets)
+        line = redact(f"{self._elapsed_s():6.1f} s  {name:10s} {text}")
         with (self.folder / "log.txt").open("a", encoding="utf-8", errors="backslashreplace") as log:
             log.write(visible(spoken(line.replace("\n", " "), self._pictures)) + "\n")
 
@@ -349,7 +346,7 @@ class Recorder:
         record = {**self._record, "files": self._store.files, "planner": planner, "clock": self._clock}
         # Indenting takes ten times as long: only the finished record is laid out for reading.
         indent = None if record["state"] == "running" else 1
-        text = json.dumps(self._clean(record), indent=indent, ensure_ascii=False)
+        text = json.dumps(redact_all(record), indent=indent, ensure_ascii=False)
         _write_whole(self.folder / "record.json", text)
         self._last_write = self._elapsed_s()
 
@@ -358,7 +355,7 @@ def _write_whole(path: Path, text: str) -> None:
     """Replace a file so that a reader finds the old or the new content, never half of it."""
     part = path.with_name(f".{path.name}.part")
     # Half of a character (a lone surrogate) becomes its JSON escape, which reads back as what it was.
-    part.write_text(text, encoding="utf-8", errors="backslashreplace")
+    write_private(part, text.encode("utf-8", errors="backslashreplace"))
     os.replace(part, path)
 
 

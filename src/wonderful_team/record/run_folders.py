@@ -7,8 +7,10 @@ import re
 from datetime import datetime
 from pathlib import Path
 
+from wonderful_team.core.filesystem import make_private_folder
 from wonderful_team.core.text import user_path
 from wonderful_team.errors import ConfigError, UnknownNameError
+from wonderful_team.redaction import redact
 
 OUT_VARIABLE = "WONDERFUL_TEAM_RUNS"
 LATEST = "latest"
@@ -29,7 +31,7 @@ def new_run_folder(words: str, out: str | Path | None = None) -> Path:
     root = runs_folder(out)
     stem = f"{datetime.now():%Y-%m-%d_%H%M%S}_{_slug(words)}"
     try:
-        root.mkdir(parents=True, exist_ok=True)
+        make_private_folder(root)
         folder = _first_free(root, stem)
         link, fresh = root / LATEST, root / f".{LATEST}-{os.getpid()}"
         fresh.symlink_to(folder.name)
@@ -77,14 +79,14 @@ def all_runs(out: str | Path | None = None) -> list[Path]:
 def _slug(words: str) -> str:
     # A picture among the words has no words of its own.
     words = re.sub(r"\{[^{}]*\}", "pictured thing", words)
-    return re.sub(r"[^a-z0-9]+", "-", words.lower()).strip("-")[:40].strip("-") or "run"
+    return re.sub(r"[^a-z0-9]+", "-", redact(words).lower()).strip("-")[:40].strip("-") or "run"
 
 
 def _first_free(root: Path, stem: str) -> Path:
     for count in range(1, 1000):
         folder = root / (stem if count == 1 else f"{stem}-{count}")
         try:
-            folder.mkdir()
+            folder.mkdir(mode=0o700)
         except FileExistsError:
             continue
         return folder

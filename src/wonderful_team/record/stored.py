@@ -8,13 +8,13 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from PIL import Image
 
 from wonderful_team.core.geometry import AffineCamera, Camera, PinholeCamera, PlanarCamera
 from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.pictures import picture_hash
 from wonderful_team.core.values import Instruction, Observation, Plan, RobotState, Slot, View
 from wonderful_team.errors import ConfigError
+from wonderful_team.images import OWN_FORMATS, open_picture
 from wonderful_team.record.picture_store import PictureStore
 from wonderful_team.record.plan_file import plan_from_json
 from wonderful_team.record.values_file import decode, encode
@@ -94,18 +94,30 @@ def stored_plan(folder: Path, record: Mapping[str, Any], number: int) -> Plan:
     return replace(plan, instruction=instruction) if plan.instruction.text == instruction.text else plan
 
 
+def file_of_run(folder: Path, name: str, what: str) -> Path:
+    """A file that a record names, inside of the record's own folder.
+
+    Raises:
+        ConfigError: It lies elsewhere, through `..`, a whole path or a link: a record may be of unknown origin.
+    """
+    path = folder / name
+    if not path.resolve().is_relative_to(folder.resolve()):
+        raise ConfigError(f"{folder}: {what}: the record names the file {name!r}, which is not in its folder")
+    return path
+
+
 def _view(folder: Path, record: Mapping[str, Any], key: str, facts: Mapping[str, Any], what: str) -> View:
     if key not in record["files"]:
         raise ConfigError(f"{folder}: {what}: the record names no file for picture {key}")
-    path = folder / record["files"][key]
+    path = file_of_run(folder, record["files"][key], what)
     try:
-        with Image.open(path) as image:
+        with open_picture(path, OWN_FORMATS) as image:
             rgb = np.asarray(image.convert("RGB"), dtype=np.uint8)
     except OSError as error:
         raise ConfigError(f"{path}: {what} cannot be read: {error.strerror or error}") from error
     if picture_hash(rgb) != key:
         raise ConfigError(f"{path}: {what} is not the picture that was recorded (its hash is not {key})")
-    depth = None if facts["depth"] is None else _depth(folder / facts["depth"], what)
+    depth = None if facts["depth"] is None else _depth(file_of_run(folder, facts["depth"], what), what)
     return View(facts["id"], facts["camera_name"], facts["time_s"], rgb, depth, _camera(folder, facts["camera"], what))
 
 

@@ -15,6 +15,7 @@ import numpy as np
 from PIL import Image
 
 from wonderful_team.core.values import View
+from wonderful_team.images import OWN_FORMATS, open_picture
 
 WRITTEN = {"Critique": "Doubt"}
 """Classes that files call by the name of an earlier release."""
@@ -152,7 +153,7 @@ def _decode_dataclass(value: Any, kind: Any, place: str) -> Any:
 def _decode_view(value: Any, place: str) -> View:
     _require(isinstance(value, Mapping) and value.get("type") == "View", value, place, "an object of type 'View'")
     try:
-        with Image.open(io.BytesIO(base64.b64decode(value["png"]))) as image:
+        with open_picture(io.BytesIO(base64.b64decode(value["png"])), OWN_FORMATS) as image:
             rgb = np.asarray(image.convert("RGB"), dtype=np.uint8)
         return View(value["id"], value["camera_name"], float(value["time_s"]), rgb)
     except (KeyError, OSError, TypeError, Image.DecompressionBombError) as error:

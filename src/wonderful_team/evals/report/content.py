@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import base64
+import contextlib
 import os
 from collections.abc import Sequence
 from itertools import zip_longest
@@ -10,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 import cv2
+import numpy as np
 from markupsafe import Markup
 
 from wonderful_team.core.text import counted
@@ -20,6 +22,7 @@ from wonderful_team.evals.report import tables
 from wonderful_team.evals.report.plots import cost_plot, rate_plot, task_plot
 from wonderful_team.evals.summary import Summary
 from wonderful_team.evals.trials import Condition, Row
+from wonderful_team.images import OWN_FORMATS, open_picture
 
 EXAMPLES = 3
 GALLERY = 24
@@ -174,8 +177,8 @@ def _thumbnail(run: Path) -> str:
     """A small picture of a run as a data address, so that the page stands alone: its plan, else its last view; "" without any."""
     views = [run / "final.png", *sorted((run / "pictures").glob("view_*.png"), reverse=True)]
     for path in views:
-        picture = cv2.imread(str(path)) if path.is_file() else None
-        if picture is not None:
+        with contextlib.suppress(OSError), open_picture(path, OWN_FORMATS) as opened:
+            picture = np.asarray(opened.convert("RGB"))[..., ::-1]
             height = max(1, round(picture.shape[0] * THUMBNAIL_PX / picture.shape[1]))
             small = cv2.resize(picture, (THUMBNAIL_PX, height), interpolation=cv2.INTER_AREA)
             done, coded = cv2.imencode(".jpg", small, [cv2.IMWRITE_JPEG_QUALITY, 82])
@@ -188,4 +191,6 @@ def link(target: str, page: Path) -> str:
     """A link from the page's folder; "" for nothing."""
     if not target:
         return ""
-    return Path(os.path.relpath(Path(target).absolute(), page.parent.absolute())).as_posix()
+    relative = Path(os.path.relpath(Path(target).absolute(), page.parent.absolute())).as_posix()
+    # A store of unknown origin may name a page "javascript:…".
+    return f"./{relative}" if ":" in relative.partition("/")[0] else relative

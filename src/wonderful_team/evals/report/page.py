@@ -11,6 +11,7 @@ from typing import Any
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
+from wonderful_team.core.filesystem import make_private_folder, write_redacted
 from wonderful_team.core.text import counted, visible
 from wonderful_team.errors import ConfigError
 from wonderful_team.evals.names import short_names
@@ -77,11 +78,11 @@ def write_all(
     methods = {one.method for one in summary.compared}
     if baseline is not None and baseline not in methods:
         raise ConfigError(f"baseline {baseline!r}: the stores compare {', '.join(sorted(methods)) or 'nothing'}")
-    page.parent.mkdir(parents=True, exist_ok=True)
+    make_private_folder(page.parent)
     table = Path(csv) if csv is not None else page.with_suffix(".csv")
-    table.write_text(tables.to_csv(rows), encoding="utf-8")
+    write_redacted(table, tables.to_csv(rows))
     markdown = page.with_suffix(".md")
-    markdown.write_text(tables.to_markdown(summary, baseline), encoding="utf-8")
+    write_redacted(markdown, tables.to_markdown(summary, baseline))
     tex = _write_latex(summary, Path(latex), baseline) if latex is not None else ()
     warnings = (*conflicts, *summary.warnings())
     files = {"CSV": table, "Markdown": markdown, **{f"LaTeX {file.stem}": file for file in tex}}
@@ -89,7 +90,7 @@ def write_all(
     content["files"] = {name: link(str(file), page) for name, file in files.items()}
     content["stores"] = [(str(one), _hash(Path(one))) for one in stores]
     content["command"] = command
-    page.write_text(visible(_render(content), layout=True), encoding="utf-8")
+    write_redacted(page, visible(_render(content), layout=True), errors="xmlcharrefreplace")
     return Written(page, table, markdown, tex, summary, warnings)
 
 
@@ -112,10 +113,10 @@ def read_stores(stores: Sequence[str | Path]) -> tuple[list[Row], list[dict[str,
 
 
 def _write_latex(summary: Summary, folder: Path, baseline: str | None) -> tuple[Path, ...]:
-    folder.mkdir(parents=True, exist_ok=True)
+    make_private_folder(folder)
     made = latex_tables(summary, baseline)
     for name, text in made.items():
-        (folder / f"{name}.tex").write_text(text, encoding="utf-8")
+        write_redacted(folder / f"{name}.tex", text)
     return tuple(folder / f"{name}.tex" for name in made)
 
 

@@ -21,6 +21,7 @@ from wonderful_team.errors import (
     WonderfulTeamError,
 )
 from wonderful_team.models.providers.bounded import ReplyTooLargeError
+from wonderful_team.redaction import redact
 
 _LONGEST_BODY = 300
 _CONTEXT = re.compile(
@@ -39,7 +40,6 @@ _THINKING = re.compile(r"chat_template_kwargs|reasoning_effort|enable_thinking",
 _BAD_KEY = re.compile(
     r"\bapi.?key\b.{0,40}(not valid|invalid|incorrect|expired|missing)|(invalid|incorrect) api.?key", re.I
 )
-_KEYS = re.compile(r"\b(sk|key|AIza|gsk|xai|or)-?[A-Za-z0-9_\-*]{12,}|Bearer\s+\S+", re.I)
 
 
 @dataclass(frozen=True)
@@ -65,25 +65,18 @@ class Fault:
     billed: bool = False
 
 
-def scrubbed(text: str, key: str | None) -> str:
-    """The text without the key, and without anything that looks like one."""
-    if key and len(key) > 3:
-        text = text.replace(key, "[key]")
-    return _KEYS.sub("[key]", text)
-
-
-def fault_of(error: BaseException, name: str, where: str, key: str | None, key_names: str) -> Fault:
-    """Sort an error of the library; `key` is taken out of every text, `key_names` are the variables that may hold it."""
+def fault_of(error: BaseException, name: str, where: str, key_names: str) -> Fault:
+    """Sort an error of the library; keys are taken out of every text, `key_names` are the variables that may hold ours."""
     too_large = _caused_by(error, ReplyTooLargeError)
     if too_large is not None:
         return Fault(ModelServerError(f"{name}: {where}: {too_large}"), billed=True)
-    return _sorted(error, name, where, key, key_names)
+    return _sorted(error, name, where, key_names)
 
 
-def _sorted(error: Any, name: str, where: str, key: str | None, key_names: str) -> Fault:
+def _sorted(error: Any, name: str, where: str, key_names: str) -> Fault:
     from pydantic_ai import exceptions as lib
 
-    said = _said(error, key)
+    said = _said(error)
     match error:
         case lib.ModelAuthenticationError():
             return Fault(ModelAuthError(f"{name}: {where} refused the key; it is read from {key_names} ({said})"))
@@ -153,7 +146,7 @@ def _asked_wait(error: Any) -> float | None:
     return seconds if 0 <= seconds < math.inf else None
 
 
-def _said(error: BaseException, key: str | None) -> str:
+def _said(error: BaseException) -> str:
     """What the provider said, short and without the key."""
     body: Any = getattr(error, "body", None)
     if isinstance(body, dict):
@@ -161,6 +154,6 @@ def _said(error: BaseException, key: str | None) -> str:
         body = inner.get("message", inner) if isinstance(inner, dict) else inner
     status = getattr(error, "status_code", None)
     text = str(body) if body else f"{type(error).__name__}: {error}"
-    text = " ".join(scrubbed(text, key).split())
+    text = " ".join(redact(text).split())
     text = text if len(text) <= _LONGEST_BODY else text[: _LONGEST_BODY - 1] + "…"
     return f"status {status}: {text}" if status is not None else text

@@ -12,8 +12,8 @@ from wonderful_team.errors import (
     UnknownModelError,
 )
 from wonderful_team.models.providers.bounded import ReplyTooLargeError, fetch_json
-from wonderful_team.models.providers.faults import scrubbed
 from wonderful_team.models.providers.specs import SERVER_KEY, is_loopback
+from wonderful_team.redaction import redact
 
 
 def server_models(base_url: str, key: str | None, *, timeout_s: float = 10.0, local_only: bool = False) -> list[str]:
@@ -33,7 +33,7 @@ def server_models(base_url: str, key: str | None, *, timeout_s: float = 10.0, lo
     try:
         status, said = fetch_json("GET", f"{base_url}/models", headers=headers, timeout_s=timeout_s, direct=direct)
     except (httpx2.HTTPError, httpx2.InvalidURL, ReplyTooLargeError) as error:
-        reason = f"{type(error).__name__}: {scrubbed(str(error), key)}"
+        reason = f"{type(error).__name__}: {redact(str(error))}"
         raise ModelUnavailableError(f"no model server answers at {base_url} ({reason})") from None
     if status in (401, 403):
         raise ModelAuthError(f"{base_url} wants a key: set the environment variable {SERVER_KEY}")

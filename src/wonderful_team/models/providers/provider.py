@@ -27,10 +27,11 @@ from wonderful_team.models.budget import Ticket, current_ticket
 from wonderful_team.models.conventions import Convention
 from wonderful_team.models.prices import Prices
 from wonderful_team.models.providers import library
-from wonderful_team.models.providers.faults import Fault, fault_of, scrubbed
+from wonderful_team.models.providers.faults import Fault, fault_of
 from wonderful_team.models.providers.settings import LONGEST_WAIT_S, Settings
 from wonderful_team.models.providers.specs import SERVER_KEY, VENDORS, Spec
 from wonderful_team.models.wire import Composed, Reading, Unreadable, compose, encodable, ticks_of
+from wonderful_team.redaction import keep_secret, redact, redact_known
 
 if TYPE_CHECKING:
     from pydantic_ai.messages import ModelResponse
@@ -75,6 +76,7 @@ class Provider:
     )
 
     def __post_init__(self) -> None:
+        keep_secret(self.key)
         self._learned = _Learned(self.settings.schemas, self.settings.max_pictures)
 
     @property
@@ -199,7 +201,7 @@ class Provider:
         except WonderfulTeamError:
             raise
         except Exception as error:  # noqa: BLE001  every fault of the library or the wire is sorted
-            return fault_of(error, self.name, self.spec.base_url, self.key, " or ".join(keys))
+            return fault_of(error, self.name, self.spec.base_url, " or ".join(keys))
 
     def _settings(self, max_tokens: int) -> dict[str, Any]:
         settings: dict[str, Any] = {"max_tokens": max_tokens, "max_retries": 0}
@@ -269,7 +271,7 @@ class Provider:
         response, limit = reply
         said = "".join(part.content for part in response.parts if isinstance(part, TextPart))
         thought = "".join(part.content for part in response.parts if isinstance(part, ThinkingPart))
-        said, thought = (encodable(scrubbed_key(text, self.key)) for text in (said, thought))
+        said, thought = (encodable(redact_known(text)) for text in (said, thought))
         usage = self._usage(request, response, said, thought, tries)
         ticket.answered = usage
         details = response.provider_details or {}
@@ -297,7 +299,7 @@ class Provider:
     def _declined(self, request: Request, details: Mapping[str, Any], said: str) -> WonderfulTeamError:
         why = str(details.get("refusal") or "")
         reason = str(details.get("finish_reason") or "")
-        text = scrubbed(why or said, self.key)[:200]
+        text = redact(why or said)[:200]
         if why or "refusal" in reason:
             return ModelRefusalError(f"{self.name} refused to answer {request.contract}: {text}", stage=request.stage)
         kind = reason or "content_filter"
@@ -339,11 +341,6 @@ class Provider:
             out = round(len(said) / CHARACTERS_PER_TOKEN)
             usage = Usage(tries, reckoned.tokens_in, tokens_out=out, pictures=len(request.pictures))
         return replace(usage, usd=self.prices.usd(usage))
-
-
-def scrubbed_key(text: str, key: str | None) -> str:
-    """What a model said, without the key (a server may echo it)."""
-    return text.replace(key, "[key]") if key and len(key) > 3 else text
 
 
 async def _keep_open(client: Any) -> AsyncGenerator[None]:

@@ -11,6 +11,7 @@ from typing import Literal, TypeAlias
 from urllib.parse import urlsplit, urlunsplit
 
 from wonderful_team.errors import ConfigError, LocalOnlyError, ModelAuthError
+from wonderful_team.redaction import keep_secret
 
 Api: TypeAlias = Literal["openai-chat", "openai-responses", "anthropic", "google", "openrouter", "server"]
 
@@ -128,14 +129,10 @@ def find_key(spec: Spec, given: str | None, environment: Mapping[str, str] | Non
         ModelAuthError: A vendor needs a key and none is set; names the variable.
     """
     held = os.environ if environment is None else environment
-    if given:
-        return given
-    if not spec.official:
-        return held.get(SERVER_KEY) or None
-    assert spec.vendor is not None
-    names = VENDORS[spec.vendor].keys
-    key = next((held[name] for name in names if held.get(name)), None)
-    if key is None:
+    names = VENDORS[spec.vendor].keys if spec.official and spec.vendor is not None else (SERVER_KEY,)
+    key = given or next((held[name] for name in names if held.get(name)), None)
+    keep_secret(key)
+    if key is None and spec.official:
         raise ModelAuthError(f"model {spec.text!r} needs a key: set the environment variable {' or '.join(names)}")
     return key
 

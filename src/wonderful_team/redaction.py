@@ -1,0 +1,210 @@
+"""No key leaves this process: the one place that knows every secret in use, and takes them out of text.
+
+A key is registered where it is read (`keep_secret`); what the environment holds under a secret's name is known without that.
+Whatever is written, printed, stored or raised passes through `redact`.
+"""
+
+from __future__ import annotations
+
+import base64
+import contextlib
+import functools
+import os
+import re
+import sys
+from collections.abc import Iterator, Mapping
+from typing import Any, TextIO, cast
+
+HIDDEN = "[redacted]"
+SHORTEST = 6
+"""Shortest key that can be told from ordinary words [characters]; servers without keys are given "none" or "EMPTY"."""
+SHORTEST_UNUSED = 8
+"""The same for a variable of the environment that nothing has used as a key."""
+_LOOKS = (
+    re.compile(r"\b(?:sk|pk|rk)-[A-Za-z0-9_\-]{8,}"),
+    re.compile(r"\bAIza[0-9A-Za-z_\-]{10,}"),
+    re.compile(r"\b(?:gh[pousr]_|github_pat_|hf_|xox[baprs]-|gsk_|xai-|AKIA)[A-Za-z0-9_\-]{10,}"),
+    re.compile(r"\beyJ[A-Za-z0-9_\-]{8,}\.[A-Za-z0-9_\-]{8,}\.[A-Za-z0-9_\-]*"),
+)
+_AFTER_NAME = re.compile(
+    r"""(?ix)
+    (\b(?:bearer|basic)\s+                                                       # an Authorization header
+    |(?:\b|_)(?:x-)?(?:api[_-]?key|access[_-]?token|auth[_-]?token|client[_-]?secret|password)\\?["']?\s*[:=]\s*\\?["']?  # name: value
+    |[?&](?:key|token|api_key)=                                                  # part of an address
+    |://[^/\s:@"']+:(?=[^/\s@"']+@))                                             # user:password@host
+    ([A-Za-z0-9_\-./+~%]{6,}=*)
+    """
+)
+_EMBEDDED = re.compile(r"(;base64,[A-Za-z0-9+/=]+)")
+"""A picture inside of a page: pixels may look like anything."""
+_SECRET_VARIABLE = re.compile(r"(?i)(key|token|secret|password|passwd|passphrase|credentials?)(_?\d+)?$")
+_ESCAPES = re.compile(r"[\\%&]")
+_NAMED = {'"': "quot", "&": "amp", "<": "lt", ">": "gt", "'": "apos"}
+_used: set[str] = set()
+
+
+def keep_secret(value: str | None) -> None:
+    """Take a key out of everything that leaves this process from now on."""
+    if value is not None and len(value.strip()) >= SHORTEST:
+        _used.add(value.strip())
+
+
+def redact(text: str) -> str:
+    """The text without any known secret, in whichever coding, and without anything that looks like a key."""
+    return _redact_looks(_known().hide(text))
+
+
+def redact_known(text: str) -> str:
+    """The text without any secret that is known: plain, as JSON, an address or HTML writes it, in hex or in base64."""
+    return _known().hide(text)
+
+
+def redact_all(value: Any, *, looks: bool = True) -> Any:
+    """A copy of a JSON value with every text in it redacted; picture data (key "png") keeps what merely looks like a key.
+
+    Args:
+        value: Mappings, lists and texts; what else it holds stays as it is.
+        looks: Also what merely looks like a key.
+    """
+    known = _known()
+    if not looks and known.empty:
+        return value
+
+    def clean(value: Any) -> Any:
+        match value:
+            case str():
+                return _redact_looks(known.hide(value)) if looks else known.hide(value)
+            case Mapping():
+                return {
+                    clean(str(key)): known.hide(item) if key == "png" and isinstance(item, str) else clean(item)
+                    for key, item in value.items()
+                }
+            case list() | tuple():
+                return [clean(item) for item in value]
+        return value
+
+    return clean(value)
+
+
+@contextlib.contextmanager
+def redacted_streams() -> Iterator[None]:
+    """Redact what anybody prints meanwhile: libraries, warnings, threads that end with an exception, the user's own code."""
+    before = sys.stdout, sys.stderr
+    sys.stdout, sys.stderr = (cast(TextIO, RedactedStream(stream)) for stream in before)
+    try:
+        yield
+    finally:
+        sys.stdout, sys.stderr = before
+
+
+class RedactedStream:
+    """A text stream that redacts each piece as it is written."""
+
+    def __init__(self, stream: TextIO) -> None:
+        self._stream = stream
+
+    def write(self, text: str) -> int:
+        self._stream.write(redact(text) if isinstance(text, str) else text)
+        return len(text)
+
+    def writelines(self, lines: Any) -> None:
+        for line in lines:
+            self.write(line)
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._stream, name)
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._stream)
+
+
+def _redact_looks(text: str) -> str:
+    if ";base64," in text:
+        pieces = _EMBEDDED.split(text)
+        return "".join(piece if k % 2 else _redact_looks(piece) for k, piece in enumerate(pieces))
+    for pattern in _LOOKS:
+        text = pattern.sub(HIDDEN, text)
+    return _AFTER_NAME.sub(lambda match: match.group(1) + HIDDEN, text)
+
+
+def _known() -> _Known:
+    set_now = (
+        value.strip()
+        for name, value in os.environ.items()
+        if len(value) >= SHORTEST_UNUSED and _SECRET_VARIABLE.search(name)
+    )
+    return _known_of(frozenset(_used), frozenset(value for value in set_now if len(value) >= SHORTEST_UNUSED))
+
+
+@functools.lru_cache(maxsize=16)
+def _known_of(used: frozenset[str], in_environment: frozenset[str]) -> _Known:
+    # A variable such as SSH_KEY may name a file, which is no secret.
+    return _Known(used | {value for value in in_environment if not os.path.exists(value)})
+
+
+class _Known:
+    """Finds these secrets in every coding and case; the longest first, so that a shorter one leaves no half of another."""
+
+    def __init__(self, secrets: frozenset[str]) -> None:
+        ordered = sorted(secrets, key=lambda secret: (-len(secret), secret))
+        self._whole = tuple(form for secret in ordered for form in _whole_forms(secret))
+        # Base64 may be escaped once more where it holds more than letters and digits.
+        escaped = [*ordered, *(form for form in self._whole if not form.isalnum() and form not in secrets)]
+        first = "".join(re.escape(letter) for letter in sorted({form[0] for form in escaped}))
+        coded = "|".join("".join(map(_character, form)) for form in escaped)
+        # The look ahead makes it ten times as fast.
+        self._coded = re.compile(rf"(?=[{first}\\%&])(?:{coded})", re.IGNORECASE) if ordered else None
+        self._plain = re.compile("|".join(map(re.escape, self._whole)), re.IGNORECASE)
+        self._lower = tuple(dict.fromkeys(form.lower() for form in self._whole))
+
+    @property
+    def empty(self) -> bool:
+        return self._coded is None
+
+    def hide(self, text: str) -> str:
+        if self._coded is None:
+            return text
+        if _ESCAPES.search(text):
+            # A picture inside of a page holds no escapes.
+            pieces = _EMBEDDED.split(text)
+            text = "".join(piece if k % 2 else self._coded.sub(HIDDEN, piece) for k, piece in enumerate(pieces))
+        lower = text.lower()
+        return self._plain.sub(HIDDEN, text) if any(form in lower for form in self._lower) else text
+
+
+def _whole_forms(secret: str) -> list[str]:
+    """The secret as it is, in hex, and in base64 of either alphabet."""
+    raw = secret.encode("utf-8", errors="surrogatepass")
+    coded = _base64_forms(raw)
+    swapped = [form.replace("+", "-").replace("/", "_") for form in coded]
+    return list(dict.fromkeys([secret, raw.hex(), *coded, *swapped]))
+
+
+def _character(letter: str) -> str:
+    """A letter as itself, or as JSON, Python, an address or HTML may write it, escaped once or several times."""
+    units = letter.encode("utf-16-be", errors="surrogatepass").hex()
+    octets = letter.encode("utf-8", errors="surrogatepass").hex()
+    forms = [
+        re.escape(letter),
+        "".join(rf"\\+u{units[k : k + 4]}" for k in range(0, len(units), 4)),
+        "".join(rf"\\+x{octets[k : k + 2]}" for k in range(0, len(octets), 2)),
+        "".join(f"%(?:25)*{octets[k : k + 2]}" for k in range(0, len(octets), 2)),
+        rf"&(?:amp;)*\#0*{ord(letter)};",
+        rf"&(?:amp;)*\#[xX]0*{ord(letter):x};",
+    ]
+    if 127 < ord(letter) < 256:
+        forms.append(rf"\\+x{ord(letter):02x}")
+    if letter in "\"'\\/+":
+        forms.append(rf"\\+{re.escape(letter)}")
+    if letter in _NAMED:
+        forms.append(f"&(?:amp;)*{_NAMED[letter]};")
+    return f"(?:{'|'.join(forms)})"
+
+
+def _base64_forms(raw: bytes) -> list[str]:
+    """What stands in base64 for these bytes wherever they begin: the letters that no byte before or after has a part in."""
+    forms = []
+    for before, shared in enumerate((0, 2, 3)):
+        coded = base64.b64encode(b"\0" * before + raw).decode("ascii")
+        forms.append(coded[shared : (before + len(raw)) * 8 // 6])
+    return forms

@@ -11,6 +11,7 @@ import contextlib
 import errno
 import io
 import os
+import re
 import sqlite3
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
@@ -271,8 +272,6 @@ def names_the_file(ended: Ended) -> bool:
     """Whether what was printed names the file that could not be written, or the folder or store that it belongs to."""
     path = Path(ended.faults.failed)
     told = (ended.out + ended.err).replace("\\\\", "\\")
-    # A file is written beside its place first, under a name that starts with a dot.
-    name = (
-        path.name.removeprefix(".").split(".part")[0].rpartition(".")[0] if path.name.endswith(".part") else path.name
-    )
+    # A file is written beside its place first: `.NAME.PID.part`, or `.latest-PID` for the link.
+    name = re.sub(r"^\.(.*?)(?:\.\d+\.part|-\d+)$", r"\1", path.name)
     return name in told

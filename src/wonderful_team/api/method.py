@@ -37,7 +37,10 @@ class Method:
         price: "IN,OUT" or (IN, OUT) in USD per million tokens, for all roles or by role, where no price is known.
         allow_unpriced: Accept models of unknown price without a cap on tokens.
         local_only: Refuse models outside this machine and private networks.
-        max_calls, max_tokens, max_seconds, max_usd: Caps of one plan or trial; None for no cap.
+        max_calls, max_tokens, max_usd: Caps of one plan or trial; None for no cap.
+        max_seconds: Longest time of one plan or trial: models, the method, the world, drawing and judging; None for no cap. A call
+            that does not come back is left behind in its thread, and `stop()` of the world is called. So with this cap a world's
+            methods run in one thread of their own.
         concurrency: Most calls in flight at once.
         cache: on, off or only (never call a model); None: on for vendors and servers, off for `offline` and own models.
         cache_file: Where answers are kept; default $WONDERFUL_TEAM_CACHE, else the user's cache folder.

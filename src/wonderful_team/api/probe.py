@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from wonderful_team import registry
 from wonderful_team.core.caps import Caps
+from wonderful_team.core.deadline import bounded, limited
 from wonderful_team.core.protocols import Model, privileged
 from wonderful_team.core.values import Usage
 from wonderful_team.errors import ConfigError
@@ -61,7 +62,7 @@ def probe_model(
         local_only: Refuse models outside this machine and private networks.
         max_calls: Cap on calls.
         max_tokens: Cap on tokens.
-        max_seconds: Cap on the time from the first call.
+        max_seconds: Cap on the time of all: models, what a server says of itself, drawing.
         max_usd: Cap on money.
         deadline: Longest time for one request [s].
         concurrency: Most calls at once.
@@ -75,14 +76,15 @@ def probe_model(
     if save is not None:
         check_name(save)
     caps = Caps(max_calls, max_tokens, max_seconds, max_usd)
-    subject = _subject(model, price, local_only, deadline, caps, allow_unpriced)
-    options = Options(
-        save or "", seed, most_pictures, full, scenes, rendered_scenes(rendered, seed) if full else (), caps, concurrency,
-        deadline,
-    )  # fmt: skip
-    with Caller() as caller:
-        probed: Probed = caller.wait_for(probe(subject, options, tell))
-    return probed
+    with limited(max_seconds):
+        subject = _subject(model, price, local_only, deadline, caps, allow_unpriced)
+        shown = bounded("drawing scenes", rendered_scenes, rendered, seed) if full else ()
+        options = Options(
+            save or "", seed, most_pictures, full, scenes, shown, caps, concurrency, deadline,
+        )  # fmt: skip
+        with Caller() as caller:
+            probed: Probed = caller.wait_for(probe(subject, options, tell), "probing")
+        return probed
 
 
 def _subject(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import warnings
 from collections.abc import Callable, Sequence
 from dataclasses import fields
@@ -13,6 +14,7 @@ from wonderful_team.api.method import Method
 from wonderful_team.api.recording import tell, write_page_or_warn
 from wonderful_team.api.results import PlanResult, TrialResult
 from wonderful_team.api.team import _failing, _recording
+from wonderful_team.core.deadline import limited
 from wonderful_team.core.protocols import Policy, Privileged, Subscriber, World, privileged
 from wonderful_team.core.renamed import renamed_arguments
 from wonderful_team.core.values import Instruction, KeepOut, Plan, ReadPlan
@@ -88,9 +90,12 @@ def rollout(
         KeyboardInterrupt: Ctrl-C. The world was stopped and the record is whole.
         SystemExit: SIGTERM or SIGHUP, likewise; its code is 128 + the signal's number.
     """
+    longest_s = method.max_seconds if isinstance(method, Method) else None
     if isinstance(world, str):
-        made_here = make_world(world, seed or 0)
-        try:
+        with contextlib.ExitStack() as closing:
+            closing.enter_context(limited(longest_s))
+            made_here = make_world(world, seed or 0)
+            closing.callback(close_world, made_here, lambda text: warnings.warn(text, stacklevel=2))
             return rollout(
                 method,
                 made_here,
@@ -104,8 +109,6 @@ def rollout(
                 out=out,
                 subscribers=subscribers,
             )
-        finally:
-            close_world(made_here, lambda text: warnings.warn(text, stacklevel=2))
     if not isinstance(method, Method) and not callable(getattr(method, "decide", None)):
         raise ConfigError(
             f"a {type(method).__name__} is no method; valid: a wt.Team, a wt.Method, or an object with decide(situation)"
@@ -130,7 +133,7 @@ def rollout(
         scored=scorer is not None,
     )
     place, command = (out or named.out, named.command) if named else (out, None)
-    with _recording(guarded.instruction.plain_text, place, command) as recorder:
+    with limited(longest_s), _recording(guarded.instruction.plain_text, place, command) as recorder:
         everyone = (recorder, *subscribers, *(named.subscribers if named else ()))
         for text in named.warnings if named else ():
             tell(everyone, "warning", "setup", text)
@@ -153,11 +156,11 @@ def rollout(
                     "setup": setup,
                     "words": named.words() if named else {},
                 },
-                page=lambda: write_page_or_warn(recorder.folder),
+                page=lambda: write_page_or_warn(recorder),
                 strict=named.strict if named else False,
             )
     happened = {item.name: getattr(trial, item.name) for item in fields(trial)}
-    return TrialResult(**happened, folder=recorder.folder, warnings=recorder.warnings)
+    return TrialResult(**happened, folder=recorder.folder, warnings=recorder.warnings, unwritten=recorder.unwritten)
 
 
 def task(name: str, *, instruction: str, horizon: int = 1, **more: Any) -> Callable[[Callable[..., Any]], Any]:

@@ -16,6 +16,7 @@ from wonderful_team.api.recording import tell, write_page_or_warn
 from wonderful_team.api.results import PlanResult
 from wonderful_team.core import values
 from wonderful_team.core.actions import PICK_PLACE, VOCABULARIES, Vocabulary
+from wonderful_team.core.deadline import limited, to_end
 from wonderful_team.core.geometry import PlanarCamera
 from wonderful_team.core.interrupts import ends_on_signal, held
 from wonderful_team.core.protocols import Decision, Policy, Situation, Subscriber
@@ -154,7 +155,7 @@ class Team(Method):
     ) -> PlanResult:
         """Make a plan in a run folder of its own, pass it through the gate, and write its page."""
         started = time.monotonic()
-        with _recording(instruction.plain_text, self.out, self.command) as recorder:
+        with limited(self.max_seconds), _recording(instruction.plain_text, self.out, self.command) as recorder:
             everyone = (recorder, *self.subscribers)
             told = {**self.configuration(), "task": instruction, "limits": limits, "setup": setup}
             tell(everyone, "run", str(setup["entry"]), {**told, "words": self.words()})
@@ -164,13 +165,15 @@ class Team(Method):
             with _failing(recorder, everyone), Caller() as caller:
                 work = make(recorder)
                 plan: Plan = caller.wait_for(work.plan)
-                gate = plan_gate(plan, observation, vocabulary, limits)
+                gate = to_end("the safety gate", plan_gate, plan, observation, vocabulary, limits)
                 if gate is not None:
                     tell(everyone, "gate", "before motion", gate)
                 status = plan.status if gate is None or gate.admitted else "refused"
                 tell(everyone, "done", status, plan)
         spent, seconds = dict(work.usage_by_role()), time.monotonic() - started
-        return PlanResult(plan, observation, gate, spent, seconds, recorder.folder, recorder.warnings)
+        return PlanResult(
+            plan, observation, gate, spent, seconds, recorder.folder, recorder.warnings, recorder.unwritten
+        )
 
 
 def instruction_of(words: str | Instruction) -> Instruction:
@@ -254,7 +257,7 @@ def _close(recorder: Recorder) -> None:
     """The record and the page, whole: a signal that comes meanwhile is raised afterwards."""
     with held():
         recorder.close()
-        write_page_or_warn(recorder.folder)
+        write_page_or_warn(recorder)
 
 
 @contextlib.contextmanager

@@ -22,6 +22,7 @@ from wonderful_team.api.photo_trial import run_photo
 from wonderful_team.api.rollout import rollout
 from wonderful_team.api.trial_setup import UsageCounter, fingerprint, prepared
 from wonderful_team.core.actions import Action
+from wonderful_team.core.deadline import limited
 from wonderful_team.core.jsonable import to_jsonable
 from wonderful_team.core.protocols import Policy, World, privileged
 from wonderful_team.core.values import Instruction, Observation, StepReport, Trial, Usage, View
@@ -31,6 +32,7 @@ from wonderful_team.evals.trials import Condition, RunSettings, TrialRow, TrialS
 from wonderful_team.registry.files import check_names_no_code, is_file_name
 from wonderful_team.registry.role_models import REST, choice_of
 from wonderful_team.runtime import rollout as roll_out
+from wonderful_team.runtime.user_code import GuardedWorld
 
 SUCCESS_EVERY = 10
 """With pages of failures, successes of these seeds (1000, 1010, ...) keep theirs too: a reader wants to see both."""
@@ -39,6 +41,11 @@ SUCCESS_EVERY = 10
 def run_trial(spec: TrialSpec, settings: RunSettings) -> TrialRow:
     """Run one trial of a study in this process; a `TrialRunner`."""
     check_code(spec, settings)
+    with limited(settings.caps.seconds, apart=True):
+        return _trial(spec, settings)
+
+
+def _trial(spec: TrialSpec, settings: RunSettings) -> TrialRow:
     if spec.task.endswith(".json"):
         return run_photo(spec, settings)
     started = time.monotonic()
@@ -66,7 +73,7 @@ def run_trial(spec: TrialSpec, settings: RunSettings) -> TrialRow:
         )
     finally:
         with contextlib.suppress(Exception):
-            world.close()
+            GuardedWorld(world).close()
 
 
 def code_of_names(names: Iterable[str], models: Iterable[str]) -> frozenset[str]:

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
 import shlex
 import shutil
+import sqlite3
 import sys
 import time
 from pathlib import Path
@@ -13,7 +15,8 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from wonderful_team.cli.options import PATH
-from wonderful_team.cli.output import finish
+from wonderful_team.cli.output import finish, say
+from wonderful_team.core.deadline import limited
 from wonderful_team.core.interrupts import as_keyboard, exit_code
 
 if TYPE_CHECKING:
@@ -98,16 +101,30 @@ QUIET_S = 10.0
 @click.option("--max-calls", type=click.IntRange(1), help="Of the whole study.")
 @click.option("--max-tokens", type=click.IntRange(1), help="Of the whole study.")
 @click.option("--max-usd", type=click.FloatRange(0, min_open=True), help="Of the whole study, where prices are known.")
-@click.option("--max-seconds", type=click.FloatRange(0, min_open=True), help="Of this command.")
+@click.option(
+    "--max-seconds",
+    type=click.FloatRange(0, min_open=True),
+    help="Of this command; trials in flight are then cut and given back.",
+)
 @click.option("--trial-max-calls", type=click.IntRange(1), help="Of one trial: it then fails at stage budget.")
 @click.option("--trial-max-tokens", type=click.IntRange(1), help="Of one trial.")
-@click.option("--trial-max-seconds", type=click.FloatRange(0, min_open=True), help="Of one trial.")
+@click.option(
+    "--trial-max-seconds",
+    type=click.FloatRange(0, min_open=True),
+    help="Of one trial: models, world, drawing and judging.",
+)
 @click.option("--trial-max-usd", type=click.FloatRange(0, min_open=True), help="Of one trial.")
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON document instead of text.")
 @click.option("--open", "open_page", is_flag=True, help="Write the report beside the store and open it when done.")
 def command(**options: Any) -> int:
     """Run methods and models over suites with controls; what ended stays in the store, and the same command resumes."""
+    with limited(options["max_seconds"]):
+        return _bench(options)
+
+
+def _bench(options: dict[str, Any]) -> int:
     from wonderful_team.api.study import PILOT, Study
+    from wonderful_team.errors import FileNotWrittenError, WonderfulTeamError
 
     words = shlex.join(["wonderful-team", *(click.get_current_context().obj or ())])
     study = Study.from_options(**options, command=words)
@@ -117,8 +134,14 @@ def command(**options: Any) -> int:
         click.echo("a few pilot trials are run where nothing is recorded, on development seeds", err=True)
         estimate = study.estimate(options["pilot"] or PILOT, paid_pilot=options["pilot"] is not None)
         return finish("bench", text=estimate.text(), result=estimate.to_json(), as_json=options["as_json"], code=0)
-    with as_keyboard():
-        ended = study.run(report=Teller())
+    try:
+        with as_keyboard():
+            ended = study.run(report=Teller())
+    except FileNotWrittenError as error:
+        # The trials that ended stand in the store: their figures are the result in hand.
+        with contextlib.suppress(WonderfulTeamError, sqlite3.Error):
+            say("\n".join(study.lines()), err=options["as_json"])
+        raise error
     code = 0 if not ended.why else BUDGET if "cap" in ended.why else exit_code()
     lines = study.lines()
     if ended.why:

@@ -10,6 +10,7 @@ from typing import Any, TypeVar
 
 import click
 
+from wonderful_team.core.deadline import limited
 from wonderful_team.errors import ConfigError
 from wonderful_team.registry.role_models import read_roles
 
@@ -99,7 +100,8 @@ def common(command: Command) -> Callable[..., Any]:
             strict=values.pop("strict"),
             command=shlex.join(["wonderful-team", *(click.get_current_context().obj or ())]),
         )
-        return command(common=shared, **values)
+        with limited(caps["max_seconds"]):
+            return command(common=shared, **values)
 
     gathered.__doc__ = command.__doc__
     gathered.__name__ = command.__name__
@@ -141,7 +143,9 @@ _COMMON: tuple[Callable[[Any], Any], ...] = (
     ),
     click.option("--max-calls", type=click.IntRange(1), help="Most calls of models."),
     click.option("--max-tokens", type=click.IntRange(1), help="Most tokens."),
-    click.option("--max-seconds", type=click.FloatRange(0, min_open=True), help="Longest time from the first call."),
+    click.option(
+        "--max-seconds", type=click.FloatRange(0, min_open=True), help="Longest time of all: models, robot, drawing."
+    ),
     click.option("--max-usd", type=click.FloatRange(0, min_open=True), help="Most money, where prices are known."),
     click.option("--concurrency", type=click.IntRange(1), default=8, show_default=True, help="Calls at once."),
     click.option(

@@ -8,7 +8,7 @@ from typing import Any
 from pydantic import Field
 
 from wonderful_team.contracts.plans import TargetDraft, check_targets
-from wonderful_team.contracts.shown import AnswerModel, Question, Reasoning, ShownTask, known
+from wonderful_team.contracts.shown import AnswerModel, Question, Reasoning, ShownTask, fits, known
 from wonderful_team.core.values import Subgoal
 
 
@@ -38,6 +38,7 @@ class ExtractTargets(Question):
         return TargetList
 
     def validate(self, answer: Any) -> tuple[Any, tuple[str, ...]]:
+        fits(targets=len(answer.targets))
         check_targets(answer.targets, self.task.slot_names)
         ids = [target.id for target in answer.targets]
         wanted = [subgoal.id for subgoal in self.subgoals]

@@ -7,7 +7,7 @@ from typing import Literal
 
 from pydantic import Field
 
-from wonderful_team.contracts.shown import AnswerModel, Reasoning, known, unique
+from wonderful_team.contracts.shown import AnswerModel, Reasoning, fits, known, unique
 from wonderful_team.core.values import PointRole, Subgoal, Target
 
 
@@ -98,6 +98,7 @@ def check_plan(draft: PlanDraft, slot_names: Sequence[str], with_targets: bool) 
     """Raise ValueError when a draft does not hang together."""
     if draft.clarification is not None:
         return
+    fits(subgoals=len(draft.subgoals), targets=len(draft.targets))
     check_targets(draft.targets, slot_names)
     check_subgoals(draft.subgoals, [target.id for target in draft.targets] if with_targets else None)
     if with_targets:

@@ -13,7 +13,7 @@ from pydantic import BaseModel, ConfigDict, Field, FiniteFloat
 
 from wonderful_team.core.geometry import Box
 from wonderful_team.core.pictures import Picture, Point
-from wonderful_team.core.values import SlotKind
+from wonderful_team.core.values import SlotKind, size_problem
 
 OVERSHOOT = 0.02
 """How far past a picture's side a coordinate may lie and still be clamped (share of that side)."""
@@ -144,6 +144,13 @@ def known(names: Iterable[str], allowed: Sequence[str], what: str) -> None:
     wrong = [name for name in names if name not in allowed]
     if wrong:
         raise ValueError(f"unknown {what} {', '.join(map(repr, wrong))}; valid: {', '.join(allowed) or 'none'}")
+
+
+def fits(**parts: int) -> None:
+    """Raise ValueError when a plan has too many subgoals, targets or actions."""
+    problem = size_problem(**parts)
+    if problem:
+        raise ValueError(f"the plan has {problem}")
 
 
 def unique(names: Sequence[str], what: str) -> None:

@@ -9,7 +9,7 @@ from typing import Annotated, Any, Literal, Union, cast, get_type_hints
 
 from pydantic import Field, create_model
 
-from wonderful_team.contracts.shown import AnswerModel, Reasoning, known
+from wonderful_team.contracts.shown import AnswerModel, Reasoning, fits, known
 from wonderful_team.core import actions
 from wonderful_team.core.actions import Beside, OriginOf, Place, Side, Step
 
@@ -88,6 +88,7 @@ def check_steps(
     steps: Sequence[Step], subgoals: Sequence[str], targets: Sequence[str], functions: Sequence[str]
 ) -> None:
     """Raise ValueError when a step refers to a subgoal, target or function that does not exist, or serves none."""
+    fits(actions=len(steps))
     if subgoals and not steps:
         raise ValueError("the plan has subgoals but no steps")
     known([step.subgoal for step in steps], subgoals, "subgoal")

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import atexit
 import contextlib
+import contextvars
 import os
 import signal
 import sys
@@ -178,6 +179,35 @@ def start_thread(target: Callable[..., Any], *args: Any, name: str) -> threading
     _threads.append(thread)
     thread.start()
     return thread
+
+
+async def in_thread(function: Callable[..., Any], *args: Any, name: str) -> Any:
+    """Like asyncio.to_thread, but a call that hangs never keeps the program from ending (Ctrl-C, a deadline)."""
+    import asyncio  # a command that calls nothing starts without it
+
+    loop = asyncio.get_running_loop()
+    future: asyncio.Future[Any] = loop.create_future()
+
+    def settle(result: Any, error: BaseException | None) -> None:
+        if future.cancelled():
+            return
+        if error is None:
+            future.set_result(result)
+        else:
+            future.set_exception(error)
+
+    def work() -> None:
+        result, failed = None, None
+        try:
+            result = function(*args)
+        except BaseException as error:  # noqa: BLE001  handed to whoever waits
+            failed = error
+        with contextlib.suppress(RuntimeError):
+            # The loop may have ended meanwhile: then nobody waits any more.
+            loop.call_soon_threadsafe(settle, result, failed)
+
+    start_thread(contextvars.copy_context().run, work, name=name)
+    return await future
 
 
 def _wait_for_threads() -> None:

@@ -80,7 +80,7 @@ class StudyMonitor:
         """Trials that have not ended."""
         return self._total - self.store.count(self.study, "done")
 
-    def why(self, caps: Caps, deadline_s: float | None) -> str:
+    def why(self, caps: Caps, late: bool) -> str:
         """Why trials are missing; "" when none is."""
         if not self.missing:
             return ""
@@ -88,8 +88,8 @@ class StudyMonitor:
             self.store.check_caps(self.study, caps)
         except CapReached as error:
             return str(error)
-        if deadline_s is not None and time.time() >= deadline_s:
-            return f"the study's cap of {caps.seconds:g} seconds is reached"
+        if late:
+            return f"the study's cap {'on time' if caps.seconds is None else f'of {caps.seconds:g} seconds'} is reached"
         return f"not ended yet: {counted(self.missing, 'trial')}; the same command goes on with them"
 
 

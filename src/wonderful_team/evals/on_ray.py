@@ -139,7 +139,7 @@ class _Cluster:
 
     def _hand_out(self) -> bool:
         """Give idle actors work; False when nothing more is to be begun."""
-        if self._work.deadline_s is not None and time.time() >= self._work.deadline_s:
+        if self._work.late:
             return False
         while self._idle:
             try:
@@ -148,7 +148,8 @@ class _Cluster:
                 return False
             if claim is None:
                 return True
-            settings = replace(self._work.settings, caps=tighter(self._work.settings.caps, claim.left))
+            left = replace(claim.left, seconds=self._work.left_s)
+            settings = replace(self._work.settings, caps=tighter(self._work.settings.caps, left))
             actor = self._idle.pop()
             self._running[actor.run.remote(claim.spec, settings)] = (actor, claim)
         return True

@@ -18,7 +18,7 @@ from pydantic import TypeAdapter
 
 from wonderful_team.core.caps import Caps
 from wonderful_team.core.filesystem import make_private_folder, network_file_system, private
-from wonderful_team.errors import ConfigError, reading
+from wonderful_team.errors import ConfigError, FileNotWrittenError, reading
 from wonderful_team.evals.leases import LEASE_S, Owner, Surroundings
 from wonderful_team.evals.names import NO_MODEL
 from wonderful_team.evals.schema import CONDITION, JSON, RESULT, SCHEMA_VERSION, SPEC, check_values, make_tables
@@ -89,10 +89,11 @@ class Store:
         self._base.execute("BEGIN IMMEDIATE")
         try:
             yield self._base
+            self._base.execute("COMMIT")
         except BaseException:
-            self._base.execute("ROLLBACK")
+            with suppress(sqlite3.Error):  # a full disk has rolled it back already
+                self._base.execute("ROLLBACK")
             raise
-        self._base.execute("COMMIT")
 
     def close(self) -> None:
         self._base.close()
@@ -102,6 +103,10 @@ class Store:
 
     def __exit__(self, kind: object, error: BaseException | None, trace: object) -> None:
         self.close()
+        if isinstance(error, sqlite3.OperationalError):
+            raise FileNotWrittenError(
+                self.path, str(error), "what ended before is kept; the same command goes on"
+            ) from error
         if isinstance(error, sqlite3.Error | UnicodeDecodeError):
             raise ConfigError(f"store {str(self.path)!r} cannot be used: {error}") from error
 
@@ -250,8 +255,13 @@ class Store:
             if spent is not None:
                 _correct(base, trial, owner, spent)
 
-    def crashed(self, pid: int, host: str) -> list[str]:
+    def crashed(self, pid: int, host: str, ended_by_us: str = "") -> list[str]:
         """Free the claims of a worker process that died; a trial that keeps killing workers becomes an error.
+
+        Args:
+            pid: The process.
+            host: Its machine.
+            ended_by_us: Why we ended it: then no trial is blamed.
 
         Returns:
             The scenes that were in flight.
@@ -261,8 +271,8 @@ class Store:
             held = "SELECT * FROM trials WHERE state='claimed' AND owner LIKE ?"
             for row in base.execute(held, (f"{host}|{pid}|%",)).fetchall():
                 scenes.append(_spec(row).scene)
-                crashes = row["crashes"] + 1
-                _lose(base, row, "its process died")
+                crashes = row["crashes"] + (not ended_by_us)
+                _lose(base, row, ended_by_us or "its process died")
                 base.execute("UPDATE trials SET crashes=? WHERE id=?", (crashes, row["id"]))
                 if crashes >= MAX_CRASHES:
                     reason = f"the worker process died {crashes} times while it ran this trial"

@@ -16,6 +16,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
+from wonderful_team.core import deadline
 from wonderful_team.core.caps import Caps
 from wonderful_team.core.renamed import renamed_attribute
 from wonderful_team.core.text import counted
@@ -25,7 +26,7 @@ from wonderful_team.evals.plan import StudyPlan
 from wonderful_team.evals.rate_limit import ProcessLimiter
 from wonderful_team.evals.store import Store
 from wonderful_team.evals.trials import RunSettings, TrialRunner
-from wonderful_team.evals.workers import POLL_S, Work, work_until_done, worker_main
+from wonderful_team.evals.workers import LATE, POLL_S, Work, work_until_done, worker_main
 
 STARTS_THAT_FAIL = 3
 _THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
@@ -63,7 +64,7 @@ def run_study(
         store: The file; the same plan on the same file resumes, also while another process works on it.
         runner: Turns a spec into a result; a module-level function, because worker processes import it.
         settings: How trials are run.
-        caps: Of the whole study, earlier runs of it in this store included; `seconds` counts from now.
+        caps: Of the whole study, earlier runs of it in this store included; `seconds` counts from now, and trials in flight are then cut.
         jobs: Worker processes, default one per core; 1 works in this process.
         at_once: Trials in flight per process.
         calls_at_once: Most model calls in flight over all workers; None for each trial's own limit.
@@ -81,7 +82,8 @@ def run_study(
     if jobs < 1 or at_once < 1:
         raise ConfigError(f"jobs and trials at once must be at least 1, got {jobs} and {at_once}")
     settings, caps = settings or RunSettings(), caps or Caps()
-    deadline_s = None if caps.seconds is None else time.time() + caps.seconds
+    left_s = deadline.left_s(caps.seconds)
+    ends_s = None if left_s is None else time.monotonic() + left_s
     with Store(store) as opened:
         for warning in opened.warnings:
             report(f"warning: {warning}", None)
@@ -89,7 +91,7 @@ def run_study(
         if retry_errors and (again := opened.retry_errors(plan.name)):
             report(f"{counted(again, 'trial')} that ended in an error: tried again", None)
         monitor = StudyMonitor(opened, plan.name, report)
-        work = Work(opened.path, plan.name, runner, settings, caps, deadline_s, at_once)
+        work = Work(opened.path, plan.name, runner, settings, caps, ends_s, at_once)
         report("", monitor.status())
         if not monitor.missing:
             pass
@@ -107,7 +109,7 @@ def run_study(
                 f"warning: {counted(unpriced, 'trial')} without a known price: the cap of {caps.usd:g} USD does not see them",
                 None,
             )
-        return StudyResult(monitor.status(), monitor.why(caps, deadline_s))
+        return StudyResult(monitor.status(), monitor.why(caps, work.late))
 
 
 def _run_processes(work: Work, monitor: StudyMonitor, jobs: int, calls_at_once: int | None, needs_main: bool) -> None:
@@ -145,6 +147,10 @@ def _run_processes(work: Work, monitor: StudyMonitor, jobs: int, calls_at_once: 
                         )
                     processes[place] = start()
                 monitor.look()
+                if work.overdue:
+                    stopping.set()
+                    _end(processes, monitor, patient=False, why=LATE)
+                    return
                 multiprocessing.connection.wait([one.sentinel for one in processes if one.is_alive()], POLL_S)
         except BaseException as error:
             stopping.set()
@@ -168,7 +174,7 @@ def _without_main() -> Iterator[None]:
         sys.modules["__main__"] = script
 
 
-def _end(processes: list[Any], monitor: StudyMonitor, *, patient: bool) -> None:
+def _end(processes: list[Any], monitor: StudyMonitor, *, patient: bool, why: str = "") -> None:
     """Let trials in flight end; a second interrupt ends them at once, and their claims are given back."""
     try:
         if patient:
@@ -180,7 +186,7 @@ def _end(processes: list[Any], monitor: StudyMonitor, *, patient: bool) -> None:
             if process.is_alive():
                 process.kill()
                 process.join()
-                monitor.store.crashed(process.pid or 0, socket.gethostname())
+                monitor.store.crashed(process.pid or 0, socket.gethostname(), why)
 
 
 @contextmanager

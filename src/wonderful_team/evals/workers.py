@@ -6,6 +6,8 @@ import asyncio
 import contextlib
 import os
 import signal
+import sqlite3
+import sys
 import time
 import traceback
 from collections.abc import AsyncIterator, Callable
@@ -14,12 +16,18 @@ from pathlib import Path
 from typing import Any
 
 from wonderful_team.core.caps import Caps
+from wonderful_team.core.deadline import GRACE_S
+from wonderful_team.core.interrupts import in_thread
+from wonderful_team.errors import FileNotWrittenError, WonderfulTeamError
 from wonderful_team.evals.leases import RENEW_EVERY_S, Owner
 from wonderful_team.evals.spending import CapReached
 from wonderful_team.evals.store import CUT, Claim, Store
 from wonderful_team.evals.trials import RunSettings, TrialRow, TrialRunner, TrialSpec
 from wonderful_team.redaction import redacted_streams
 
+KEPT = "what ended before is kept; the same command goes on"
+LATE = "cut by the limit on time"
+"""Why an attempt was discarded that the command had no time left for."""
 POLL_S = 0.2
 """How long a worker waits before it looks again for a trial that another process holds [s]."""
 
@@ -32,7 +40,8 @@ class Work:
         store: Path of the store's file.
         study: Name of the study in the store.
         caps: Of the whole study.
-        deadline_s: Unix time after which no trial is begun; None for none.
+        ends_s: When the time of the command is over, by the clock of this machine that never jumps; trials in flight are then cut. None
+            for never.
         at_once: Trials in flight in one process: more than one helps only where models are waited for.
         parent: Process that started the worker; when it is gone the worker ends after its trial.
     """
@@ -42,16 +51,34 @@ class Work:
     runner: TrialRunner
     settings: RunSettings
     caps: Caps = Caps()
-    deadline_s: float | None = None
+    ends_s: float | None = None
     at_once: int = 1
     parent: int | None = None
+
+    @property
+    def left_s(self) -> float | None:
+        """Time that is left, never none at all [s]; None without a limit."""
+        return None if self.ends_s is None else max(0.001, self.ends_s - time.monotonic())
+
+    @property
+    def late(self) -> bool:
+        return self.ends_s is not None and time.monotonic() >= self.ends_s
+
+    @property
+    def overdue(self) -> bool:
+        """Whether trials in flight had time enough to end by themselves."""
+        return self.ends_s is not None and time.monotonic() >= self.ends_s + GRACE_S
 
 
 def worker_main(work: Work, stopping: Any) -> None:
     """Entry of a worker process; an interrupt from the keyboard is the parent's to answer."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     with redacted_streams():
-        work_until_done(work, stopping.is_set)
+        try:
+            work_until_done(work, stopping.is_set)
+        except WonderfulTeamError as error:
+            sys.stderr.write(f"error: {error}\n")
+            sys.exit(error.exit_code)
 
 
 def work_until_done(work: Work, stopping: Callable[[], bool]) -> None:
@@ -71,7 +98,7 @@ async def _work(work: Work, store: Store, stopping: Callable[[], bool]) -> None:
 
 
 async def _slot(work: Work, store: Store, owner: Owner, stopping: Callable[[], bool]) -> None:
-    while not (stopping() or _orphaned(work) or _late(work)):
+    while not (stopping() or _orphaned(work) or work.late):
         try:
             claim = store.claim(work.study, owner, work.caps)
         except CapReached:
@@ -85,15 +112,31 @@ async def _slot(work: Work, store: Store, owner: Owner, stopping: Callable[[], b
 
 
 async def _run(work: Work, store: Store, owner: Owner, claim: Claim) -> None:
-    settings = replace(work.settings, caps=tighter(work.settings.caps, claim.left))
+    left_s = work.left_s
+    caps = tighter(work.settings.caps, replace(claim.left, seconds=left_s))
     try:
         async with _kept(store, claim, owner):
-            result = await asyncio.to_thread(run_safely, work.runner, claim.spec, settings)
+            trial = in_thread(run_safely, work.runner, claim.spec, replace(work.settings, caps=caps), name="trial")
+            result = await asyncio.wait_for(trial, None if left_s is None else left_s + GRACE_S)
+    except TimeoutError:
+        # Its thread is left behind: what it still does counts for nothing.
+        store.give_back(claim.trial, owner, LATE)
+        return
     except BaseException:
         # Interrupted: nothing of it counts, and somebody else may take it at once.
         store.give_back(claim.trial, owner)
         raise
-    settle(store, owner, claim, work.settings.caps, result)
+    if work.late and result.stage == "budget" and result.outcome != "success":
+        store.give_back(claim.trial, owner, LATE, result)
+        return
+    try:
+        settle(store, owner, claim, work.settings.caps, result)
+    except sqlite3.Error as error:
+        stage = f" at {result.stage}" if result.stage else ""
+        ended = (
+            f"{claim.spec.scene} of {claim.spec.condition.label} ended in {result.outcome}{stage}, which is not kept"
+        )
+        raise FileNotWrittenError(store.path, f"{error}; {ended}", KEPT) from error
 
 
 def settle(store: Store, owner: Owner, claim: Claim, own: Caps, result: TrialRow) -> bool:
@@ -170,7 +213,3 @@ async def _kept(store: Store, claim: Claim, owner: Owner) -> AsyncIterator[None]
 
 def _orphaned(work: Work) -> bool:
     return work.parent is not None and os.getppid() != work.parent
-
-
-def _late(work: Work) -> bool:
-    return work.deadline_s is not None and time.time() >= work.deadline_s

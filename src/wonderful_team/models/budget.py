@@ -9,6 +9,7 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
+from wonderful_team.core import deadline
 from wonderful_team.core.caps import Caps, Estimate
 from wonderful_team.core.values import Usage
 from wonderful_team.errors import BudgetReached
@@ -188,8 +189,18 @@ class Budget:
         caps, calls = self.caps, self.spent.calls + self._calls
         if caps.calls is not None and calls + 1 > caps.calls:
             raise BudgetReached(f"the cap of {caps.calls} calls is reached ({calls} made)")
+        deadline.check("asking a model")
         if caps.seconds is not None and self.elapsed_s >= caps.seconds:
             raise BudgetReached(f"the cap of {caps.seconds:g} s is reached ({self.elapsed_s:.1f} s passed)")
+
+    def time_is_up(self, during: str) -> BudgetReached:
+        """The error of the limit on time, for what was under way."""
+        limit = deadline.current()
+        if limit is not None:
+            return limit.reached(during)
+        return BudgetReached(
+            f"the cap of {self.caps.seconds:g} s is reached ({self.elapsed_s:.1f} s passed) during {during}"
+        )
 
     @property
     def elapsed_s(self) -> float:
@@ -198,8 +209,9 @@ class Budget:
 
     @property
     def seconds_left(self) -> float | None:
-        """Seconds until the cap, or None without one."""
-        return None if self.caps.seconds is None else max(0.0, self.caps.seconds - self.elapsed_s)
+        """Seconds until the cap, or the end of the run's time; None without either."""
+        own_s = None if self.caps.seconds is None else max(0.0, self.caps.seconds - self.elapsed_s)
+        return deadline.left_s(own_s)
 
 
 def _wake(turn: asyncio.Future[None]) -> None:

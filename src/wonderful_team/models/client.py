@@ -8,23 +8,21 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
-import contextvars
 import inspect
 import json
 import reprlib
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
 from pydantic import BaseModel, ValidationError
 
 from wonderful_team.contracts import Question
-from wonderful_team.core.interrupts import start_thread
+from wonderful_team.core.interrupts import in_thread
 from wonderful_team.core.protocols import Event, Model, Subscriber
 from wonderful_team.core.values import Answer, Request, Usage
 from wonderful_team.errors import (
-    BudgetReached,
     ConfigError,
     ModelCodeError,
     ModelOutputError,
@@ -147,15 +145,15 @@ class ModelClient:
             try:
                 self.tell("request", request.id, request)
                 left = budget.seconds_left
-                deadline = self._deadline_s if left is None else max(0.001, min(self._deadline_s, left))
-                ticket.seconds = deadline
+                longest_s = self._deadline_s if left is None else max(0.001, min(self._deadline_s, left))
+                ticket.seconds = longest_s
                 hand_over(ticket)
                 try:
-                    answer = as_answer(await asyncio.wait_for(call_model(model, request), deadline), model)
+                    answer = as_answer(await asyncio.wait_for(call_model(model, request), longest_s), model)
                 except TimeoutError as error:
                     ticket.book_lost_try()
-                    if left is not None and deadline < self._deadline_s:
-                        raise BudgetReached(f"the cap of {budget.caps.seconds:g} s is reached") from error
+                    if left is not None and longest_s < self._deadline_s:
+                        raise budget.time_is_up(f"asking {_name(model)} to {request.contract}") from error
                     raise ModelUnavailableError(
                         f"{_name(model)} did not answer {request.contract} within {self._deadline_s:g} s"
                     ) from error
@@ -208,40 +206,13 @@ async def call_model(model: Model, request: Request) -> Any:
         if inspect.iscoroutinefunction(model.answer):
             return await model.answer(request)
         # A plain function would block every other request: it runs in a thread.
-        result = await _in_thread(plain, request)
+        result = await in_thread(plain, request, name="model")
         return await result if inspect.isawaitable(result) else result
 
 
 def model_code(model: Model) -> contextlib.AbstractContextManager[None]:
     """Whatever the code of a model raises is the model's: never a defect of ours, never the method's failure."""
     return code_of(f"the code of model {_name(model)!r}", ModelCodeError)
-
-
-async def _in_thread(answer: Callable[[Request], Any], request: Request) -> Any:
-    """Like asyncio.to_thread, but a call that hangs never keeps the program from ending (Ctrl-C, a deadline)."""
-    loop = asyncio.get_running_loop()
-    future: asyncio.Future[Any] = loop.create_future()
-
-    def settle(result: Any, error: BaseException | None) -> None:
-        if future.cancelled():
-            return
-        if error is None:
-            future.set_result(result)
-        else:
-            future.set_exception(error)
-
-    def work() -> None:
-        result, failed = None, None
-        try:
-            result = answer(request)
-        except BaseException as error:  # noqa: BLE001  handed to whoever waits
-            failed = error
-        with contextlib.suppress(RuntimeError):
-            # The loop may have ended meanwhile: then nobody waits any more.
-            loop.call_soon_threadsafe(settle, result, failed)
-
-    start_thread(contextvars.copy_context().run, work, name="model")
-    return await future
 
 
 def as_answer(result: Any, model: Model) -> Answer:

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from wonderful_team.core.filesystem import write_private
-from wonderful_team.core.values import Plan
+from wonderful_team.core.values import Plan, size_problem
 from wonderful_team.errors import ConfigError
 from wonderful_team.record.values_file import decode, encode
 from wonderful_team.redaction import redact_all
@@ -54,6 +54,9 @@ def plan_from_json(data: Any, where: str = "plan", *, whole: bool = True) -> Pla
         found = plan.id if version == PLAN_SCHEMA_VERSION else plan.short_id()
     except (ValueError, TypeError, ConfigError, RecursionError, OverflowError) as error:
         raise ConfigError(f"{where}: broken plan: {error}") from error
+    problem = size_problem(subgoals=len(plan.subgoals), targets=len(plan.targets), actions=len(plan.actions))
+    if problem:
+        raise ConfigError(f"{where}: the plan has {problem}")
     if whole and found != data.get("id"):
         raise ConfigError(
             f"{where}: the content has id {found}, the file says {str(data.get('id'))[:80]!r}: it was changed after it "

@@ -13,8 +13,9 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
+from wonderful_team.core import deadline
 from wonderful_team.core.text import user_path
-from wonderful_team.errors import ConfigError, UnknownNameError, WonderfulTeamError, code_of
+from wonderful_team.errors import BudgetReached, ConfigError, UnknownNameError, WonderfulTeamError, code_of
 
 
 def is_file_name(name: str) -> bool:
@@ -129,8 +130,10 @@ def make_from_file(
         if given:
             raise ConfigError(f"{whose}: arguments ({', '.join(given)}) are for a class or a function; this is neither")
         return thing
-    with code_of(f"{whose}: {thing.__name__}(…)", fault):
-        return thing(**_arguments(thing, offers, given, whose))
+    making = f"{whose}: {thing.__name__}(…)"
+    with code_of(making, fault):
+        arguments = _arguments(thing, offers, given, whose)
+        return deadline.bounded(making, lambda: thing(**arguments))
 
 
 def _arguments(thing: Any, offers: Mapping[str, Any], given: Mapping[str, Any], whose: str) -> dict[str, Any]:
@@ -180,7 +183,10 @@ def _run_file(path: Path, what: str) -> ModuleType:
     sys.modules[name] = module
     sys.path.insert(0, str(path.parent))
     try:
-        spec.loader.exec_module(module)
+        deadline.bounded(f"running {what} file {str(path)!r}", spec.loader.exec_module, module)
+    except BudgetReached:
+        del sys.modules[name]
+        raise
     except (Exception, SystemExit) as error:  # whatever a user's file raises is the user's to read
         del sys.modules[name]
         raise ConfigError(f"{what} file {str(path)!r} failed when it was run: it", cause=error) from error

@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, cast
 
+from wonderful_team.core import deadline
 from wonderful_team.core.protocols import World, offers
 from wonderful_team.core.values import Instruction, KeepOut
 from wonderful_team.errors import (
@@ -121,7 +122,7 @@ def make_world(
             world = _world_from_file(name, seed, harder, arguments)
         else:
             _take_none(name, arguments)
-            world = _named_world(name, seed, harder)
+            world = deadline.bounded(f"setting up world {name!r}", _named_world, name, seed, harder)
     with code_of(f"instruction of world {name!r}", WorldUnavailableError):
         own = getattr(world, "instruction", None)
         whole = offers(world, World)
@@ -180,7 +181,7 @@ def _world_from_file(name: str, seed: int, harder: Mapping[str, int], arguments:
     task = task_made_of(load_from_file(name, "world"))
     if task is not None:
         _take_none(name, arguments)
-        return _named_world(task, seed, harder)
+        return deadline.bounded(f"setting up world {name!r}", lambda: _named_world(task, seed, harder))
     made = make_from_file(name, "world", {"seed": seed}, WorldUnavailableError, arguments)
     return _whole(made, f"world {name!r}")
 

@@ -24,7 +24,17 @@ from wonderful_team.core.actions import (
 from wonderful_team.core.geometry import wrap_angle
 from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.motions import Slide
-from wonderful_team.core.values import GateCheck, NumberSource, PlannedAction, View
+from wonderful_team.core.values import (
+    MAX_ACTIONS,
+    MAX_SUBGOALS,
+    MAX_TARGETS,
+    GateCheck,
+    NumberSource,
+    Plan,
+    PlannedAction,
+    View,
+    size_problem,
+)
 
 MOST_TURN_RAD = 2 * math.pi
 """Largest turn of one action [rad]: once round. A larger number is a mistake, and a robot might really turn so far."""
@@ -33,6 +43,14 @@ SAME_M = 1e-6
 SAME_RAD = 1e-6
 SAME_PX = 3.0
 """How far the pixel of a source may be from where its metres show: half a window of depth, rounding [px]."""
+
+
+def size_checks(actions: Sequence[PlannedAction], plan: Plan | None) -> list[GateCheck]:
+    """A refusal of a plan with more parts than are allowed."""
+    parts = {} if plan is None else {"subgoals": len(plan.subgoals), "targets": len(plan.targets)}
+    problem = size_problem(actions=len(actions), **parts)
+    limit = f"{MAX_SUBGOALS} subgoals, {MAX_TARGETS} targets, {MAX_ACTIONS} actions"
+    return [GateCheck(None, "size of plan", False, problem, limit)] if problem else []
 
 
 def class_checks(actions: Sequence[PlannedAction]) -> list[GateCheck]:

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
+from wonderful_team.core import deadline
 from wonderful_team.core.geometry import Box
 from wonderful_team.core.protocols import Act, World
 from wonderful_team.core.text import counted
@@ -107,7 +109,8 @@ class Execution:
         self._progress.passed_gate("before the question", report)
         page_file = self._page() if self._page is not None else None
         picture = (then or now).hash
-        answer = self._approval(Proposal(decision.plan, decision.actions, report, picture, page_file))
+        proposal = Proposal(decision.plan, decision.actions, report, picture, page_file)
+        answer = deadline.bounded("the question whether the plan may run", self._approval, proposal)
         said = Declined() if answer is None else answer
         if not isinstance(said, Approval | Declined):
             raise ConfigError(
@@ -127,18 +130,22 @@ class Execution:
         page: str,
     ) -> tuple[Observation, GateReport]:
         now = self._world.observe()
-        report = check_gate(
-            decision.actions,
-            vocabulary=self._world.vocabulary,
-            limits=self._world.limits,
-            plan=decision.plan,
-            then=then,
-            now=now,
-            approval=approval,
-            page=page,
-            expected_plan_id=read.plan.id if read is not None else None,
-            must_run=True,
-            max_age_s=self._age_limit_s,
+        report = deadline.bounded(
+            "the safety gate",
+            partial(
+                check_gate,
+                decision.actions,
+                vocabulary=self._world.vocabulary,
+                limits=self._world.limits,
+                plan=decision.plan,
+                then=then,
+                now=now,
+                approval=approval,
+                page=page,
+                expected_plan_id=read.plan.id if read is not None else None,
+                must_run=True,
+                max_age_s=self._age_limit_s,
+            ),
         )
         if read is None:
             return now, report

@@ -20,7 +20,7 @@ from wonderful_team.core.motions import Carry, Drive, Leave, Lost
 from wonderful_team.core.text import counted
 from wonderful_team.core.values import GateCheck, GateReport, KeepOut, Limits, Observation, Plan, PlannedAction
 from wonderful_team.images.keep_out import table_height_m
-from wonderful_team.runtime.agreement import agreement_checks, class_checks, form_checks
+from wonderful_team.runtime.agreement import agreement_checks, class_checks, form_checks, size_checks
 from wonderful_team.runtime.approval import Approval, Declined, approval_checks, approved_id
 from wonderful_team.runtime.course import Course, Stage
 from wonderful_team.runtime.keep_out_checks import keep_out_checks, keep_out_px_checks
@@ -75,9 +75,10 @@ def check_gate(
     Returns:
         Every check with its value, limit and margin; `admitted` when none failed.
     """
-    foreign = class_checks(actions)
-    if foreign:
-        return GateReport(tuple(foreign))
+    # Beyond the first that fails nothing is known, or nobody would wait for it.
+    for refusal in (size_checks(actions, plan), class_checks(actions)):
+        if refusal:
+            return GateReport(tuple(refusal))
     checks = _plan_checks(actions, plan, expected_plan_id)
     picture = (then or now).hash
     checks += approval_checks(approved_id(plan, actions), picture, page, approval, approval_required)

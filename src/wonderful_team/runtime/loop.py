@@ -9,8 +9,11 @@ from collections.abc import Awaitable
 from types import TracebackType
 from typing import Any
 
+from wonderful_team.core import deadline
 from wonderful_team.core.interrupts import start_thread
 
+MARGIN_S = 0.5
+"""Beyond the limit of the run a method may still say what it has so far [s]."""
 CLOSE_S = 10.0
 """Longest wait for what the loop still has to end [s]."""
 HALT_S = 1.0
@@ -34,22 +37,33 @@ class Caller:
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         patience_s = CLOSE_S if kind is None else HALT_S
+        limit = deadline.current()
+        if limit is not None:
+            patience_s = min(patience_s, limit.ending_s)
         ended = asyncio.run_coroutine_threadsafe(_wind_up(), self._loop)
         # What takes longer is left behind: the loop stops as soon as it has ended.
         ended.add_done_callback(lambda _: self._loop.call_soon_threadsafe(self._loop.stop))
         with contextlib.suppress(TimeoutError):
             ended.result(patience_s)
             self._thread.join(patience_s)
-        if not self._thread.is_alive():
-            self._loop.close()
 
-    def wait_for(self, result: Any) -> Any:
-        """The value itself, or what it turns into once awaited."""
+    def wait_for(self, result: Any, during: str = "planning") -> Any:
+        """The value itself, or what it turns into once awaited.
+
+        Raises:
+            BudgetReached: Not within the limit of the run.
+        """
         if not inspect.isawaitable(result):
             return result
+        limit = deadline.current()
         future = asyncio.run_coroutine_threadsafe(_as_coroutine(result), self._loop)
         try:
-            return future.result()
+            return future.result(None if limit is None else limit.left_s + MARGIN_S)
+        except TimeoutError:
+            if future.done() or limit is None:
+                raise  # it is the method's own
+            future.cancel()
+            raise limit.reached(during) from None
         except BaseException:
             future.cancel()
             raise
@@ -57,11 +71,12 @@ class Caller:
 
 def _run(loop: asyncio.AbstractEventLoop) -> None:
     """Until it is stopped: a method that raises SystemExit ends its own task, not the loop that others wait for."""
-    while True:
-        try:
-            return loop.run_forever()
-        except (SystemExit, KeyboardInterrupt):
-            continue
+    with contextlib.closing(loop):
+        while True:
+            try:
+                return loop.run_forever()
+            except (SystemExit, KeyboardInterrupt):
+                continue
 
 
 async def _wind_up() -> None:

@@ -9,6 +9,7 @@ from typing import Any, cast
 from wonderful_team.core.protocols import Act, Done, GaveUp, Policy, Privileged, Situation, Subscriber, World, offers
 from wonderful_team.core.values import Observation, Plan, ReadPlan, Trial
 from wonderful_team.errors import (
+    BudgetReached,
     ConfigError,
     ModelUnavailableError,
     RobotFaultError,
@@ -221,6 +222,9 @@ def _scored(progress: RolloutLog, ending: RolloutEnd, scorer: Privileged | None)
         return progress.finish(RolloutEnd(ending.outcome or "unscored", ending.stage, f"{ending.reason}{unjudged}"))
     try:
         score = GuardedScorer(scorer).score()
+    except BudgetReached as error:
+        reason = f"{ending.reason}; nobody judged the result: {error}"
+        return progress.finish(RolloutEnd(ending.outcome or "unscored", ending.stage or error.stage, reason))
     except WonderfulTeamError as error:
         progress.traced(error)
         return progress.finish(RolloutEnd("error", error.stage or "world", str(error)))

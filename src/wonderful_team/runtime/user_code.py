@@ -9,9 +9,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, TypeVar, cast
 
+from wonderful_team.core import deadline
 from wonderful_team.core.actions import Action, Vocabulary
 from wonderful_team.core.protocols import Act, Decision, Done, GaveUp, Policy, Privileged, Score, Situation, World
-from wonderful_team.core.values import Instruction, Limits, Observation, Plan, PlannedAction, StepReport
+from wonderful_team.core.values import Instruction, Limits, Observation, Plan, PlannedAction, StepReport, size_problem
 from wonderful_team.errors import (
     MethodCodeError,
     RobotFaultError,
@@ -45,7 +46,7 @@ class GuardedWorld:
 
     def _own(self, attribute: str, kind: type[Kind]) -> Kind:
         with code_of(f"{attribute} of world {self._name}", WorldUnavailableError):
-            value = getattr(self.inner, attribute)
+            value = deadline.bounded(f"reading {attribute} of world {self._name}", getattr, self.inner, attribute)
         return _checked(value, kind, f"{attribute} of world {self._name}", WorldUnavailableError)
 
     @property
@@ -63,42 +64,49 @@ class GuardedWorld:
     @property
     def horizon(self) -> int | None:
         with code_of(f"horizon of world {self._name}", WorldUnavailableError):
-            held = getattr(self.inner, "horizon", None)
+            held = deadline.bounded(f"reading horizon of world {self._name}", getattr, self.inner, "horizon", None)
         return None if held is None else _checked(held, int, f"horizon of world {self._name}", WorldUnavailableError)
 
     def observe(self) -> Observation:
         """What is seen; a camera that fails is a failure of the world."""
         whose = f"observe() of world {self._name}"
         with code_of(whose, WorldUnavailableError):
-            seen = self.inner.observe()
+            seen = deadline.bounded(whose, self.inner.observe)
         return _checked(seen, Observation, f"what {whose} returned", WorldUnavailableError)
 
     def execute(self, action: Action) -> StepReport:
         """What the robot did; motion that fails is the robot's fault."""
         whose = f"execute({action.kind}) of world {self._name}"
         with code_of(whose, RobotFaultError):
-            report = self.inner.execute(action)
+            report = deadline.bounded(whose, self.inner.execute, action)
         return _checked(report, StepReport, f"what {whose} returned", RobotFaultError)
 
     def stop(self) -> None:
-        with code_of(f"stop() of world {self._name}", RobotFaultError):
-            self.inner.stop()
+        whose = f"stop() of world {self._name}"
+        with code_of(whose, RobotFaultError):
+            deadline.to_end(whose, self.inner.stop)
 
     def close(self) -> None:
-        with code_of(f"close() of world {self._name}", WorldUnavailableError):
-            self.inner.close()
+        whose = f"close() of world {self._name}"
+        with code_of(whose, WorldUnavailableError):
+            deadline.to_end(whose, self.inner.close)
 
 
 def decision_of(policy: Policy, situation: Situation, caller: Caller) -> Decision:
     """What a method decides, checked; what somebody else's method raises, or returns that is no decision, is its failure."""
+    deadline.check("the run")
     if type(policy).__module__.startswith(_OURS):
         return cast(Decision, caller.wait_for(policy.decide(situation)))
-    with code_of(f"decide() of method {policy.name!r}", MethodCodeError):
-        decision = caller.wait_for(policy.decide(situation))
+    whose = f"decide() of method {policy.name!r}"
+    with code_of(whose, MethodCodeError):
+        decision = caller.wait_for(deadline.bounded(whose, policy.decide, situation), whose)
     whose = f"what decide() of method {policy.name!r} returned"
     settled: Decision = _checked(decision, (Act, Done, GaveUp), whose, MethodCodeError)
     if isinstance(settled, Act):
         _checked(settled.actions, (tuple, list), f"actions of {whose}", MethodCodeError)
+        problem = size_problem(actions=len(settled.actions))
+        if problem:
+            raise MethodCodeError(f"{whose} has {problem}")
         for number, planned in enumerate(settled.actions, start=1):
             _checked(planned, PlannedAction, f"action {number} of {whose}", MethodCodeError)
     if not isinstance(settled, Done) and settled.plan is not None:
@@ -116,7 +124,7 @@ class GuardedScorer:
         """The scorer's word."""
         whose = f"score() of {type(self.inner).__name__}"
         with code_of(whose, WorldUnavailableError):
-            score = self.inner.score()
+            score = deadline.bounded(whose, self.inner.score)
         return _checked(score, Score, f"what {whose} returned", WorldUnavailableError)
 
 

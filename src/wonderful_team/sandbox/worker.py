@@ -13,6 +13,7 @@ from typing import Any, TypeVar
 
 import pydantic_monty
 
+from wonderful_team.core import deadline
 from wonderful_team.sandbox.errors import SandboxUnavailableError
 
 T = TypeVar("T")
@@ -105,9 +106,10 @@ def _once(run: Callable[[Any], T], timeout_s: float) -> T:
     threading.Thread(target=attempt, name="sandbox", daemon=True).start()
     longest_s = TURNS * timeout_s + GRACE_S
     try:
-        value, error = ended.get(timeout=longest_s)
+        value, error = ended.get(timeout=deadline.left_s(longest_s))
     except queue.Empty:
         _abandon()
+        deadline.check("the helper function in the sandbox")
         raise TimeoutError(f"no answer from the sandbox's worker within {longest_s:g} s") from None
     if error is not None:
         raise error

@@ -16,6 +16,7 @@ from wonderful_team.core.values.plan import (
     Subgoal,
     Target,
 )
+from wonderful_team.core.values.plan_size import MAX_ACTIONS, MAX_SUBGOALS, MAX_TARGETS, size_problem
 from wonderful_team.core.values.read import ReadPlan
 from wonderful_team.core.values.request import Answer, Note, Part, Request, Usage, Words
 from wonderful_team.core.values.result import GateCheck, GateReport, StepReport, SubgoalRun, Trial, Verdict
@@ -31,6 +32,9 @@ __all__ = [
     "Instruction",
     "KeepOut",
     "Limits",
+    "MAX_ACTIONS",
+    "MAX_SUBGOALS",
+    "MAX_TARGETS",
     "NO_WORKSPACE",
     "Note",
     "NumberSource",
@@ -57,4 +61,5 @@ __all__ = [
     "Words",
     "content_hash",
     "file_hash",
+    "size_problem",
 ]

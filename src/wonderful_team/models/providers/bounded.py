@@ -13,6 +13,8 @@ import zlib
 from collections.abc import AsyncIterator, Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
+from wonderful_team.core import deadline
+
 if TYPE_CHECKING:
     import httpx2
 
@@ -105,7 +107,7 @@ def fetch_json(
         method: GET or POST.
         url: The whole address.
         headers: Sent as they are.
-        timeout_s: For all of it: connecting, headers and the whole body [s].
+        timeout_s: For all of it: connecting, headers and the whole body, within what the run has left [s].
         direct: Never through a proxy.
         body: Sent as JSON.
         most: Most bytes of the reply, packed or unpacked.
@@ -116,8 +118,13 @@ def fetch_json(
     Raises:
         httpx2.HTTPError: Nothing answers, or not within the time.
         ReplyTooLargeError: More bytes than `most`.
+        BudgetReached: The time of the run is over.
     """
     import httpx2
+
+    during = f"asking {url}"
+    deadline.check(during)
+    timeout_s = max(0.001, deadline.left_s(timeout_s) or 0.0)
 
     def ask() -> tuple[int, Any]:
         ends = time.monotonic() + timeout_s
@@ -144,6 +151,7 @@ def fetch_json(
     except queue.Empty:
         found, error = None, httpx2.ReadTimeout(f"no whole reply within {timeout_s:g} s")
     if error is not None:
+        deadline.check(during)
         raise error
     assert found is not None
     return found

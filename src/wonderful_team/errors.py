@@ -138,6 +138,19 @@ class ConfigError(WonderfulTeamError):
     exit_code = 2
 
 
+class FileNotWrittenError(ConfigError):
+    """The machine could not write a file: a full disk, a read-only one, a folder without the right to; names the file.
+
+    Attributes:
+        path: The file or folder.
+    """
+
+    def __init__(self, path: Path | str, why: OSError | str, hint: str = "") -> None:
+        self.path = Path(path)
+        said = (why.strerror or str(why)) if isinstance(why, OSError) else why
+        super().__init__(f"{str(path)!r} cannot be written: {said}{f'; {hint}' if hint else ''}")
+
+
 class UnknownNameError(ConfigError):
     """A name that is not registered; lists the known ones and the nearest."""
 

@@ -302,7 +302,7 @@ def test_a_folder_and_a_place_that_cannot_be_written_are_told(tmp_path):
     with pytest.raises(ConfigError, match="is a folder"):
         CacheStore(tmp_path)
     (tmp_path / "file").write_text("x")
-    with pytest.raises(ConfigError, match="cannot be made"):
+    with pytest.raises(ConfigError, match="cannot be written: Not a directory"):
         CacheStore(tmp_path / "file" / "answers.sqlite")
 
 

@@ -13,7 +13,7 @@ from wonderful_team.api.trial import run_trial
 from wonderful_team.core.intervals import Rate
 from wonderful_team.core.protocols import privileged
 from wonderful_team.core.text import counted
-from wonderful_team.errors import ConfigError
+from wonderful_team.errors import ConfigError, FileNotWrittenError
 from wonderful_team.evals.checking import SEEDS, Findings, check_controls, check_looks, contact_sheet
 from wonderful_team.evals.controls import CONTROLS, NO_MODEL
 from wonderful_team.evals.trials import Condition, RunSettings, TrialRow, TrialSpec
@@ -60,8 +60,12 @@ def check(name: str, sheet: Path, seeds: int | None = None) -> Findings:
 
 def _check_world(name: str, sheet: Path, seeds: Sequence[int], findings: Findings) -> None:
     tiles = check_looks(lambda seed: registry.make_world(name, seed), seeds, findings)
-    contact_sheet(tiles, sheet)
-    findings.notes.append(f"contact sheet: {sheet}")
+    try:
+        contact_sheet(tiles, sheet)
+        findings.notes.append(f"contact sheet: {sheet}")
+    except FileNotWrittenError as error:
+        # The checks themselves go on.
+        findings.bad.append(f"contact sheet: {error}")
     world = registry.make_world(name, seeds[0])
     try:
         scored = privileged(world) is not None

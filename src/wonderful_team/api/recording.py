@@ -9,13 +9,18 @@ from typing import Any
 
 from wonderful_team.core import deadline
 from wonderful_team.core.protocols import Event, Subscriber
+from wonderful_team.errors import FileNotWrittenError
 from wonderful_team.pages import write_page
+from wonderful_team.record.recorder import Recorder
 
 
-def write_page_or_warn(folder: Path) -> Path | None:
+def write_page_or_warn(recorder: Recorder) -> Path | None:
     """Write the page. A run may have cost money and moved a robot: a defect of the page must not lose its result."""
+    folder = recorder.folder
     try:
         return deadline.to_end("drawing the page", write_page, folder)
+    except FileNotWrittenError as error:
+        recorder.note_unwritten(error)
     except Exception as error:  # noqa: BLE001  told as a warning; `wonderful-team show` writes the page anew
         warnings.warn(f"the page of {folder} could not be written: {type(error).__name__}: {error}", stacklevel=3)
     return None

@@ -19,6 +19,7 @@ from wonderful_team.api.results import PlanResult, TrialResult
 from wonderful_team.api.rollout import rollout
 from wonderful_team.api.team import Team
 from wonderful_team.core.actions import Vocabulary
+from wonderful_team.core.filesystem import write_public
 from wonderful_team.core.protocols import Event, Model, Subscriber
 from wonderful_team.core.values import Observation, Plan
 from wonderful_team.errors import ConfigError, WonderfulTeamError, reading
@@ -231,4 +232,4 @@ def _write_words(place: Path, words: Mapping[str, str]) -> None:
     known = Prompts.default().files()
     for name, text in words.items():
         if name in known:
-            (place / name).write_text(text, encoding="utf-8")
+            write_public(place / name, text)

@@ -52,6 +52,7 @@ class PlanResult:
         seconds: How long planning took, on the wall clock.
         folder: The run folder; None when nothing was recorded.
         told: Warnings of the run beside those of the plan, as they were told while it ran.
+        unwritten: Which files of the run folder could not be written, and why.
     """
 
     plan: Plan
@@ -61,6 +62,7 @@ class PlanResult:
     seconds: float = 0.0
     folder: Path | None = None
     told: tuple[str, ...] = ()
+    unwritten: tuple[str, ...] = ()
 
     @property
     def id(self) -> str:
@@ -177,10 +179,11 @@ class PlanResult:
 
 @dataclass(frozen=True, eq=False)
 class TrialResult(Trial):
-    """A trial that knows its run folder, and what the user was warned of."""
+    """A trial that knows its run folder, what the user was warned of, and which of its files could not be written and why."""
 
     folder: Path | None = None
     warnings: tuple[str, ...] = ()
+    unwritten: tuple[str, ...] = ()
 
     @property
     def page(self) -> Path | None:

@@ -156,11 +156,11 @@ def rollout(
                     "setup": setup,
                     "words": named.words() if named else {},
                 },
-                page=lambda: write_page_or_warn(recorder.folder),
+                page=lambda: write_page_or_warn(recorder),
                 strict=named.strict if named else False,
             )
     happened = {item.name: getattr(trial, item.name) for item in fields(trial)}
-    return TrialResult(**happened, folder=recorder.folder, warnings=recorder.warnings)
+    return TrialResult(**happened, folder=recorder.folder, warnings=recorder.warnings, unwritten=recorder.unwritten)
 
 
 def task(name: str, *, instruction: str, horizon: int = 1, **more: Any) -> Callable[[Callable[..., Any]], Any]:

@@ -171,7 +171,9 @@ class Team(Method):
                 status = plan.status if gate is None or gate.admitted else "refused"
                 tell(everyone, "done", status, plan)
         spent, seconds = dict(work.usage_by_role()), time.monotonic() - started
-        return PlanResult(plan, observation, gate, spent, seconds, recorder.folder, recorder.warnings)
+        return PlanResult(
+            plan, observation, gate, spent, seconds, recorder.folder, recorder.warnings, recorder.unwritten
+        )
 
 
 def instruction_of(words: str | Instruction) -> Instruction:
@@ -255,7 +257,7 @@ def _close(recorder: Recorder) -> None:
     """The record and the page, whole: a signal that comes meanwhile is raised afterwards."""
     with held():
         recorder.close()
-        write_page_or_warn(recorder.folder)
+        write_page_or_warn(recorder)
 
 
 @contextlib.contextmanager

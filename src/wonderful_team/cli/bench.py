@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
 import shlex
 import shutil
+import sqlite3
 import sys
 import time
 from pathlib import Path
@@ -13,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from wonderful_team.cli.options import PATH
-from wonderful_team.cli.output import finish
+from wonderful_team.cli.output import finish, say
 from wonderful_team.core.deadline import limited
 from wonderful_team.core.interrupts import as_keyboard, exit_code
 
@@ -122,6 +124,7 @@ def command(**options: Any) -> int:
 
 def _bench(options: dict[str, Any]) -> int:
     from wonderful_team.api.study import PILOT, Study
+    from wonderful_team.errors import FileNotWrittenError, WonderfulTeamError
 
     words = shlex.join(["wonderful-team", *(click.get_current_context().obj or ())])
     study = Study.from_options(**options, command=words)
@@ -131,8 +134,14 @@ def _bench(options: dict[str, Any]) -> int:
         click.echo("a few pilot trials are run where nothing is recorded, on development seeds", err=True)
         estimate = study.estimate(options["pilot"] or PILOT, paid_pilot=options["pilot"] is not None)
         return finish("bench", text=estimate.text(), result=estimate.to_json(), as_json=options["as_json"], code=0)
-    with as_keyboard():
-        ended = study.run(report=Teller())
+    try:
+        with as_keyboard():
+            ended = study.run(report=Teller())
+    except FileNotWrittenError as error:
+        # The trials that ended stand in the store: their figures are the result in hand.
+        with contextlib.suppress(WonderfulTeamError, sqlite3.Error):
+            say("\n".join(study.lines()), err=options["as_json"])
+        raise error
     code = 0 if not ended.why else BUDGET if "cap" in ended.why else exit_code()
     lines = study.lines()
     if ended.why:

@@ -10,6 +10,7 @@ import click
 
 from wonderful_team.cli.options import PATH, Common, common
 from wonderful_team.core.filesystem import write_redacted
+from wonderful_team.errors import FileNotWrittenError
 from wonderful_team.redaction import redact_all
 
 
@@ -38,9 +39,14 @@ def command(
     team = Team(**common.team_arguments(), subscribers=(progress,))
     progress.header(team)
     made = team.ground(observation, descriptions, area)
+    unwritten = []
     if coco is not None:
-        _write(coco, coco_document(image, observation.main.size_px, made.targets))
-    return report_plan("ground", made, common, progress)
+        document = coco_document(image, observation.main.size_px, made.targets)
+        try:
+            write_redacted(coco, json.dumps(redact_all(document), indent=1))
+        except FileNotWrittenError as error:
+            unwritten.append(f"--coco {error}")
+    return report_plan("ground", made, common, progress, unwritten)
 
 
 def coco_document(image: Path, size_px: tuple[int, int], targets: Any) -> dict[str, Any]:
@@ -63,10 +69,3 @@ def coco_document(image: Path, size_px: tuple[int, int], targets: Any) -> dict[s
             for x0, y0, x1, y1 in [target.box_px]
         ],
     }
-
-
-def _write(path: Path, document: dict[str, Any]) -> None:
-    try:
-        write_redacted(path, json.dumps(redact_all(document), indent=1))
-    except OSError as error:
-        raise click.UsageError(f"--coco {str(path)!r}: {error.strerror}") from error

@@ -9,9 +9,9 @@ import click
 
 from wonderful_team.cli.options import PATH
 from wonderful_team.cli.output import finish
-from wonderful_team.core.filesystem import make_private_folder
+from wonderful_team.core.filesystem import make_private_folder, write_public
 from wonderful_team.core.text import counted, visible
-from wonderful_team.errors import ConfigError
+from wonderful_team.errors import ConfigError, reading
 
 KINDS = ("models", "worlds", "tasks", "suites", "methods", "prompts", "words", "runs")
 
@@ -53,11 +53,9 @@ def _write_table(path: Path, out: Path | None, open_page: bool) -> str:
     from wonderful_team.pages.runs import write_runs_table
     from wonderful_team.record.run_folders import all_runs
 
-    try:
-        make_private_folder(path.parent)
-        write_runs_table(all_runs(out), path)
-    except OSError as error:
-        raise ConfigError(f"--html {str(path)!r}: {error.strerror or error}") from error
+    hint = "give another file with --html FILE"
+    make_private_folder(path.parent, hint)
+    write_runs_table(all_runs(out), path)
     if open_page:
         click.launch(path.resolve().as_uri())
     return shown_path(path)
@@ -115,15 +113,17 @@ def _prompts(out: Path | None) -> dict[str, str]:
     files = Prompts.default().files()
     if out is None:
         return {name: text.strip().partition("\n")[0] for name, text in files.items()}
-    try:
-        out.mkdir(parents=True, exist_ok=True)
-        for name, text in files.items():
-            path = out / name
-            if path.exists() and path.read_text(encoding="utf-8") != text:
-                raise ConfigError(f"--out: {str(path)!r} exists with other words; choose an empty folder")
-            path.write_text(text, encoding="utf-8")
-    except OSError as error:
-        raise ConfigError(f"--out {str(out)!r}: {error.strerror}") from error
+    hint = "give another folder with --out DIR"
+    with reading(f"--out {str(out)!r}", hint):
+        other = [
+            out / name
+            for name, text in files.items()
+            if (out / name).exists() and (out / name).read_text(encoding="utf-8") != text
+        ]
+    if other:
+        raise ConfigError(f"--out: {str(other[0])!r} exists with other words; choose an empty folder")
+    for name, text in files.items():
+        write_public(out / name, text, hint)
     return {str(out / name): "written" for name in files}
 
 

@@ -12,6 +12,7 @@ import click
 from wonderful_team.cli.options import PATH
 from wonderful_team.cli.output import finish
 from wonderful_team.cli.run_summary import program
+from wonderful_team.core.filesystem import write_public
 from wonderful_team.errors import ConfigError
 
 KINDS = ("world", "method", "task", "model")
@@ -35,13 +36,12 @@ def command(kind: str, name: str, out: Path, as_json: bool) -> int:
     taken = [str(path) for path in made if path.exists()]
     if taken:
         raise ConfigError(f"{', '.join(taken)}: exists already; choose another name or --out DIR")
-    out.mkdir(parents=True, exist_ok=True)
     for path, template in made.items():
         # Only $name, $file and $path are filled: the files hold braces of their own.
         text = Template((_FILES / template).read_text(encoding="utf-8")).safe_substitute(
             name=name, file=file, path=shlex.quote(f"{out / file}:{name}")
         )
-        path.write_text(text, encoding="utf-8")
+        write_public(path, text, "give another folder with --out DIR")
     path = out / file
     called, name_there = program(), shlex.quote(f"{path}:{name}")
     text = "\n".join(

@@ -14,6 +14,7 @@ from wonderful_team.core.text import visible, visible_json
 from wonderful_team.redaction import redact, redact_all
 
 SCHEMA_VERSION = 1
+WRONG_USE = 2
 COLOURS: dict[str, dict[str, Any]] = {
     "INJECTED": {"fg": "yellow", "bold": True},
     "CAUGHT": {"fg": "green", "bold": True},
@@ -62,18 +63,42 @@ def say(text: str, *, err: bool = False) -> None:
     click.echo("\n".join(map(_coloured, visible(redact(text), layout=True).split("\n"))), err=err)
 
 
-def finish(command: str, *, text: str, result: Mapping[str, Any], as_json: bool, code: int, last_line: str = "") -> int:
+def finish(
+    command: str,
+    *,
+    text: str,
+    result: Mapping[str, Any],
+    as_json: bool,
+    code: int,
+    last_line: str = "",
+    unwritten: Sequence[str] = (),
+) -> int:
     """Print a result on stdout; the last line (the page) on stderr when stdout is JSON.
+
+    Args:
+        command: Which one ends.
+        text: The result for people.
+        result: The result for machines.
+        as_json: Which of them is printed.
+        code: The exit code; 2 in the place of 0 when something could not be written.
+        last_line: Printed after it.
+        unwritten: Which files could not be written, and why: the result stands all the same.
 
     Returns:
         The exit code, for the command to return.
     """
+    error = None
+    if unwritten:
+        code = code or WRONG_USE
+        error = {"type": "FileNotWrittenError", "message": "; ".join(unwritten), "stage": None}
     if as_json:
-        Document(command, result).print(code)
+        Document(command, result, error).print(code)
     else:
         say(text)
     if last_line:
         say(last_line, err=as_json)
+    for why in unwritten:
+        say(f"error: {why}", err=True)
     return code
 
 

@@ -49,12 +49,17 @@ def command(model: str, save: str | None, as_json: bool, **options: Any) -> int:
     """
     from wonderful_team.api.probe import probe_model
     from wonderful_team.cli.progress import cost_line
+    from wonderful_team.errors import FileNotWrittenError
     from wonderful_team.models.profiles import profile_to_dict, save_profile
 
     started = time.monotonic()
     probed = probe_model(model, save=save, tell=lambda line: click.echo(line, err=True), **options)
     profile = probed.profile
-    saved = str(save_profile(profile)) if save else None
+    saved, unwritten = None, []
+    try:
+        saved = str(save_profile(profile)) if save else None
+    except FileNotWrittenError as error:
+        unwritten.append(f"the profile is not saved: {error}")
     spent = cost_line(probed.usage, time.monotonic() - started)
     click.echo(spent, err=True)
     code = 5 if probed.stopped else 0
@@ -69,7 +74,7 @@ def command(model: str, save: str | None, as_json: bool, **options: Any) -> int:
     if as_json and probed.stopped:
         Document("probe", result, {"type": "BudgetReached", "message": probed.stopped, "stage": "budget"}).print(code)
         return code
-    return finish("probe", text=report(profile, saved), result=result, as_json=as_json, code=code)
+    return finish("probe", text=report(profile, saved), result=result, as_json=as_json, code=code, unwritten=unwritten)
 
 
 def report(profile: Any, saved: str | None) -> str:

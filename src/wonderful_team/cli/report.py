@@ -8,7 +8,7 @@ from pathlib import Path
 import click
 
 from wonderful_team.cli.options import PATH
-from wonderful_team.cli.output import finish
+from wonderful_team.cli.output import finish, say
 
 
 @click.command(
@@ -35,12 +35,20 @@ def command(
 ) -> int:
     """Merge STOREs (shards, or several studies) and write what they show."""
     from wonderful_team.cli.run_summary import shown_path
-    from wonderful_team.evals.report.page import write_all
+    from wonderful_team.errors import FileNotWrittenError
+    from wonderful_team.evals.report.page import read_stores, write_all
     from wonderful_team.evals.report.tables import condition_json, to_markdown
+    from wonderful_team.evals.summary import summarise
 
     words = shlex.join(["wonderful-team", *(context.obj or ())])
     page = out or stores[0].with_suffix(".html")
-    made = write_all(stores, page, baseline=baseline, csv=csv, latex=latex, command=words)
+    try:
+        made = write_all(stores, page, baseline=baseline, csv=csv, latex=latex, command=words)
+    except FileNotWrittenError:
+        # The figures are the result in hand.
+        rows, requests, _ = read_stores(stores)
+        say(to_markdown(summarise(rows, requests), baseline).rstrip(), err=as_json)
+        raise
     if open_page:
         click.launch(made.page.resolve().as_uri())
     summary = made.summary

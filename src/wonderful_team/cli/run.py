@@ -7,6 +7,7 @@ from pathlib import Path
 import click
 
 from wonderful_team.cli.options import PATH, Common, common
+from wonderful_team.core.deadline import to_end
 from wonderful_team.core.text import counted
 from wonderful_team.record.run_folders import find_run
 
@@ -75,7 +76,7 @@ def command(
     from wonderful_team.cli.run_summary import report_trial
     from wonderful_team.cli.video import FRAME_S, Film, check_video_name
     from wonderful_team.core.protocols import Filmed, offers
-    from wonderful_team.errors import reading
+    from wonderful_team.errors import BudgetReached, FileNotWrittenError, reading
     from wonderful_team.record import read_run_plan
     from wonderful_team.registry.methods import team_mode
     from wonderful_team.registry.worlds import scene_name
@@ -111,7 +112,11 @@ def command(
         )
     finally:
         close_world(place, progress.note)
+    unwritten = []
     if film is not None and video is not None:
-        film.write(video)
-        progress.note(f"video: {video} ({counted(len(film.frames), 'picture')})")
-    return report_trial("run", trial, common, progress, {"video": None if video is None else str(video)})
+        try:
+            to_end("making the video", film.write, video)
+            progress.note(f"video: {video} ({counted(len(film.frames), 'picture')})")
+        except (FileNotWrittenError, BudgetReached) as error:
+            unwritten.append(f"--video {error}")
+    return report_trial("run", trial, common, progress, {"video": None if video is None else str(video)}, unwritten)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import shutil
 import sys
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -18,18 +18,27 @@ from wonderful_team.cli.wording import plan_exit_code, plan_lines, trial_exit_co
 from wonderful_team.core.jsonable import to_jsonable
 
 
-def report_plan(command: str, made: PlanResult, common: Common, progress: ProgressLine) -> int:
+def report_plan(
+    command: str, made: PlanResult, common: Common, progress: ProgressLine, unwritten: Sequence[str] = ()
+) -> int:
     """Print a plan; returns the exit code."""
     progress.end(made.usage)
-    return end(command, plan_lines(made), made.to_json(), common, plan_exit_code(made), made.page)
+    failed = (*made.unwritten, *unwritten)
+    return end(command, plan_lines(made), made.to_json(), common, plan_exit_code(made), made.page, failed)
 
 
 def report_trial(
-    command: str, trial: TrialResult, common: Common, progress: ProgressLine, more: Mapping[str, Any]
+    command: str,
+    trial: TrialResult,
+    common: Common,
+    progress: ProgressLine,
+    more: Mapping[str, Any],
+    unwritten: Sequence[str] = (),
 ) -> int:
     """Print a trial; returns the exit code."""
     progress.end(trial.usage)
-    return end(command, trial_lines(trial), {**trial_json(trial), **more}, common, trial_exit_code(trial), trial.page)
+    result, code = {**trial_json(trial), **more}, trial_exit_code(trial)
+    return end(command, trial_lines(trial), result, common, code, trial.page, (*trial.unwritten, *unwritten))
 
 
 def trial_json(trial: TrialResult) -> dict[str, Any]:
@@ -51,12 +60,34 @@ def trial_json(trial: TrialResult) -> dict[str, Any]:
     }
 
 
-def end(command: str, lines: list[str], result: Mapping[str, Any], common: Common, code: int, page: Path | None) -> int:
-    """Result on stdout, the page on the last line, and the page in a browser when asked for."""
+def end(
+    command: str,
+    lines: list[str],
+    result: Mapping[str, Any],
+    common: Common,
+    code: int,
+    page: Path | None,
+    unwritten: Sequence[str] = (),
+) -> int:
+    """Result on stdout, the page on the last line, and the page in a browser when asked for.
+
+    Args:
+        command: Which one ends.
+        lines: The result as text.
+        result: The same for machines.
+        common: Options.
+        code: The exit code, if all was written.
+        page: None where there is none.
+        unwritten: Which files could not be written, and why: the result stands all the same.
+    """
+    page = page if page is not None and page.is_file() else None
     last = "" if page is None else f"page: {shown_path(page)}"
     if page is not None and common.open_page:
         click.launch(page.resolve().as_uri())
-    return finish(command, text="\n".join(lines), result=result, as_json=common.as_json, code=code, last_line=last)
+    text = "\n".join(lines)
+    return finish(
+        command, text=text, result=result, as_json=common.as_json, code=code, last_line=last, unwritten=unwritten
+    )
 
 
 def program() -> str:

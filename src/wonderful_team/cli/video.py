@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 from collections.abc import Mapping
 from pathlib import Path
 
@@ -59,8 +60,9 @@ class Film:
         pictures = [Image.fromarray(frame) for frame in self.frames]
         shown_ms = [*self.shown_ms[:-1], LAST_MS]
         kind = FORMATS[path.suffix.lower()]
-        write_private(path, b"")
-        pictures[0].save(path, kind, save_all=True, append_images=pictures[1:], duration=shown_ms, loop=0)
+        film = io.BytesIO()
+        pictures[0].save(film, kind, save_all=True, append_images=pictures[1:], duration=shown_ms, loop=0)
+        write_private(path, film.getvalue())
 
     def _keep(self, views: Mapping[str, Array], shown_ms: int) -> None:
         self.frames.append(_side_by_side(views))

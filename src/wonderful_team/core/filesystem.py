@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import contextlib
 import errno
 import os
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
+from wonderful_team.errors import FileNotWrittenError
 from wonderful_team.redaction import redact
 
 _NETWORK = (
@@ -49,16 +52,38 @@ def network_file_system(path: Path, mounts: str | None = None) -> str | None:
     return kind if any(name in kind for name in _NETWORK) else None
 
 
-def make_private_folder(folder: Path) -> None:
-    """Make a folder, and those above it, for its owner alone (0700); folders that exist stay as they are."""
-    missing = []
-    while not folder.exists():
-        missing.append(folder)
-        folder = folder.parent
-    for folder in reversed(missing):
-        folder.mkdir(mode=0o700, exist_ok=True)
-    if not folder.is_dir():
-        raise NotADirectoryError(errno.ENOTDIR, os.strerror(errno.ENOTDIR), str(folder))
+@contextlib.contextmanager
+def writing(path: Path, hint: str = "") -> Iterator[None]:
+    """Whatever the machine says while something is written becomes one error that names the file.
+
+    Args:
+        path: The file or folder.
+        hint: What the user can do.
+
+    Raises:
+        FileNotWrittenError: It cannot be written.
+    """
+    try:
+        yield
+    except OSError as error:
+        raise FileNotWrittenError(path, error, hint) from error
+
+
+def make_private_folder(folder: Path, hint: str = "") -> None:
+    """Make a folder, and those above it, for its owner alone (0700); folders that exist stay as they are.
+
+    Raises:
+        FileNotWrittenError: It cannot be made.
+    """
+    wanted, missing = folder, []
+    with writing(wanted, hint):
+        while not folder.exists():
+            missing.append(folder)
+            folder = folder.parent
+        for folder in reversed(missing):
+            folder.mkdir(mode=0o700, exist_ok=True)
+        if not folder.is_dir():
+            raise NotADirectoryError(errno.ENOTDIR, os.strerror(errno.ENOTDIR), str(folder))
 
 
 def private(path: str, flags: int) -> int:
@@ -66,18 +91,67 @@ def private(path: str, flags: int) -> int:
     return os.open(path, flags, 0o600)
 
 
-def write_private(path: Path, content: bytes) -> None:
-    """Write a file that is its owner's alone."""
-    with open(path, "wb", opener=private) as file:
-        file.write(content)
+def write_private(path: Path, content: bytes, hint: str = "") -> None:
+    """Write a file that is its owner's alone, all of it or nothing: a reader finds the old or the new content, never half of it.
+
+    Raises:
+        FileNotWrittenError: It cannot be written; what stood there stands.
+    """
+    with writing(path, hint):
+        _replace(path, content, private)
 
 
-def write_redacted(path: Path, text: str, errors: str = "backslashreplace") -> None:
+def _replace(path: Path, content: bytes, opener: Callable[[str, int], int] | None) -> None:
+    # A link stays one, and what is no file (a terminal, a pipe) is written to as it is.
+    place = path.resolve()
+    if place.exists() and not place.is_file():
+        with open(place, "wb") as stream:
+            stream.write(content)
+        return
+    part = place.with_name(f".{place.name[:100]}.{os.getpid()}.part")
+    try:
+        with open(part, "wb", opener=opener) as file:
+            if place.exists():
+                os.fchmod(file.fileno(), place.stat().st_mode & 0o777)
+            file.write(content)
+        os.replace(part, place)
+    except BaseException:
+        with contextlib.suppress(OSError):
+            part.unlink()
+        raise
+
+
+def write_public(path: Path, text: str, hint: str = "") -> None:
+    """Write a text file of the user's own, such as a template: with the rights that new files have here.
+
+    Raises:
+        FileNotWrittenError: It, or a folder above it, cannot be written.
+    """
+    with writing(path, hint):
+        path.parent.mkdir(parents=True, exist_ok=True)
+        _replace(path, text.encode("utf-8"), None)
+
+
+def append_private(path: Path, text: str) -> None:
+    """Add lines to a file that is its owner's alone.
+
+    Raises:
+        FileNotWrittenError: They cannot be added.
+    """
+    with writing(path), open(path, "a", encoding="utf-8", errors="backslashreplace", opener=private) as file:
+        file.write(text)
+
+
+def write_redacted(path: Path, text: str, errors: str = "backslashreplace", hint: str = "") -> None:
     """Write text in UTF-8, without any key in it, to a file that is its owner's alone.
 
     Args:
         path: The file.
         text: Its content.
         errors: What becomes of half a character (a lone surrogate), as in `str.encode`.
+        hint: What the user can do when it cannot be written.
+
+    Raises:
+        FileNotWrittenError: It cannot be written; what stood there stands.
     """
-    write_private(path, redact(text).encode("utf-8", errors=errors))
+    write_private(path, redact(text).encode("utf-8", errors=errors), hint)

@@ -17,7 +17,7 @@ from typing import Any
 from pydantic import TypeAdapter
 
 from wonderful_team.core.filesystem import make_private_folder, network_file_system, private
-from wonderful_team.errors import ConfigError, reading
+from wonderful_team.errors import ConfigError, FileNotWrittenError, reading
 from wonderful_team.evals.leases import LEASE_S, Owner, Surroundings
 from wonderful_team.evals.names import NO_MODEL
 from wonderful_team.evals.schema import CONDITION, JSON, RESULT, SCHEMA_VERSION, SPEC, check_values, make_tables
@@ -88,10 +88,11 @@ class Store:
         self._base.execute("BEGIN IMMEDIATE")
         try:
             yield self._base
+            self._base.execute("COMMIT")
         except BaseException:
-            self._base.execute("ROLLBACK")
+            with suppress(sqlite3.Error):  # a full disk has rolled it back already
+                self._base.execute("ROLLBACK")
             raise
-        self._base.execute("COMMIT")
 
     def close(self) -> None:
         self._base.close()
@@ -101,6 +102,10 @@ class Store:
 
     def __exit__(self, kind: object, error: BaseException | None, trace: object) -> None:
         self.close()
+        if isinstance(error, sqlite3.OperationalError):
+            raise FileNotWrittenError(
+                self.path, str(error), "what ended before is kept; the same command goes on"
+            ) from error
         if isinstance(error, sqlite3.Error | UnicodeDecodeError):
             raise ConfigError(f"store {str(self.path)!r} cannot be used: {error}") from error
 

@@ -6,6 +6,8 @@ import asyncio
 import contextlib
 import os
 import signal
+import sqlite3
+import sys
 import time
 import traceback
 from collections.abc import AsyncIterator, Callable
@@ -15,12 +17,14 @@ from typing import Any
 
 from wonderful_team.core.deadline import GRACE_S
 from wonderful_team.core.interrupts import in_thread
+from wonderful_team.errors import FileNotWrittenError, WonderfulTeamError
 from wonderful_team.evals.leases import RENEW_EVERY_S, Owner
 from wonderful_team.evals.spending import CapReached
 from wonderful_team.evals.store import CUT, Claim, Store
 from wonderful_team.evals.trials import RunSettings, SpendingCaps, TrialRow, TrialRunner, TrialSpec
 from wonderful_team.redaction import redacted_streams
 
+KEPT = "what ended before is kept; the same command goes on"
 LATE = "cut by the limit on time"
 """Why an attempt was discarded that the command had no time left for."""
 POLL_S = 0.2
@@ -69,7 +73,11 @@ def worker_main(work: Work, stopping: Any) -> None:
     """Entry of a worker process; an interrupt from the keyboard is the parent's to answer."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     with redacted_streams():
-        work_until_done(work, stopping.is_set)
+        try:
+            work_until_done(work, stopping.is_set)
+        except WonderfulTeamError as error:
+            sys.stderr.write(f"error: {error}\n")
+            sys.exit(error.exit_code)
 
 
 def work_until_done(work: Work, stopping: Callable[[], bool]) -> None:
@@ -120,7 +128,16 @@ async def _run(work: Work, store: Store, owner: Owner, claim: Claim) -> None:
     if work.late and result.stage == "budget" and result.outcome != "success":
         store.give_back(claim.trial, owner, LATE, result)
         return
-    settle(store, owner, claim, work.settings.caps, result)
+    try:
+        settle(store, owner, claim, work.settings.caps, result)
+    except sqlite3.Error as error:
+        with contextlib.suppress(sqlite3.Error):  # somebody may run it again at once, if that much can be written
+            store.give_back(claim.trial, owner, "its result could not be written", result)
+        stage = f" at {result.stage}" if result.stage else ""
+        ended = (
+            f"{claim.spec.scene} of {claim.spec.condition.label} ended in {result.outcome}{stage}, which is not kept"
+        )
+        raise FileNotWrittenError(store.path, f"{error}; {ended}", KEPT) from error
 
 
 def settle(store: Store, owner: Owner, claim: Claim, own: SpendingCaps, result: TrialRow) -> bool:

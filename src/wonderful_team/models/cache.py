@@ -187,7 +187,11 @@ class Cached:
             repairs=answer.repairs,
             cost=to_jsonable(answer.usage),
         )
-        standing = self.store.put(key, entry)
+        try:
+            standing = self.store.put(key, entry)
+        except ConfigError as error:
+            # It was paid for: a file that cannot be written must not lose it.
+            return replace(answer, repairs=(*answer.repairs, f"the answer is not kept: {error}"))
         if standing == entry:
             return answer
         # Ours was paid for all the same.

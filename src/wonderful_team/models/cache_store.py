@@ -201,12 +201,7 @@ class CacheStore:
         if self._connection is not None and self._process == os.getpid():
             return self._connection
         # A connection must not be carried over a fork: the child opens its own.
-        try:
-            make_private_folder(self.path.parent)
-        except OSError as error:
-            raise ConfigError(
-                f"cache folder {str(self.path.parent)!r} cannot be made: {error.strerror}; {_WAYS_OUT}"
-            ) from error
+        make_private_folder(self.path.parent, _WAYS_OUT)
         if self.path.is_dir():
             raise ConfigError(f"cache file {str(self.path)!r} is a folder; give a file (--cache-file FILE)")
         with contextlib.suppress(OSError), open(self.path, "ab", opener=private):

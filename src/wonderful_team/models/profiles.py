@@ -234,19 +234,14 @@ def save_profile(profile: Profile, folder: Path | None = None) -> Path:
     """Write a profile; one of the same name is replaced, never half written.
 
     Raises:
-        ConfigError: The name is not valid or the place cannot be written to.
+        ConfigError: The name is not valid.
+        FileNotWrittenError: The place cannot be written to.
     """
     place = profiles_folder() if folder is None else folder
     path = place / f"{check_name(profile.name)}.json"
-    fresh = place / f".{profile.name}.{os.getpid()}.tmp"
-    try:
-        make_private_folder(place)
-        write_redacted(fresh, profile_to_json(profile) + "\n")
-        fresh.replace(path)
-    except OSError as error:
-        raise ConfigError(
-            f"profile {str(path)!r} cannot be written: {error.strerror or error}; set {CONFIG_VARIABLE} to another folder"
-        ) from error
+    hint = f"set {CONFIG_VARIABLE} to another folder"
+    make_private_folder(place, hint)
+    write_redacted(path, profile_to_json(profile) + "\n", hint=hint)
     return path
 
 

@@ -232,7 +232,11 @@ def _refusals(refused: Sequence[dict[str, Any]]) -> str:
 
 def warnings(record: dict[str, Any], asked: Sequence[Asked]) -> list[str]:
     """10: everything that a reader should know before trusting the result."""
-    found = list(record["planner"]["warnings"])
+    found = [
+        f"{name} of this run could not be written: it is missing or not up to date"
+        for name in record.get("unwritten", ())
+    ]
+    found += record["planner"]["warnings"]
     for data in record["planner"]["plans"]:
         found += data["plan"]["warnings"]
     current = last_plan(record)

@@ -3,18 +3,19 @@
 from __future__ import annotations
 
 import hashlib
+import io
 import re
-from pathlib import Path
 
 import numpy as np
 
 from wonderful_team.core.deadline import for_record
-from wonderful_team.core.filesystem import make_private_folder, private, write_private
+from wonderful_team.core.filesystem import make_private_folder
 from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.pictures import Picture
 from wonderful_team.core.values import Observation, View
 from wonderful_team.images import Ticks, to_png
 from wonderful_team.images.drawn import drawn, drawn_hash
+from wonderful_team.record.run_files import RunFiles
 from wonderful_team.redaction import redact
 
 FOLDER = "pictures"
@@ -29,14 +30,14 @@ class PictureStore:
         files: From a picture's hash to its file, relative to the run folder.
     """
 
-    def __init__(self, folder: Path, ticks: Ticks = Ticks.PIXELS) -> None:
-        self._folder = folder
+    def __init__(self, files: RunFiles, ticks: Ticks = Ticks.PIXELS) -> None:
+        self._files = files
         self._ticks = ticks
         self._sent: set[str] = set()
         self._views = 0
         self._depths: dict[str, str] = {}
         self.files: dict[str, str] = {}
-        make_private_folder(folder / FOLDER)
+        make_private_folder(files.folder / FOLDER)
 
     def keep_sent(self, picture: Picture) -> str:
         """Store a picture as it is sent, marks drawn; returns the hash of what was drawn."""
@@ -65,13 +66,14 @@ class PictureStore:
         key = hashlib.sha256(view.depth_m.tobytes()).hexdigest()
         if key not in self._depths:
             name = f"depth_{len(self._depths) + 1:03d}_{_slug(where)}_{_slug(view.camera_name)}.npz"
-            with open(self._folder / FOLDER / name, "wb", opener=private) as file:
-                np.savez_compressed(file, depth_m=view.depth_m)
+            packed = io.BytesIO()
+            np.savez_compressed(packed, depth_m=view.depth_m)
+            self._files.write(f"{FOLDER}/{name}", packed.getvalue())
             self._depths[key] = f"{FOLDER}/{name}"
         return self._depths[key]
 
     def _write(self, key: str, name: str, rgb: Array) -> None:
-        write_private(self._folder / FOLDER / name, to_png(rgb))
+        self._files.write(f"{FOLDER}/{name}", to_png(rgb))
         self.files[key] = f"{FOLDER}/{name}"
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 import threading
 import time
 from collections.abc import Callable, Mapping, Sequence
@@ -14,19 +13,21 @@ from types import TracebackType
 from typing import Any
 
 from wonderful_team.core.deadline import for_record
-from wonderful_team.core.filesystem import make_private_folder, write_private
+from wonderful_team.core.filesystem import write_private
 from wonderful_team.core.interrupts import held
 from wonderful_team.core.jsonable import to_jsonable
 from wonderful_team.core.protocols import Event
 from wonderful_team.core.text import counted, picture_names, spoken, visible
 from wonderful_team.core.values import GateCheck, GateReport, Instruction, Limits, Observation, Plan, Request, Trial
-from wonderful_team.errors import ActionRefusedError, BudgetReached, WonderfulTeamError
+from wonderful_team.errors import ActionRefusedError, BudgetReached, FileNotWrittenError, WonderfulTeamError
 from wonderful_team.images import Ticks, action_arrows, overview, to_png
 from wonderful_team.images.keep_out import outlines
 from wonderful_team.record import entries
 from wonderful_team.record.picture_store import DRAWING, PictureStore
 from wonderful_team.record.plan_file import plan_to_json
 from wonderful_team.record.record_schema import RECORD_SCHEMA_VERSION
+from wonderful_team.record.run_files import RunFiles
+from wonderful_team.record.run_folders import RECORD_NAME
 from wonderful_team.record.versions import versions
 from wonderful_team.redaction import redact, redact_all
 
@@ -49,8 +50,8 @@ class Recorder:
 
     def __init__(self, folder: Path, *, ticks: Ticks = Ticks.PIXELS, command: str | None = None) -> None:
         self.folder = Path(folder)
-        make_private_folder(self.folder)
-        self._store = PictureStore(self.folder, ticks)
+        self._files = RunFiles(self.folder)
+        self._store = PictureStore(self._files, ticks)
         self._lock = threading.RLock()
         self._zero = time.monotonic()
         self._last_write = -1.0
@@ -91,8 +92,9 @@ class Recorder:
             "crash": self._on_crash,
             "done": self._on_done,
         }
+        # Before anything has happened a folder that cannot be written to ends the run.
         write_private(self.folder / "log.txt", b"")
-        self._write()
+        write_private(self.folder / RECORD_NAME, self._whole())
 
     def on_event(self, event: Event) -> None:
         """Keep one event. Kinds that are not known are left out."""
@@ -110,7 +112,17 @@ class Recorder:
         with held(), self._lock:
             if self._record["state"] == "running":
                 self._record["state"] = "interrupted"
+            self._files.try_again()
             self._write()
+
+    @property
+    def unwritten(self) -> tuple[str, ...]:
+        """What of the run could not be written, and why; all else is kept."""
+        return self._files.unwritten
+
+    def note_unwritten(self, error: FileNotWrittenError) -> None:
+        """Note a file of the folder that somebody else could not write."""
+        self._files.failed(error)
 
     @property
     def ended(self) -> bool:
@@ -211,7 +223,7 @@ class Recorder:
         self._planner["plans"].append(kept)
         if self._planner["instruction"] is None:
             self._planner["instruction"] = entries.instruction_entry(plan.instruction, self._store)
-        _write_whole(self.folder / "plan.json", json.dumps(redact_all(data), indent=1, ensure_ascii=False))
+        self._files.write("plan.json", _text(json.dumps(redact_all(data), indent=1, ensure_ascii=False)))
         self._draw_final(plan)
 
     def _draw_final(self, plan: Plan) -> None:
@@ -236,7 +248,7 @@ class Recorder:
         except BudgetReached as error:
             self._log("warning", f"the picture of the plan is missing: {error}")
             return
-        write_private(self.folder / "final.png", to_png(rgb))
+        self._files.write("final.png", to_png(rgb))
 
     def _on_asking(self, event: Event) -> None:
         self._planner.setdefault("asked", []).append({**event.content, "so_far": self._so_far()})
@@ -338,25 +350,25 @@ class Recorder:
 
     def _log(self, name: str, text: str) -> None:
         line = redact(f"{self._elapsed_s():6.1f} s  {name:10s} {text}")
-        with (self.folder / "log.txt").open("a", encoding="utf-8", errors="backslashreplace") as log:
-            log.write(visible(spoken(line.replace("\n", " "), self._pictures)) + "\n")
+        self._files.append("log.txt", visible(spoken(line.replace("\n", " "), self._pictures)) + "\n")
 
     def _write(self) -> None:
-        planner = {**self._planner, "requests": [self._requests[key] for key in sorted(self._requests)]}
-        record = {**self._record, "files": self._store.files, "planner": planner, "clock": self._clock}
-        # Indenting takes ten times as long: only the finished record is laid out for reading.
-        indent = None if record["state"] == "running" else 1
-        text = json.dumps(redact_all(record), indent=indent, ensure_ascii=False)
-        _write_whole(self.folder / "record.json", text)
+        self._files.write(RECORD_NAME, self._whole())
         self._last_write = self._elapsed_s()
 
+    def _whole(self) -> bytes:
+        planner = {**self._planner, "requests": [self._requests[key] for key in sorted(self._requests)]}
+        record = {**self._record, "files": self._store.files, "planner": planner, "clock": self._clock}
+        if self._files.missing:
+            record["unwritten"] = list(self._files.missing)
+        # Indenting takes ten times as long: only the finished record is laid out for reading.
+        indent = None if record["state"] == "running" else 1
+        return _text(json.dumps(redact_all(record), indent=indent, ensure_ascii=False))
 
-def _write_whole(path: Path, text: str) -> None:
-    """Replace a file so that a reader finds the old or the new content, never half of it."""
-    part = path.with_name(f".{path.name}.part")
+
+def _text(text: str) -> bytes:
     # Half of a character (a lone surrogate) becomes its JSON escape, which reads back as what it was.
-    write_private(part, text.encode("utf-8", errors="backslashreplace"))
-    os.replace(part, path)
+    return text.encode("utf-8", errors="backslashreplace")
 
 
 def gate_words(admitted: bool, checks: str, reasons: Sequence[str]) -> str:

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import re
 from datetime import datetime
 from pathlib import Path
 
-from wonderful_team.core.filesystem import make_private_folder
+from wonderful_team.core.filesystem import make_private_folder, writing
 from wonderful_team.core.text import user_path
-from wonderful_team.errors import ConfigError, UnknownNameError
+from wonderful_team.errors import ConfigError, FileNotWrittenError, UnknownNameError
 from wonderful_team.redaction import redact
 
 OUT_VARIABLE = "WONDERFUL_TEAM_RUNS"
@@ -26,20 +27,24 @@ def new_run_folder(words: str, out: str | Path | None = None) -> Path:
     """Make `<time>_<words>` and point `latest` at it.
 
     Raises:
-        ConfigError: The place cannot be written to.
+        FileNotWrittenError: The place cannot be written to.
     """
     root = runs_folder(out)
     stem = f"{datetime.now():%Y-%m-%d_%H%M%S}_{_slug(words)}"
-    try:
-        make_private_folder(root)
+    hint = "use --out DIR for another folder of runs"
+    make_private_folder(root, hint)
+    with writing(root / stem, hint):
         folder = _first_free(root, stem)
-        link, fresh = root / LATEST, root / f".{LATEST}-{os.getpid()}"
-        fresh.symlink_to(folder.name)
-        fresh.replace(link)
-    except OSError as error:
-        raise ConfigError(
-            f"runs folder {str(root)!r} cannot be written: {error.strerror or error}; use --out DIR"
-        ) from error
+    link, fresh = root / LATEST, root / f".{LATEST}-{os.getpid()}"
+    try:
+        with writing(link, hint):
+            fresh.symlink_to(folder.name)
+            fresh.replace(link)
+    except FileNotWrittenError:
+        for remove in (fresh.unlink, folder.rmdir):
+            with contextlib.suppress(OSError):
+                remove()
+        raise
     return folder
 
 

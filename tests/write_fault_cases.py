@@ -6,6 +6,7 @@ import contextlib
 import io
 import itertools
 import json
+import os
 import sqlite3
 import sys
 from collections.abc import Callable
@@ -209,7 +210,10 @@ class Bench:
         return called(self.study(setting, place), faults)
 
     def check(self, setting: Setting, ended: Ended) -> list[str]:
-        found = unnamed(ended)
+        # On a disk that stays full the store is the first whose failure ends the command.
+        store_named = ended.faults.lasting and "s.db" in ended.err
+        found = [] if store_named else unnamed(ended)
+        self._end_the_process(ended.folder / "s.db")
         code, out, err = called([*self.study(setting, ended.folder), "--json", "--retry-errors"], Faults([]))
         if code != 0:
             return [*found, f"the study does not go on: {err[-300:]}"]
@@ -221,6 +225,12 @@ class Bench:
         if len(rows) != 2 or any(row[1:] != ("done", "unscored") for row in rows):
             found.append(f"trials in the store: {rows}")
         return found
+
+    def _end_the_process(self, store: Path) -> None:
+        """The command would have ended with its process; here the process lives, and with it what it had claimed."""
+        with contextlib.suppress(sqlite3.Error), contextlib.closing(sqlite3.connect(store)) as base:
+            base.execute("UPDATE trials SET owner = replace(owner, ?, '|0|')", (f"|{os.getpid()}|",))
+            base.commit()
 
 
 @dataclass(frozen=True)
@@ -250,7 +260,6 @@ CASES: tuple[Case, ...] = (
     Other("new", ("new", "world", "Mine", "--out", "{place}/new")),
     Other("list prompts", ("list", "prompts", "--out", "{place}/words")),
     Other("list runs", ("list", "runs", "--out", "{made}", "--html", "{place}/runs.html")),
-    Other("show --replay", ("show", "{made}/latest", "--replay", "--out", "{place}/runs")),
     Other(
         "ground",
         ("ground", DESK, "red block", "--model", "{own}:Stub", "--coco", "{place}/c.json", "--out", "{place}/runs"),

@@ -174,8 +174,9 @@ def _watched(made: Any, path: Any, faults: Faults) -> None:
             faults.point("close", path)
         except OSError:
             close()
-            with contextlib.suppress(OSError):
-                os.truncate(path, os.path.getsize(path) // 2)
+            if "a" not in made.mode:  # what stood there before is not touched by adding to it
+                with contextlib.suppress(OSError):
+                    os.truncate(path, os.path.getsize(path) // 2)
             raise
         close()
 

@@ -58,7 +58,7 @@ def _trial(spec: TrialSpec, settings: RunSettings) -> TrialRow:
         return TrialRow(
             outcome=trial.outcome,
             stage=trial.stage,
-            reason=trial.reason,
+            reason="; ".join((trial.reason, *getattr(trial, "unwritten", ()))),
             calls=usage.calls,
             tokens=usage.tokens,
             pictures=usage.pictures,

@@ -132,6 +132,8 @@ async def _run(work: Work, store: Store, owner: Owner, claim: Claim) -> None:
     try:
         settle(store, owner, claim, work.settings.caps, result)
     except sqlite3.Error as error:
+        with contextlib.suppress(sqlite3.Error):  # somebody may run it again at once, if that much can be written
+            store.give_back(claim.trial, owner, "its result could not be written", result)
         stage = f" at {result.stage}" if result.stage else ""
         ended = (
             f"{claim.spec.scene} of {claim.spec.condition.label} ended in {result.outcome}{stage}, which is not kept"

@@ -7,13 +7,17 @@ import hashlib
 import json
 import re
 from pathlib import Path
+from types import SimpleNamespace
+from typing import cast
 
 import numpy as np
 import pytest
 from PIL import Image
 
 import wonderful_team as wt
+from wonderful_team.api.results import TrialResult
 from wonderful_team.cli.app import run
+from wonderful_team.cli.wording import trial_lines
 
 ROOT = Path(__file__).parents[2]
 DESK = str(ROOT / "examples" / "desk.png")
@@ -155,3 +159,15 @@ def test_json_on_a_terminal_holds_no_hidden_characters_and_the_same_values(
     told = capsys.readouterr().out
     assert not set(told) & set("\x1b\x9b\u202e")
     assert json.loads(told)["result"]["message"] == NASTY + "\x9b"
+
+
+def test_what_became_of_a_trial_names_pictures_as_people_do() -> None:
+    said = SimpleNamespace(text="Put {dragged_obj} in the bowl.", slots={"dragged_obj": None})
+    verdict = SimpleNamespace(subgoal="G1", status="not_done", cause="the tallest {dragged_obj} is not at the bowl")
+    trial = SimpleNamespace(
+        outcome="failure", stage="execution", reason="no replans left; G1 not done: the {dragged_obj} stayed",
+        verdicts=[verdict], plans=[SimpleNamespace(instruction=said)], reports=[],
+    )  # fmt: skip
+    text = "\n".join(trial_lines(cast(TrialResult, trial)))
+    assert "{" not in text
+    assert text.count("[picture 1]") == 2

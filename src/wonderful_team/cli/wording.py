@@ -173,10 +173,12 @@ def _parts(value: Any) -> str:
 def trial_lines(trial: TrialResult) -> list[str]:
     """What `run` prints: outcome, stage, reason, and how every subgoal went."""
     stage = f" at {trial.stage}" if trial.stage else ""
-    lines = [f"{trial_word(trial)}{stage}  {visible(trial.reason)}"]
+    said = trial.plans[-1].instruction if trial.plans else None
+    names = {} if said is None else picture_names(said.text, said.slots)
+    lines = [f"{trial_word(trial)}{stage}  {visible(spoken(trial.reason, names))}"]
     lines += [
         f"  {verdict.subgoal} {verdict.status.replace('_', ' ')}"
-        + (f": {visible(verdict.cause)}" if verdict.cause else "")
+        + (f": {visible(spoken(verdict.cause, names))}" if verdict.cause else "")
         for verdict in trial.verdicts
     ]
     executed = sum(report.executed for report in trial.reports)

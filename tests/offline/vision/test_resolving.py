@@ -23,8 +23,11 @@ from tests.offline.vision.drawn import (
     round_shape,
     striped,
 )  # fmt: skip
+from wonderful_team.offline.answers.drafting import draft
 from wonderful_team.offline.description import Description, Related, Relation, Superlative
 from wonderful_team.offline.vision import NotSeen, resolve, see, study_example
+from wonderful_team.planning.scene import SceneShown
+from wonderful_team.sims.tabletop import make_world
 
 ROW = (
     Drawing()
@@ -166,3 +169,13 @@ def test_free_places_are_free_and_where_they_were_asked_for() -> None:
     assert abs(spots[0].point[1] - 90) < 60
     for spot in resolve(scene, Description("area", "an empty area"), {}):
         assert all(spot.box.intersection(thing.box) is None or spot.box.iou(thing.box) < 0.05 for thing in scene.things)
+
+
+def test_the_holes_of_a_plain_picture_are_part_of_the_shape_that_a_new_noun_means() -> None:
+    world = make_world("novel_noun", seed=300000)
+    try:
+        task = SceneShown(world.observe(), world.instruction, world.vocabulary, world.limits).task
+    finally:
+        world.close()
+    plan, _ = draft(task, with_targets=True)
+    assert [target.words for target in plan.targets] == ["green object", "orange object"]

@@ -69,7 +69,7 @@ def related_of(tree: Tree[Token]) -> Related:
     nouns = tuple(thing_of(child) for child in trees(tree, "np"))
     if any(token.type == "BETWEEN" for token in tokens_in(tree)):
         return Related("between", nouns)
-    kind = first_token(next(trees(tree, "relation")))
+    kind = tokens_in(next(trees(tree, "relation")))[0]
     return Related(_RELATIONS[kind.type], nouns)  # type: ignore[arg-type]
 
 
@@ -276,7 +276,3 @@ def trees(tree: Tree[Token], rule: str) -> Iterator[Tree[Token]]:
 
 def tokens_in(tree: Tree[Token]) -> list[Token]:
     return list(tree.scan_values(lambda item: isinstance(item, Token)))
-
-
-def first_token(tree: Tree[Token], kinds: tuple[str, ...] = ()) -> Token:
-    return next(token for token in tokens_in(tree) if not kinds or token.type in kinds)

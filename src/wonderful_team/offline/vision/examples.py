@@ -134,6 +134,8 @@ def alike(
         parts["colour"], parts["pattern"] = max(rated, key=lambda pair: (pair[0] * pair[1], pair))
     if only != "texture":
         forms = [example.look.outline, *([example.open_outline] if example.open_outline is not None else [])]
+        if only == "shape" and example.look.patterns["plain"] > PLAIN:
+            forms = forms[-1:]  # a plain thing has no texture that could have vanished: its gaps are holes
         parts["outline"] = max(same_outline(form, thing.look.outline) for form in forms)
         thin = thin_likeness(example.look.outline, thing.look.outline)
         parts["outline"] = max(parts["outline"], thin)
@@ -147,6 +149,8 @@ def alike(
     return parts
 
 
+PLAIN = 0.5
+"""Plainness from which a picture's thing has no texture."""
 THIN_FILL, THIN_ASPECT = 0.3, 6.0
 """A rim fills at most this share of the rectangle round it; a line is at least so many times as long as wide."""
 THIN_PATTERN = 0.5

@@ -72,21 +72,24 @@ def scrubbed(text: str, key: str | None) -> str:
     return _KEYS.sub("[key]", text)
 
 
-def fault_of(error: BaseException, name: str, where: str, key: str | None, key_names: str) -> Fault:
-    """Sort an error of the library; `key` is taken out of every text, `key_names` are the variables that may hold it."""
+def fault_of(error: BaseException, name: str, where: str, key: str | None, key_holder: str) -> Fault:
+    """Sort an error of the library; `key` is taken out of every text, `key_holder` names what holds it."""
+    own = _caused_by(error, WonderfulTeamError)
+    if isinstance(own, WonderfulTeamError):
+        return Fault(own)
     too_large = _caused_by(error, ReplyTooLargeError)
     if too_large is not None:
         return Fault(ModelServerError(f"{name}: {where}: {too_large}"), billed=True)
-    return _sorted(error, name, where, key, key_names)
+    return _sorted(error, name, where, key, key_holder)
 
 
-def _sorted(error: Any, name: str, where: str, key: str | None, key_names: str) -> Fault:
+def _sorted(error: Any, name: str, where: str, key: str | None, key_holder: str) -> Fault:
     from pydantic_ai import exceptions as lib
 
     said = _said(error, key)
     match error:
         case lib.ModelAuthenticationError():
-            return Fault(ModelAuthError(f"{name}: {where} refused the key; it is read from {key_names} ({said})"))
+            return Fault(ModelAuthError(f"{name}: {key_refused(where, key, key_holder)} ({said})"))
         case lib.ModelNotFoundError():
             return Fault(UnknownModelError(f"{name}: {where} has no such model, or is not the right address ({said})"))
         case lib.ModelQuotaExceededError():
@@ -105,9 +108,11 @@ def _sorted(error: Any, name: str, where: str, key: str | None, key_names: str) 
         case lib.ModelUnavailableError() | lib.ModelServerError():
             return Fault(ModelServerError(f"{name}: the provider failed ({said})"), True, _asked_wait(error))
         case lib.ModelHTTPError():
-            return _rejected(error.status_code, name, where, said, _asked_wait(error))
+            return _rejected(
+                error.status_code, name, where, said, _asked_wait(error), key_refused(where, key, key_holder)
+            )
         case lib.ModelRequestRejectedError():
-            return _rejected(400, name, where, said, None)
+            return _rejected(400, name, where, said, None, key_refused(where, key, key_holder))
         case lib.UserError():
             return Fault(RequestRejectedError(f"{name}: the client library refuses the request ({said})"), schema=True)
         case _:
@@ -124,14 +129,21 @@ def _caused_by(error: BaseException | None, kind: type[BaseException]) -> BaseEx
     return None
 
 
-def _rejected(status: int, name: str, where: str, said: str, wait_s: float | None) -> Fault:
+def key_refused(where: str, key: str | None, key_holder: str) -> str:
+    """That a key is wrong, or that there is none, with what holds it or should."""
+    if not key:
+        return f"{where} wants a key, and none was sent: set the environment variable {key_holder}"
+    return f"{where} refused the key that {key_holder} holds"
+
+
+def _rejected(status: int, name: str, where: str, said: str, wait_s: float | None, refused: str) -> Fault:
     """A reply with a status of its own; 4xx are final unless another form of the request may do."""
     if status in (408, 409, 425) or status >= 500:
         return Fault(ModelServerError(f"{name}: the provider failed ({said})"), True, wait_s)
     if 300 <= status < 400:
         return Fault(UnknownModelError(f"{name}: {where} sends elsewhere (status {status}); give the final address"))
     if _BAD_KEY.search(said):
-        return Fault(ModelAuthError(f"{name}: {where} refused the key ({said})"))
+        return Fault(ModelAuthError(f"{name}: {refused} ({said})"))
     pictures = _PICTURES.search(said)
     if pictures is not None:
         limit = int(pictures.group(3)) if pictures.group(3) else 0

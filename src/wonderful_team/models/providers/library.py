@@ -7,10 +7,10 @@ from __future__ import annotations
 
 import importlib
 import importlib.metadata
-from collections.abc import Sequence
+from collections.abc import Awaitable, Callable, Sequence
 from typing import TYPE_CHECKING, Any, cast
 
-from wonderful_team.errors import MissingExtraError
+from wonderful_team.errors import ConfigError, MissingExtraError
 from wonderful_team.models.providers.bounded import limit_replies
 from wonderful_team.models.providers.specs import Spec, is_loopback
 from wonderful_team.models.wire import Composed
@@ -27,7 +27,14 @@ _MODULES = {
     "openrouter": "pydantic_ai.models.openrouter",
 }
 NO_KEY = "none"
-"""Sent to servers that ask for no key: the clients insist on some word."""
+"""Given to the vendors' clients where there is no key: they insist on some word. It is never sent."""
+SENT_HEADERS = frozenset({
+    "accept", "accept-encoding", "anthropic-version", "connection", "content-length", "content-type", "host",
+    "transfer-encoding", "user-agent",
+})  # fmt: skip
+"""Headers that leave this machine, beside the one with the key: vendors' clients add more from variables such as
+OPENAI_ORG_ID and ANTHROPIC_CUSTOM_HEADERS, which name accounts and hold secrets."""
+KEY_HEADERS = frozenset({"authorization", "x-api-key", "x-goog-api-key"})
 
 
 def library_version() -> str:
@@ -55,15 +62,40 @@ def preload(api: str, text: str) -> None:
         raise MissingExtraError(f"model {text!r}", "vendors") from error
 
 
-def http_client(spec: Spec, timeout_s: float, local_only: bool) -> httpx2.AsyncClient:
-    """A connection pool of our own: no redirects (a key must not follow one), no proxy for this machine, no endless reply."""
+def http_client(spec: Spec, key: str | None, timeout_s: float, local_only: bool) -> httpx2.AsyncClient:
+    """A connection pool of our own for one service and one key.
+
+    No redirects (a key must not follow one), no proxy for this machine, no endless reply, no headers but `SENT_HEADERS`
+    and exactly this key, no address but the service's.
+    """
     import httpx2
 
     limits = httpx2.Limits(max_connections=64, max_keepalive_connections=16)
     timeout = httpx2.Timeout(timeout_s, connect=min(10.0, timeout_s))
     outside = not (local_only or is_loopback(spec.base_url))
     client = httpx2.AsyncClient(timeout=timeout, limits=limits, follow_redirects=False, trust_env=outside)
+    client.event_hooks = {"request": [_guard(spec, key)], "response": []}
     return limit_replies(client)
+
+
+def _guard(spec: Spec, key: str | None) -> Callable[[httpx2.Request], Awaitable[None]]:
+    """Lets through what we decided to send, whatever a vendor's client found in the environment."""
+    import httpx2
+
+    home = httpx2.URL(spec.base_url)
+    place = (home.scheme, home.host, home.port)
+    keys = () if key is None else (key, f"Bearer {key}")
+
+    async def guard(request: httpx2.Request) -> None:
+        url = request.url
+        if (url.scheme, url.host, url.port) != place:
+            raise ConfigError(f"a request for {spec.base_url} was about to go to {url.scheme}://{url.host}")
+        for name in set(request.headers):
+            held = request.headers[name]
+            if name not in SENT_HEADERS and not (name in KEY_HEADERS and held in keys):
+                del request.headers[name]
+
+    return guard
 
 
 def build_model(spec: Spec, model: str, key: str | None, client: httpx2.AsyncClient) -> LibraryModel:
@@ -71,17 +103,36 @@ def build_model(spec: Spec, model: str, key: str | None, client: httpx2.AsyncCli
 
     Raises:
         MissingExtraError: A vendor's client is not installed.
+        ConfigError: The library cannot use such a name.
     """
     try:
         return _BUILDERS[spec.api](spec, model, key or NO_KEY, client)
     except ImportError as error:
         raise MissingExtraError(f"model {spec.text!r}", "vendors") from error
+    except Exception as error:
+        # It reads names of models in ways of its own.
+        raise ConfigError(f"model {spec.text!r}: the client library cannot use it ({type(error).__name__})") from error
 
 
 def _openai_client(spec: Spec, key: str, client: httpx2.AsyncClient) -> Any:
     from openai import AsyncOpenAI
 
-    return AsyncOpenAI(base_url=spec.base_url, api_key=key, http_client=client, max_retries=0)
+    return _own_headers(AsyncOpenAI)(base_url=spec.base_url, api_key=key, http_client=client, max_retries=0)
+
+
+def _own_headers(client_class: type[Any]) -> type[Any]:
+    """A vendor's client that gives no header a value from OPENAI_CUSTOM_HEADERS or ANTHROPIC_CUSTOM_HEADERS.
+
+    Every copy that the library makes of it reads these variables again.
+    """
+
+    class Own(client_class):  # type: ignore[misc]
+        @property
+        def default_headers(self) -> Any:
+            self._custom_headers: Any = {}
+            return super().default_headers
+
+    return Own
 
 
 def _chat(spec: Spec, model: str, key: str, client: httpx2.AsyncClient) -> LibraryModel:
@@ -137,7 +188,7 @@ def _anthropic(spec: Spec, model: str, key: str, client: httpx2.AsyncClient) -> 
     from pydantic_ai.models.anthropic import AnthropicModel
     from pydantic_ai.providers.anthropic import AnthropicProvider
 
-    sdk = AsyncAnthropic(base_url=spec.base_url, api_key=key, http_client=client, max_retries=0)
+    sdk = _own_headers(AsyncAnthropic)(base_url=spec.base_url, api_key=key, http_client=client, max_retries=0)
     return AnthropicModel(model, provider=AnthropicProvider(anthropic_client=sdk))
 
 

@@ -13,7 +13,7 @@ from wonderful_team.models.providers import library
 from wonderful_team.models.providers.listing import only_model, server_models
 from wonderful_team.models.providers.provider import Provider
 from wonderful_team.models.providers.settings import FIRST_WAIT_S, MAX_TOKENS, SERVER_MAX_TOKENS, Settings, Thinking
-from wonderful_team.models.providers.specs import VENDORS, Spec, find_key, parse_spec, require_local
+from wonderful_team.models.providers.specs import VENDORS, Spec, find_key, key_holder, parse_spec, require_local
 
 if TYPE_CHECKING:
     from wonderful_team.models.profiles import Profile
@@ -62,8 +62,10 @@ def make_provider(
         require_local(parsed)
     key = find_key(parsed, api_key)
     library.preload(parsed.api, spec)
+    holder = key_holder(parsed, api_key)
     model = parsed.model or only_model(
-        parsed.base_url, server_models(parsed.base_url, key, timeout_s=min(10.0, deadline_s), local_only=local_only)
+        parsed.base_url,
+        server_models(parsed.base_url, key, timeout_s=min(10.0, deadline_s), local_only=local_only, key_holder=holder),
     )
     family = guess_family(model)
     most = max_tokens or (MAX_TOKENS[thinking] if parsed.vendor or thinking not in (None, "off") else SERVER_MAX_TOKENS)
@@ -86,6 +88,7 @@ def make_provider(
         local_only,
         "" if profile is not None else _note(name, family),
         key,
+        holder,
     )
 
 

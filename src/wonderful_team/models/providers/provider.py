@@ -29,7 +29,7 @@ from wonderful_team.models.prices import Prices
 from wonderful_team.models.providers import library
 from wonderful_team.models.providers.faults import Fault, fault_of, scrubbed
 from wonderful_team.models.providers.settings import LONGEST_WAIT_S, Settings
-from wonderful_team.models.providers.specs import SERVER_KEY, VENDORS, Spec
+from wonderful_team.models.providers.specs import SERVER_KEY, Spec
 from wonderful_team.models.wire import Composed, Reading, Unreadable, compose, encodable, ticks_of
 
 if TYPE_CHECKING:
@@ -58,6 +58,7 @@ class Provider:
         weak_pointing: Whole views should carry labelled axes.
         prices: What tokens cost.
         note: What the user should know before trusting its places; "" when they were measured.
+        key_holder: The variable that holds the key, or would.
     """
 
     name: str
@@ -70,6 +71,7 @@ class Provider:
     local_only: bool = False
     note: str = ""
     key: str | None = field(default=None, repr=False)
+    key_holder: str = SERVER_KEY
     _clients: WeakKeyDictionary[asyncio.AbstractEventLoop, tuple[Any, AsyncGenerator[None]]] = field(
         default_factory=WeakKeyDictionary, repr=False
     )
@@ -175,7 +177,6 @@ class Provider:
         self, request: Request, composed: Composed, ticket: Ticket, left_s: float
     ) -> tuple[ModelResponse, int] | Fault:
         """One HTTP request: the library's reply with the limit of tokens it had, or what went wrong."""
-        keys = VENDORS[self.spec.vendor].keys if self.spec.official and self.spec.vendor else (SERVER_KEY,)
         limit = self.settings.max_tokens if ticket.max_out is None else min(self.settings.max_tokens, ticket.max_out)
         # A hang must leave time for another try.
         longest = max(0.001, min(left_s, self.settings.deadline_s / 2 if self.settings.tries > 1 else left_s))
@@ -199,7 +200,7 @@ class Provider:
         except WonderfulTeamError:
             raise
         except Exception as error:  # noqa: BLE001  every fault of the library or the wire is sorted
-            return fault_of(error, self.name, self.spec.base_url, self.key, " or ".join(keys))
+            return fault_of(error, self.name, self.spec.base_url, self.key, self.key_holder)
 
     def _settings(self, max_tokens: int) -> dict[str, Any]:
         settings: dict[str, Any] = {"max_tokens": max_tokens, "max_retries": 0}
@@ -234,7 +235,7 @@ class Provider:
         loop = asyncio.get_running_loop()
         held = self._clients.get(loop)
         if held is None:
-            client = library.http_client(self.spec, self.settings.deadline_s, self.local_only)
+            client = library.http_client(self.spec, self.key, self.settings.deadline_s, self.local_only)
             keeper = _keep_open(client)
             await anext(keeper)
             held = (library.build_model(self.spec, self.model, self.key, client), keeper)

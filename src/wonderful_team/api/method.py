@@ -16,7 +16,7 @@ from wonderful_team.errors import ConfigError
 from wonderful_team.models.budget import Budget
 from wonderful_team.models.cache import CacheMode, cached_models
 from wonderful_team.models.cache_key import model_identity
-from wonderful_team.models.client import ModelClient
+from wonderful_team.models.client import DEADLINE_S, ModelClient
 from wonderful_team.models.providers import PriceChoice, check_prices, model_options
 from wonderful_team.planning import TeamConfig
 from wonderful_team.planning import TeamPolicy as Planner
@@ -39,6 +39,8 @@ class Method:
         price: "IN,OUT" or (IN, OUT) in USD per million tokens, for all roles or by role, where no price is known.
         allow_unpriced: Accept models of unknown price without a cap on tokens.
         local_only: Refuse models outside this machine and private networks.
+        timeout: Longest wait for one reply of a model [s]; None: 150 s, with thinking 300 s, and more once a service has shown
+            that it takes longer; for own models 300 s.
         max_calls, max_tokens, max_seconds, max_usd: Caps of one plan or trial; None for no cap.
         concurrency: Most calls in flight at once.
         cache: on, off or only (never call a model); None: on for vendors and servers, off for `offline` and own models.
@@ -76,11 +78,12 @@ class Method:
     price: PriceChoice | Mapping[str, PriceChoice] | None = None
     allow_unpriced: bool = False
     local_only: bool = False
+    timeout: float | None = None
     world: World | None = None
 
     def __post_init__(self) -> None:
         self._config = team_config(self.method, self.prompts, self.strict)
-        options = model_options(self.thinking, self.price, self.local_only, role_names())
+        options = model_options(self.thinking, self.price, self.local_only, role_names(), self.timeout)
         made = registry.make_models(self.model, role_names(), options, self.world)
         if self._config is not None and any(getattr(made[role], "weak_pointing", False) for role in POINTING_ROLES):
             self._config = replace(self._config, axes=True)
@@ -128,7 +131,13 @@ class Method:
     def client(self, *subscribers: Subscriber) -> ModelClient:
         """A client of the model for one run: capped, and told to subscribers."""
         everyone = (*subscribers, *self.subscribers)
-        return ModelClient(self._models, budget=Budget(self._caps), subscribers=everyone, concurrency=self.concurrency)
+        return ModelClient(
+            self._models,
+            budget=Budget(self._caps),
+            subscribers=everyone,
+            concurrency=self.concurrency,
+            deadline_s=self.timeout or DEADLINE_S,
+        )
 
     def policy(self, *subscribers: Subscriber) -> Policy:
         """The method at work in one trial."""
@@ -140,6 +149,7 @@ class Method:
             caps=self._caps,
             subscribers=(*subscribers, *self.subscribers),
             concurrency=self.concurrency,
+            deadline_s=self.timeout or DEADLINE_S,
         )
 
     def words(self) -> Mapping[str, str]:
@@ -156,6 +166,7 @@ class Method:
             "concurrency": self.concurrency,
             "thinking": dict(self.thinking) if isinstance(self.thinking, Mapping) else self.thinking,
             "local_only": self.local_only,
+            "timeout": self.timeout,
             "axes": self._config is not None and self._config.axes,
             "models": {
                 role: model_identity(model) for role, model in self._models.items() if hasattr(model, "identity")

@@ -75,7 +75,9 @@ def prepared(spec: TrialSpec, settings: RunSettings, model: Any, world: World | 
     """The method of a trial with its model, capped, and limited together with all other workers."""
     caps, asked = settings.caps, dict(settings.extra)
     if settings.limiter is not None:
-        options = model_options(asked.get("thinking"), asked.get("price"), bool(asked.get("local_only")), role_names())
+        options = model_options(
+            asked.get("thinking"), asked.get("price"), bool(asked.get("local_only")), role_names(), asked.get("timeout")
+        )
         made = registry.make_models(model, role_names(), options, world)
         behind = {id(one): RateLimitedModel(one, settings.limiter) for one in made.values()}
         model = {role: behind[id(one)] for role, one in made.items()}

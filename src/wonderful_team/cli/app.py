@@ -39,7 +39,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
 }
 
 
-RENAMED_FLAGS = {"--looks": "--reobserve"}
+RENAMED_FLAGS = {"--looks": "--reobserve", "--deadline": "--timeout"}
 """Flags of the last release."""
 
 

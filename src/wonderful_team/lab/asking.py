@@ -21,7 +21,7 @@ from wonderful_team.errors import ModelOutputError
 from wonderful_team.lab.fit import Sighting
 from wonderful_team.lab.marks import MarkedScene
 from wonderful_team.models.budget import Budget
-from wonderful_team.models.client import ModelClient
+from wonderful_team.models.client import DEADLINE_S, ModelClient
 from wonderful_team.models.conventions import PIXELS, Convention
 from wonderful_team.models.profiles import Profile
 
@@ -57,6 +57,11 @@ class Plain:
         self.inner = model
         self.name = str(getattr(model, "name", type(model).__name__))
 
+    @property
+    def deadline_s(self) -> float:
+        """How long the model's own tries may take; 0 when it does not say."""
+        return float(getattr(self.inner, "deadline_s", 0.0))
+
     async def answer(self, request: Request) -> Any:
         from wonderful_team.models.client import call_model
 
@@ -87,7 +92,7 @@ class Bench:
     budget: Budget
     concurrency: int = 4
     attempts: int = 2
-    deadline_s: float = 120.0
+    deadline_s: float = DEADLINE_S
     answers: list[Answer] = field(default_factory=list)
     _asked: int = 0
     _made: list[Model] = field(default_factory=list)

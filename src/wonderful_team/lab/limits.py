@@ -125,7 +125,7 @@ async def thinking_kind(bench: Bench, profile: Profile, seed: int) -> Thinking:
         return "always"
     except WonderfulTeamError:
         return "unknown"
-    return "always" if _thought(answer) else "switchable"
+    return "always" if _thought(answer) or getattr(model, "thinking_refused", False) else "switchable"
 
 
 def _question(seed: int) -> ReadScene:

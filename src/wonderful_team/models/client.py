@@ -38,6 +38,8 @@ from wonderful_team.models.wire.unreadable import Unreadable
 
 UNSENT = frozenset({"cached", "replayed"})
 """Provenance of answers for which no model was called: they cost nothing."""
+DEADLINE_S = 300.0
+"""Longest time for one request to a model that has no deadline of its own."""
 DEFAULT = "*"
 """Key of the model that serves every role without one of its own."""
 
@@ -49,7 +51,7 @@ class ModelClient:
         models: One model for all roles, or a mapping from role to model with "*" for the rest.
         attempts: How often an answer may be tried, the first try included.
         concurrency: Most requests in flight at once.
-        deadline_s: Longest time for one whole request.
+        deadline_s: Longest time for one whole request; a model's own `deadline_s` counts where it is longer.
 
     Raises:
         ConfigError: No model serves some role, or a number is not positive.
@@ -63,7 +65,7 @@ class ModelClient:
         subscribers: Sequence[Subscriber] = (),
         attempts: int = 3,
         concurrency: int = 8,
-        deadline_s: float = 300.0,
+        deadline_s: float = DEADLINE_S,
     ) -> None:
         if attempts < 1 or concurrency < 1 or deadline_s <= 0:
             raise ConfigError(
@@ -115,6 +117,8 @@ class ModelClient:
             sent = replace(request, attempt=attempt)
             answer = await self._send(model, sent)
             total = total + answer.usage
+            for notice in answer.notices:
+                self.tell("warning", sent.id, f"{_name(model)}: {notice}")
             try:
                 value, repairs = validate_answer(sent, answer.value)
             except (ValueError, RecursionError, OverflowError) as error:
@@ -146,17 +150,19 @@ class ModelClient:
             try:
                 self.tell("request", request.id, request)
                 left = budget.seconds_left
-                deadline = self._deadline_s if left is None else max(0.001, min(self._deadline_s, left))
+                # A service knows how long its own tries may take.
+                longest = max(self._deadline_s, float(getattr(model, "deadline_s", 0.0)))
+                deadline = longest if left is None else max(0.001, min(longest, left))
                 ticket.seconds = deadline
                 hand_over(ticket)
                 try:
                     answer = as_answer(await asyncio.wait_for(call_model(model, request), deadline), model)
                 except TimeoutError as error:
                     ticket.book_lost_try()
-                    if left is not None and deadline < self._deadline_s:
+                    if left is not None and deadline < longest:
                         raise BudgetReached(f"the cap of {budget.caps.seconds:g} s is reached") from error
                     raise ModelUnavailableError(
-                        f"{_name(model)} did not answer {request.contract} within {self._deadline_s:g} s"
+                        f"{_name(model)} did not answer {request.contract} within {longest:g} s"
                     ) from error
                 seconds = time.monotonic() - started
                 if answer.provenance in UNSENT:

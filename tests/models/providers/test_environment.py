@@ -125,7 +125,7 @@ def test_a_vendor_gets_its_own_key_and_nothing_else_from_the_environment(
 
 def test_a_request_that_would_go_elsewhere_is_stopped() -> None:
     async def stray() -> None:
-        client = library.http_client(parse_spec("http://127.0.0.1:9/v1#m"), "k", 1.0, True)
+        client = library.http_client(parse_spec("http://127.0.0.1:9/v1#m"), "k", True)
         try:
             await client.post("http://127.0.0.1:10/v1/chat/completions", json={})
         finally:

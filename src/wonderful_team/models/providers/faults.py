@@ -15,6 +15,7 @@ from wonderful_team.errors import (
     ModelRateLimitError,
     ModelServerError,
     ModelTimeoutError,
+    NoPicturesError,
     RequestRejectedError,
     TooManyPicturesError,
     UnknownModelError,
@@ -24,9 +25,36 @@ from wonderful_team.models.providers.bounded import ReplyTooLargeError
 
 _LONGEST_BODY = 300
 _CONTEXT = re.compile(
-    r"context (length|window|size)|maximum context|too many tokens|prompt is too long|max_model_len|input token count",
+    r"context (length|window|size|limit)|maximum (context|model length)|too many tokens|prompt is too long|max_model_len"
+    r"|input token count",
     re.I,
 )
+_LENGTH = re.compile(
+    r"(?:context length is|model length of|max_model_len\D{0,12}|available context size \(|\bn_ctx\D{1,5}"
+    r"|tokens >|\d \+ \d+ >)\s*(\d[\d,]*)",
+    re.I,
+)
+"""The context's length in a refusal: vLLM and OpenAI; llama.cpp; Anthropic ("prompt is too long: 9 tokens > 8 maximum",
+"input length and `max_tokens` exceed context limit: 7 + 4 > 8")."""
+_TAKEN = re.compile(
+    r"(\d[\d,]*) in the messages|your request has (\d[\d,]*) input tokens|prompt contains (\d[\d,]*) input tokens"
+    r"|messages resulted in (\d[\d,]*) tokens|request \((\d[\d,]*) tokens\)|prompt \(length (\d[\d,]*)\)"
+    r"|\bn_prompt_tokens\D{1,5}(\d+)|too long: (\d[\d,]*) tokens|limit: (\d[\d,]*) \+",
+    re.I,
+)
+"""The request's own length in it."""
+_MOST_OUT = re.compile(
+    r"max_(?:completion_|output_)?tokens.{0,60}?(?:supports at most (\d[\d,]*)|\d > (\d[\d,]*), which is the maximum)",
+    re.I,
+)
+"""The longest answer: OpenAI ("supports at most 16384 completion tokens"), Anthropic ("9 > 8, which is the maximum allowed")."""
+_NO_PICTURES = re.compile(
+    r"(image|vision|picture|multi-?modal)s?( input| inputs)?( is| are)? not supported|not a (multi-?modal|vision)"
+    r"|does ?n[o']t support (image|vision|multi-?modal|picture)|no endpoints found that support image"
+    r"|at most 0 (image|picture|multi-?modal)|image_url is only supported by|missing data required for image",
+    re.I,
+)
+"""A model that takes no pictures: llama.cpp (status 500), vLLM, OpenRouter (404), OpenAI, Ollama."""
 _PICTURES = re.compile(
     r"(at most|too many|maximum (number )?of|limit of|up to|more than)\D{0,20}?(\d+)?\D{0,20}?(image|picture|multi-?modal)"
     r"|(image|picture)s?\b.{0,40}(limit|at most|too many|exceed)",
@@ -35,7 +63,11 @@ _PICTURES = re.compile(
 _SCHEMA = re.compile(
     r"response_format|json_schema|guided|structured output|output_config|output_format|response_schema|grammar", re.I
 )
-_THINKING = re.compile(r"chat_template_kwargs|reasoning_effort|enable_thinking", re.I)
+_THINKING = re.compile(
+    r"chat_template_kwargs|reasoning[_.]effort|enable_thinking|(support|enabl)\w* (adaptive )?(thinking|reasoning)"
+    r"|thinking(\.type|_?budget|_?level| mode)|(thinking|reasoning) is not",
+    re.I,
+)
 _BAD_KEY = re.compile(
     r"\bapi.?key\b.{0,40}(not valid|invalid|incorrect|expired|missing)|(invalid|incorrect) api.?key", re.I
 )
@@ -54,6 +86,8 @@ class Fault:
         schema: It refused the schema.
         thinking: It refused the switch for thinking.
         billed: It may have worked on the request, so the request may cost something.
+        context, taken: Tokens of the model's context and of the request, when it says them.
+        most_out: Most tokens of an answer, when it says that.
     """
 
     error: WonderfulTeamError
@@ -63,6 +97,9 @@ class Fault:
     schema: bool = False
     thinking: bool = False
     billed: bool = False
+    context: int | None = None
+    taken: int | None = None
+    most_out: int | None = None
 
 
 def scrubbed(text: str, key: str | None) -> str:
@@ -80,13 +117,17 @@ def fault_of(error: BaseException, name: str, where: str, key: str | None, key_h
     too_large = _caused_by(error, ReplyTooLargeError)
     if too_large is not None:
         return Fault(ModelServerError(f"{name}: {where}: {too_large}"), billed=True)
-    return _sorted(error, name, where, key, key_holder)
+    said = _said(error, key)
+    if _NO_PICTURES.search(said):
+        # Whatever the status: some call it their own failure, some an unknown model.
+        valid = "a vision-language model (llama.cpp: started with --mmproj FILE)"
+        return Fault(NoPicturesError(f"{name}: the model takes no pictures ({said}); valid: {valid}"))
+    return _sorted(error, said, name, where, key, key_holder)
 
 
-def _sorted(error: Any, name: str, where: str, key: str | None, key_holder: str) -> Fault:
+def _sorted(error: Any, said: str, name: str, where: str, key: str | None, key_holder: str) -> Fault:
     from pydantic_ai import exceptions as lib
 
-    said = _said(error, key)
     match error:
         case lib.ModelAuthenticationError():
             return Fault(ModelAuthError(f"{name}: {key_refused(where, key, key_holder)} ({said})"))
@@ -95,7 +136,7 @@ def _sorted(error: Any, name: str, where: str, key: str | None, key_holder: str)
         case lib.ModelQuotaExceededError():
             return Fault(ModelQuotaError(f"{name}: no credit or quota left ({said})"))
         case lib.ModelContextWindowExceededError():
-            return Fault(ContextTooLongError(f"{name}: the request is longer than the model's context ({said})"))
+            return _too_long(name, said)
         case lib.ModelRateLimitError():
             fault = ModelRateLimitError(f"{name}: the provider asks for fewer requests ({said})")
             return Fault(fault, True, _asked_wait(error))
@@ -148,10 +189,21 @@ def _rejected(status: int, name: str, where: str, said: str, wait_s: float | Non
     if pictures is not None:
         limit = int(pictures.group(3)) if pictures.group(3) else 0
         return Fault(TooManyPicturesError(f"{name}: too many pictures in one request ({said})"), picture_limit=limit)
-    if status == 413 or _CONTEXT.search(said):
-        return Fault(ContextTooLongError(f"{name}: the request is longer than the model takes ({said})"))
+    most_out = _number(_MOST_OUT, said)
+    if most_out is None and (status == 413 or _CONTEXT.search(said)):
+        return _too_long(name, said)
     rejected = RequestRejectedError(f"{name}: {where} refused the request ({said})")
-    return Fault(rejected, schema=bool(_SCHEMA.search(said)), thinking=bool(_THINKING.search(said)))
+    return Fault(rejected, schema=bool(_SCHEMA.search(said)), thinking=bool(_THINKING.search(said)), most_out=most_out)
+
+
+def _too_long(name: str, said: str) -> Fault:
+    error = ContextTooLongError(f"{name}: the request is longer than the model takes ({said})")
+    return Fault(error, context=_number(_LENGTH, said), taken=_number(_TAKEN, said))
+
+
+def _number(pattern: re.Pattern[str], text: str) -> int | None:
+    found = pattern.search(text)
+    return None if found is None else int(next(part for part in found.groups() if part).replace(",", ""))
 
 
 def _asked_wait(error: Any) -> float | None:

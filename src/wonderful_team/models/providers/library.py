@@ -62,16 +62,16 @@ def preload(api: str, text: str) -> None:
         raise MissingExtraError(f"model {text!r}", "vendors") from error
 
 
-def http_client(spec: Spec, key: str | None, timeout_s: float, local_only: bool) -> httpx2.AsyncClient:
+def http_client(spec: Spec, key: str | None, local_only: bool) -> httpx2.AsyncClient:
     """A connection pool of our own for one service and one key.
 
     No redirects (a key must not follow one), no proxy for this machine, no endless reply, no headers but `SENT_HEADERS`
-    and exactly this key, no address but the service's.
+    and exactly this key, no address but the service's. How long a reply may take is the caller's to limit.
     """
     import httpx2
 
     limits = httpx2.Limits(max_connections=64, max_keepalive_connections=16)
-    timeout = httpx2.Timeout(timeout_s, connect=min(10.0, timeout_s))
+    timeout = httpx2.Timeout(None, connect=10.0)
     outside = not (local_only or is_loopback(spec.base_url))
     client = httpx2.AsyncClient(timeout=timeout, limits=limits, follow_redirects=False, trust_env=outside)
     client.event_hooks = {"request": [_guard(spec, key)], "response": []}

@@ -343,3 +343,14 @@ def test_a_list_of_models_that_refuses_the_key_names_what_holds_it(
         with pytest.raises(ModelAuthError, match=f"refused the key that {SERVER_KEY} holds"):
             make_provider(f"http://127.0.0.1:{server.server_port}/v1")
         thread.join()
+
+
+@pytest.mark.parametrize("name", ["openai-chat", "openai-responses"])
+@pytest.mark.parametrize(("model", "detail"), [("gpt-4o", "high"), ("gpt-5.6", "original"), ("my-planner", None)])
+def test_openai_is_told_in_which_detail_to_look(name: str, model: str, detail: str | None, desk: AgentSession) -> None:
+    wire = replace(WIRES[name], model=model)
+    with serve(wire, desk) as server:
+        ask(wire.provider(server), desk)
+    said = json.dumps(server.heard[0].body)
+    told = [word for word in ("high", "original") if f'"detail": "{word}"' in said]
+    assert told == ([] if detail is None else [detail])

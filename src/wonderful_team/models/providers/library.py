@@ -151,12 +151,13 @@ def _responses(spec: Spec, model: str, key: str, client: httpx2.AsyncClient) -> 
 
 def _server(spec: Spec, model: str, key: str, client: httpx2.AsyncClient) -> LibraryModel:
     from pydantic_ai.models.openai import OpenAIChatModel
-    from pydantic_ai.profiles.openai import OpenAIJsonSchemaTransformer, OpenAIModelProfile
+    from pydantic_ai.profiles.openai import OpenAIModelProfile
     from pydantic_ai.providers.openai_compatible import OpenAICompatibleProvider
 
     # A served name says nothing about the server, so the library's guesses by name are replaced by the plain protocol.
     profile = OpenAIModelProfile(
-        json_schema_transformer=OpenAIJsonSchemaTransformer,
+        # Servers take all of JSON Schema; OpenAI's form would write "minLength" into the description instead.
+        json_schema_transformer=None,
         supports_json_schema_output=True,
         supports_json_object_output=True,
         native_output_requires_schema_in_instructions=False,
@@ -209,10 +210,10 @@ _BUILDERS = {
 }
 
 
-def messages_of(composed: Composed, turns: Sequence[tuple[str, str]]) -> list[ModelMessage]:
+def messages_of(composed: Composed, turns: Sequence[tuple[str, str]], detail: str | None = None) -> list[ModelMessage]:
     """System words, the request, and after it the model's earlier answers, each with what was wrong with it.
 
-    A turn is (what the model said, what it was told), in order.
+    A turn is (what the model said, what it was told), in order. `detail` goes with each picture.
     """
     from pydantic_ai.messages import (
         BinaryImage,
@@ -224,8 +225,10 @@ def messages_of(composed: Composed, turns: Sequence[tuple[str, str]]) -> list[Mo
         UserPromptPart,
     )
 
+    metadata = None if detail is None else {"detail": detail}
     content: list[UserContent] = [
-        piece if isinstance(piece, str) else BinaryImage(piece, media_type="image/png") for piece in composed.pieces
+        piece if isinstance(piece, str) else BinaryImage(piece, media_type="image/png", vendor_metadata=metadata)
+        for piece in composed.pieces
     ]
     first: list[Any] = [SystemPromptPart(composed.system)] if composed.system else []
     messages: list[ModelMessage] = [ModelRequest(parts=[*first, UserPromptPart(content)])]

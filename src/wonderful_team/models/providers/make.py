@@ -81,6 +81,8 @@ def make_provider(
     family = guess_family(model)
     most = max_tokens or (MAX_TOKENS[thinking] if parsed.vendor or thinking not in (None, "off") else SERVER_MAX_TOKENS)
     settings = Settings(thinking, most, deadline_s, tries, first_wait_s, timeout_s)
+    if parsed.api in ("openai-chat", "openai-responses"):
+        settings = replace(settings, detail=family.detail)
     convention, weak = family.convention, family.weak_pointing
     if profile is not None:
         native = profile.native_points and profile.native_boxes

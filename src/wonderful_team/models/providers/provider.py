@@ -230,7 +230,7 @@ class Provider:
                         schema_in_words=True,
                     )  # fmt: skip
                 turns = [(as_said(request.previous), self._complaint(request, composed))] if request.feedback else []
-                messages = library.messages_of(composed, turns)
+                messages = library.messages_of(composed, turns, self.settings.detail)
                 ollama = self._learned.facts is not None and self._learned.facts.ollama
                 settings = asked_of(self.spec.api, self._thinking, limit, ollama=ollama)
                 return await library.send(model, messages, settings, schema, request.contract)

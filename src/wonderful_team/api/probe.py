@@ -72,6 +72,7 @@ def probe_model(
         ConfigError: A wrong name, key or option; an unknown price without a cap.
         ModelUnavailableError: The service does not answer.
         BudgetReached: A cap was met before even the convention was known.
+        ModelOutputError: It pointed at nothing, however it was asked.
     """
     if save is not None:
         check_name(save)

@@ -153,7 +153,7 @@ def _tell(argv: list[str], error: Exception) -> int:
     if isinstance(error, OSError):
         # The machine's word, not a defect: a full disk, a folder without the right to write.
         file = f"{error.filename}: " if error.filename else ""
-        return _fail(argv, name, f"{file}{error.strerror or error}", 2)
+        return _fail(argv, name, f"{file}{error.strerror or str(error) or name}", 2)
     message = f"unexpected {name}: {error}. This is a defect of wonderful-team; `wonderful-team --debug …` shows where"
     return _fail(argv, name, message, CRASHED)
 

@@ -51,6 +51,7 @@ def command(model: str, save: str | None, as_json: bool, **options: Any) -> int:
     Fits order, unit, scale, offset, clamping and the model's own resize; checks the fit on fresh pictures; finds how many
     pictures a request may hold, whether schemas are enforced and thinking can be switched off, context, latency, price.
     Where nothing fits, the profile says so, and planning draws labelled axes instead of trusting native coordinates.
+    A model that points at nothing at all ends with exit code 1, and no profile is saved.
     """
     from wonderful_team.api.probe import probe_model
     from wonderful_team.cli.progress import cost_line

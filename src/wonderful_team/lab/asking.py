@@ -134,13 +134,19 @@ class Seen:
     Attributes:
         points_px: Shape (N, 2); NaN where it gave none.
         boxes: None where it gave none, or one whose edges are in the wrong order.
-        answer: None when no valid answer came.
+        answer: None when no valid answer came; `problem` says why.
     """
 
     scene: MarkedScene
     points_px: Array
     boxes: tuple[Box | None, ...]
     answer: Answer | None
+    problem: str = ""
+
+    @property
+    def answered(self) -> bool:
+        """It points at anything at all."""
+        return bool(np.isfinite(self.points_px).any())
 
     def sighting(self, asked: Convention) -> Sighting:
         """The numbers as the model wrote them, when it was asked in the convention `asked`."""
@@ -193,9 +199,9 @@ async def look(
         request = replace(request, parts=_moved_back(request.parts, picture))
     try:
         answer = await bench.ask(model, replace(request, question=Loose(question)))
-    except ModelOutputError:
+    except ModelOutputError as error:
         nothing = np.full((len(scene.marks), 2), np.nan)
-        return Seen(scene, nothing, (None,) * len(scene.marks), None)
+        return Seen(scene, nothing, (None,) * len(scene.marks), None, str(error))
     return _read(scene, answer)
 
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from wonderful_team.core.caps import Caps
 from wonderful_team.core.values import Usage
-from wonderful_team.errors import BudgetReached, WonderfulTeamError
+from wonderful_team.errors import BudgetReached, ModelOutputError, WonderfulTeamError
 from wonderful_team.lab.asking import Bench, MakeModel, Seen, convention_of, look
 from wonderful_team.lab.fit import WILD, Fit, fit_convention
 from wonderful_team.lab.limits import picture_limit, schema_kept, thinking_kind
@@ -105,6 +105,7 @@ async def probe(subject: Subject, options: Options, tell: Tell = lambda line: No
 
     Raises:
         BudgetReached: A cap was reached before the convention was known.
+        ModelOutputError: It pointed at nothing, however it was asked: nothing was measured.
         ConfigError, ModelUnavailableError: The model cannot be asked at all.
     """
     bench = Bench(
@@ -247,11 +248,23 @@ class _Run:
         except BudgetReached as error:
             return replace(profile, warnings=(*profile.warnings, f"labelled axes were not tried: {error}"))
         median, answered, near, asked = _held(seen)
+        if not answered and not any(fit.answered for _, fit in self.fits):
+            raise self._silent(seen)
         told = f"with labelled axes {near} of {asked} marks are pointed at" + (
             f", median {median:.1f} px" if near else ""
         )
         self.note(told)
         return replace(profile, warnings=(*profile.warnings, told))
+
+    def _silent(self, seen: Sequence[Seen]) -> ModelOutputError:
+        """It never pointed at any mark: there is nothing to keep."""
+        marks = sum(fit.asked for _, fit in self.fits) + sum(len(item.scene.marks) for item in seen)
+        why = next((item.problem for item in seen if item.problem), "its answers say that nothing is there")
+        spent = self.bench.budget.spent
+        return ModelOutputError(
+            f"{self.subject.model} pointed at none of {marks} marks, asked in {len(self.fits)} conventions and with labelled "
+            f"axes: nothing was measured, and no profile is kept ({spent.calls} calls, {spent.tokens:,} tokens; {why})"
+        )
 
     # -- the service ------------------------------------------------------------------------------------------------
 

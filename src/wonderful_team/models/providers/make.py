@@ -91,7 +91,7 @@ def make_provider(
         settings = replace(settings, schemas=profile.schemas != "refused", max_pictures=profile.max_pictures)
     name = spec if parsed.model else f"{parsed.base_url}#{model}"
     return Provider(
-        profile.name if profile is not None else name,
+        (profile.name if profile is not None else "") or name,
         parsed,
         model,
         convention,

@@ -120,7 +120,9 @@ def reproduce(spec: TrialSpec, asked: Mapping[str, Any] | None = None) -> str:
         str(condition.replans),
         *(["--reobserve", str(condition.reobserve)] if condition.reobserve else []),
     ]
-    return shlex.join(["wonderful-team", *words, *replans, "--method", condition.method, *models])
+    timeout = (asked or {}).get("timeout")
+    waits = [] if timeout is None or condition.method in CONTROLS else ["--timeout", f"{timeout:g}"]
+    return shlex.join(["wonderful-team", *words, *replans, "--method", condition.method, *models, *waits])
 
 
 def _of_role(role: str, value: str) -> str:

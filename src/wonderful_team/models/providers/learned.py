@@ -46,7 +46,7 @@ class Learned:
     @classmethod
     def of(cls, settings: Settings) -> Learned:
         """What is set at the start."""
-        return cls(settings.schemas, settings.max_pictures, settings.first_try_s)
+        return cls(settings.schemas, settings.max_pictures, settings.first_try_s, context=settings.context)
 
     def say(self, what: str, text: str) -> None:
         """Note something for the user, once for each `what`."""
@@ -120,7 +120,9 @@ class Learned:
     @property
     def source(self) -> str:
         """Where the context's length stands."""
-        return self.facts.source if self.facts is not None and self.facts.source else "as it said when it refused more"
+        return (
+            self.facts.source if self.facts is not None and self.facts.source else "as it was measured or refused more"
+        )
 
     def _raised(self, tokens: float) -> str:
         return (self.facts or Facts()).raised_by(round(tokens))

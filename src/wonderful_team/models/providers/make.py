@@ -88,7 +88,12 @@ def make_provider(
         native = profile.native_points and profile.native_boxes
         convention = profile.convention if native else PIXELS
         weak = profile.axes or not native
-        settings = replace(settings, schemas=profile.schemas != "refused", max_pictures=profile.max_pictures)
+        settings = replace(
+            settings,
+            schemas=profile.schemas != "refused",
+            max_pictures=profile.max_pictures,
+            context=profile.context_tokens,
+        )
     name = spec if parsed.model else f"{parsed.base_url}#{model}"
     return Provider(
         (profile.name if profile is not None else "") or name,

@@ -32,6 +32,7 @@ class Settings:
         timeout_s: Longest time for one try; None: it follows how slow the service is.
         schemas: Send the schema for the service to enforce; otherwise it is told in words only.
         max_pictures: Most pictures in one request; more are pasted on one sheet. None: no limit is known.
+        context: Most tokens of a request and its answer, as measured; what the service says now wins.
         detail: The detail in which pictures are to be looked at, where the service has such a switch.
     """
 
@@ -44,6 +45,7 @@ class Settings:
     schemas: bool = True
     max_pictures: int | None = None
     detail: str | None = None
+    context: int | None = None
 
     @property
     def first_try_s(self) -> float:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import json
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from threading import Event, Thread
 from typing import Any
@@ -37,6 +37,8 @@ class Server:
         facts: What GET and POST of other paths give, by path.
         script: Replies to the next requests, in order: None is a right answer.
         prompt_tokens: What it says it counted in a request.
+        slow_s: How long the next replies take [s].
+        on_answer: Called before each reply.
         wait: Set when slow replies may come at once: the test has ended.
     """
 
@@ -47,6 +49,7 @@ class Server:
         self.prompt_tokens = 3000
         self.slow_s: list[float] = []
         self.wait = Event()
+        self.on_answer: Callable[[], object] = lambda: None
         own = self
 
         class Handler(BaseHTTPRequestHandler):
@@ -63,6 +66,7 @@ class Server:
                 own.bodies.append(body)
                 if number < len(own.slow_s):
                     own.wait.wait(own.slow_s[number])
+                own.on_answer()
                 scripted = own.script[number] if number < len(own.script) else None
                 self.say(*(scripted or (200, own.answer())))
 
@@ -267,6 +271,17 @@ def test_a_request_that_ollama_cut_is_refused_with_the_command_that_raises_its_c
     assert "OLLAMA_CONTEXT_LENGTH=" in str(caught.value)
     assert "ollama serve" in str(caught.value)
     assert caught.value.exit_code == 2
+
+
+def test_an_ollama_that_fills_its_context_has_cut_the_request(server: Server) -> None:
+    """It loads the model for the first request, and says only then how long its context is."""
+    server.lists()
+    server.facts["/api/ps"] = {"models": []}
+    server.prompt_tokens = 4096
+    server.on_answer = lambda: server.facts.update({"/api/ps": {"models": [{"model": "m", "context_length": 4096}]}})
+    with pytest.raises(ContextTooLongError, match=r"counted 4096 tokens .* its context is 4096 tokens"):
+        ask(server.provider())
+    assert len(server.bodies) == 1
 
 
 def test_a_count_that_can_be_true_is_believed(server: Server) -> None:

@@ -24,7 +24,7 @@ class Learned:
     Attributes:
         schemas, thinking: It takes schemas; it takes the switch for thinking.
         max_pictures: Most pictures in one request; None when nothing is known.
-        facts: What it says of the model; None until it was asked.
+        facts: What it says of the model; None until it was asked. facts_asked: How often it was.
         context: Most tokens of a request and its answer together.
         most_out: Most tokens of an answer, as it said when it refused more.
         counted: Largest share of the careful estimate that a request took as it counted; None before it counted one.
@@ -37,6 +37,7 @@ class Learned:
     try_s: float
     thinking: bool = True
     facts: Facts | None = None
+    facts_asked: int = 0
     context: int | None = None
     most_out: int | None = None
     counted: float | None = None
@@ -60,6 +61,11 @@ class Learned:
         return found
 
     # -- length ----------------------------------------------------------------------------------------------------
+
+    @property
+    def facts_wanted(self) -> bool:
+        """The service should be asked what it says: once, and an Ollama again once its model is loaded."""
+        return self.facts is None or (self.facts.ollama and self.facts.context is None and self.facts_asked < 2)
 
     def know(self, facts: Facts) -> None:
         """Take in what the service says of itself."""
@@ -107,14 +113,17 @@ class Learned:
         """Notice a request that the server cut without a word.
 
         Raises:
-            ContextTooLongError: The server counted far fewer tokens than the words and pictures sent can have.
+            ContextTooLongError: The server counted far fewer tokens than the words and pictures sent can have, or an Ollama
+                counted as many as its context holds, which is where it cuts.
         """
-        over = self.context is None or least + LEAST_OUT > self.context
-        if 0 < counted < least and over:
-            known = "" if self.context is None else f"; its context is {self.context} tokens ({self.source})"
+        context = self.context
+        over = context is None or least + LEAST_OUT > context
+        full = context is not None and counted + LEAST_OUT > context and self.facts is not None and self.facts.ollama
+        if (0 < counted < least and over) or full:
+            known = "" if context is None else f"; its context is {context} tokens ({self.source})"
             raise ContextTooLongError(
                 f"the server counted {counted} tokens in a request of at least {least:.0f}: it dropped part of it without a "
-                f"word{known}; {self._raised(2 * least)}"
+                f"word{known}; {self._raised(2 * max(least, counted))}"
             )
 
     @property

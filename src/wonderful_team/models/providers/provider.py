@@ -204,11 +204,11 @@ class Provider:
             raise ContextTooLongError(f"{self.name}: {error}", stage=request.stage) from None
 
     async def _ask_facts(self, within_s: float) -> None:
-        """Ask a server named by its address for its context, before the first request and until it is known."""
-        known = self._learned.facts
-        if self.spec.api != "server" or (known is not None and (not known.ollama or known.context is not None)):
+        """Ask a server named by its address for its context, before the first request."""
+        if self.spec.api != "server" or not self._learned.facts_wanted:
             return
-        self._learned.facts = known or Facts()
+        self._learned.facts_asked += 1
+        self._learned.facts = self._learned.facts or Facts()
         direct = self.local_only or is_loopback(self.spec.base_url)
         facts = await asyncio.to_thread(
             server_facts, self.spec.api, self.spec.base_url, self.model, self.key,
@@ -335,9 +335,9 @@ class Provider:
             return BudgetReached(
                 f"the answer to {request.contract} was cut off at {limit} tokens: no more were left under {ticket.held_by}"
             )
+        why = "thinking included" if limit == self.settings.max_tokens else "all that the model or its context leaves"
         return ModelCutOffError(
-            f"{self.name}: the answer to {request.contract} was cut off at {limit} tokens (thinking included)",
-            stage=request.stage,
+            f"{self.name}: the answer to {request.contract} was cut off at {limit} tokens ({why})", stage=request.stage
         )
 
     def _usage(self, request: Request, response: ModelResponse, said: str, thought: str, tries: int) -> Usage:

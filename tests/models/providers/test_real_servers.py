@@ -329,7 +329,11 @@ def test_a_slow_reply_makes_room_for_slower_ones() -> None:
     thinking = make_provider("http://127.0.0.1:9/v1#m", thinking="high")
     assert thinking.deadline_s > before
     fixed = make_provider("http://127.0.0.1:9/v1#m", timeout_s=900)
-    assert 1800 < fixed.deadline_s < 1900
+    assert 1800 < fixed.deadline_s < 2000
+    hanging = make_provider("http://127.0.0.1:9/v1#m")
+    for tried_s in (150, 300, 600, 1200, 2400):
+        hanging._learned.too_short(tried_s)
+    assert hanging._learned.try_s == 4 * 150, "a service that never answers is not waited for ever longer"
 
 
 def test_a_lost_try_that_leaves_too_little_names_the_cap_that_holds(server: Server) -> None:

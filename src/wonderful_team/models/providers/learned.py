@@ -12,6 +12,8 @@ from wonderful_team.models.providers.settings import LONGEST_TRY_S, Settings
 
 SLOW_TIMES = 4.0
 """A reply may take so many times as long as the slowest one seen."""
+MOST_UNSEEN = 4.0
+"""A try may take at most so many times what the first one may, as long as no slower reply was seen."""
 _UNMEASURED = (1 / 3, 2 / 3)
 """Least and likely share of the careful estimate that a request takes, before a service has counted one."""
 _MEASURED = (0.8, 1.05)
@@ -28,12 +30,13 @@ class Learned:
         context: Most tokens of a request and its answer together.
         most_out: Most tokens of an answer, as it said when it refused more.
         counted: Largest share of the careful estimate that a request took as it counted; None before it counted one.
-        try_s: How long one try may take.
+        first_try_s, try_s: How long one try may take: at the start, and now.
         notices: What the user should know, not yet told.
     """
 
     schemas: bool
     max_pictures: int | None
+    first_try_s: float
     try_s: float
     thinking: bool = True
     facts: Facts | None = None
@@ -47,7 +50,8 @@ class Learned:
     @classmethod
     def of(cls, settings: Settings) -> Learned:
         """What is set at the start."""
-        return cls(settings.schemas, settings.max_pictures, settings.first_try_s, context=settings.context)
+        first = settings.first_try_s
+        return cls(settings.schemas, settings.max_pictures, first, first, context=settings.context)
 
     def say(self, what: str, text: str) -> None:
         """Note something for the user, once for each `what`."""
@@ -143,8 +147,8 @@ class Learned:
         self.try_s = min(LONGEST_TRY_S, max(self.try_s, SLOW_TIMES * seconds))
 
     def too_short(self, tried_s: float) -> None:
-        """A try ended after so long without a reply: the next one may take twice that."""
-        self.try_s = min(LONGEST_TRY_S, max(self.try_s, 2 * tried_s))
+        """A try ended after so long without a reply: the next one may take twice that, within bounds (it may hang)."""
+        self.try_s = max(self.try_s, min(2 * tried_s, MOST_UNSEEN * self.first_try_s))
 
     # -- refusals --------------------------------------------------------------------------------------------------
 

@@ -115,7 +115,8 @@ class Provider:
         held = self.settings
         if held.deadline_s is not None:
             return held.deadline_s
-        return self._learned.try_s * (3 if held.adapts else TIMED_OUT_TRIES) + LONGEST_WAIT_S
+        # The second of two tries may take twice as long as the first; and there are pauses.
+        return 1.05 * self._learned.try_s * (3 if held.adapts else TIMED_OUT_TRIES) + LONGEST_WAIT_S
 
     def estimate(self, request: Request) -> Estimate:
         """What a request may cost at most, before it is sent (see `Budget`)."""

@@ -237,6 +237,10 @@ class TooManyPicturesError(RequestRejectedError):
     """A request holds more pictures than the model takes."""
 
 
+class NoPicturesError(RequestRejectedError):
+    """The model takes no pictures at all."""
+
+
 class ContextTooLongError(RequestRejectedError):
     """A request is longer than the model's context."""
 

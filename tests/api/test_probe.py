@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import re
+from collections.abc import Callable
 from pathlib import Path
 
 import cv2
@@ -110,6 +112,31 @@ def test_a_bad_fit_is_saved_as_labelled_axes_and_list_shows_it(
         assert getattr(make_model("bad"), "weak_pointing", False)
         assert run(["list", "models"]) == 0
     assert "no convention fits: labelled axes, no native boxes" in capsys.readouterr().out
+
+
+def _sees_nothing(heard: Heard) -> Reply:
+    found = dict.fromkeys(re.findall(r"\bT\d+\b", heard.words))
+    targets = [{"id": name, "found": False, "box": None, "points": []} for name in found]
+    return Reply(json.dumps({"reasoning": "", "targets": targets}))
+
+
+@pytest.mark.parametrize("brain", [lambda heard: Reply(""), _sees_nothing])
+def test_where_nothing_was_measured_no_profile_is_kept_and_the_exit_code_says_so(
+    brain: Callable[[Heard], Reply], capsys: pytest.CaptureFixture[str]
+) -> None:
+    with WireServer(brain, Rules(local=True, key=None)) as server:
+        assert run(["probe", f"{server.url}/v1#odd", "--save", "none", "--price", "0,0", "--most-pictures", "4"]) == 1
+    told = capsys.readouterr()
+    assert "nothing was measured, and no profile is kept" in told.err
+    assert "answered rightly" not in told.out + told.err
+    assert not (profiles_folder() / "none.json").exists()
+
+
+def test_a_failure_is_told_with_the_models_name_also_without_save(capsys: pytest.CaptureFixture[str]) -> None:
+    with WireServer(OddEyes(), Rules(local=True, key=None)) as server:
+        server.always("error_500")
+        assert run(["probe", f"{server.url}/v1#odd", "--price", "0,0"]) == 3
+    assert f"error: {server.url}/v1#odd: the provider failed" in capsys.readouterr().err
 
 
 def test_an_unknown_price_needs_a_cap(capsys: pytest.CaptureFixture[str]) -> None:

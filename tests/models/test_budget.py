@@ -118,8 +118,8 @@ def test_tries_count_as_calls_and_what_they_may_have_cost_is_booked() -> None:
     with pytest.raises(ModelServerError):
         asyncio.run(client.ask(REQUEST))
     assert client.budget.spent.calls == 3
-    assert client.budget.spent.tokens == 300
-    assert client.budget.spent.usd == pytest.approx(300e-5)
+    assert client.budget.spent.tokens == 3 * (100 + 400)
+    assert client.budget.spent.usd == pytest.approx(1500e-5)
     assert client.budget.by_role["manager"].calls == 3
 
 
@@ -180,6 +180,6 @@ def test_a_cancelled_call_gives_its_place_back() -> None:
         return client.budget
 
     budget = asyncio.run(work())
-    # It may have been worked on, so its request counts.
-    assert budget.spent.tokens == 100
+    # It may have been worked on, so its request and the longest answer count.
+    assert budget.spent.tokens == 500
     assert budget.spent.calls == 1

@@ -66,7 +66,12 @@ def test_claude_is_never_sent_more_than_it_looks_at(size):
         ("gemini", (640, 480), (320, 120), (250, 500)),  # y first, thousandths
         ("claude", (3136, 800), (1568, 400), (784, 200)),  # halved to 1568 x 400
         ("claude", (640, 480), (320, 120), (320, 120)),  # small pictures stay
+        ("claude-4.7", (5152, 1288), (2576, 644), (1288, 322)),  # halved to 2576 x 644
         ("gpt", (640, 480), (320, 120), (320, 120)),
+        ("gpt-tiles", (1536, 1536), (768, 384), (384, 192)),  # halved to 768 x 768
+        ("gpt-patches", (4096, 512), (2048, 256), (1024, 128)),  # halved to 2048 x 256
+        ("glm-v", (640, 480), (320, 120), (500, 250)),
+        ("kimi-vl", (640, 480), (320, 120), (0.5, 0.25)),
         ("qwen2-vl", (640, 480), (320, 120), (500, 250)),
         ("qwen2.5-vl", (640, 480), (320, 120), (322, 119)),  # 644 x 476
         ("qwen3-vl", (640, 480), (320, 120), (500, 250)),
@@ -85,7 +90,7 @@ def test_what_each_family_says_of_one_point(name, size, point, expected):
 def test_every_family_of_the_table_has_a_worked_example():
     assert set(CONVENTIONS) == {
         "pixels", "gemini", "claude", "gpt", "qwen2-vl", "qwen2.5-vl", "qwen3-vl", "molmo1", "molmo2", "internvl",
-        "gemma", "moondream",
+        "gemma", "moondream", "claude-4.7", "gpt-tiles", "gpt-patches", "glm-v", "kimi-vl",
     }  # fmt: skip
 
 

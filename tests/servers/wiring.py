@@ -39,7 +39,7 @@ class Wire:
 WIRES: dict[str, Wire] = {
     "openai-chat": Wire("openai-chat", "/v1", "gpt-5", SPEECHES["pixels"]),
     "openai-responses": Wire("openai-responses", "/v1", "gpt-5", SPEECHES["pixels"]),
-    "anthropic": Wire("anthropic", "", "claude-sonnet-5", SPEECHES["claude"]),
+    "anthropic": Wire("anthropic", "", "claude-sonnet-4-6", SPEECHES["claude"]),
     "google": Wire("google", "", "gemini-2.5-pro", SPEECHES["gemini"]),
     "server": Wire("", "/v1", "qwen3-vl-8b-instruct", SPEECHES["thousandths"]),
 }

@@ -15,7 +15,7 @@ from wonderful_team.core.renamed import renamed_attribute
 from wonderful_team.errors import ConfigError
 from wonderful_team.models.cache import CacheMode, cached_models
 from wonderful_team.models.cache_key import model_identity
-from wonderful_team.models.client import ModelClient
+from wonderful_team.models.client import DEADLINE_S, ModelClient
 from wonderful_team.models.providers import PriceChoice, check_prices, model_options
 from wonderful_team.planning import TeamConfig
 from wonderful_team.registry.simulated import waiting
@@ -37,6 +37,8 @@ class Method:
         price: "IN,OUT" or (IN, OUT) in USD per million tokens, for all roles or by role, where no price is known.
         allow_unpriced: Accept models of unknown price without a cap on tokens.
         local_only: Refuse models outside this machine and private networks.
+        timeout: Longest wait for one reply of a model [s]; None: 150 s, with thinking 300 s, and more once a service has shown
+            that it takes longer; for own models 300 s.
         max_calls, max_tokens, max_usd: Caps of one plan or trial; None for no cap.
         max_seconds: Longest time of one plan or trial: models, the method, the world, drawing and judging; None for no cap. A call
             that does not come back is left behind in its thread, and `stop()` of the world is called. So with this cap a world's
@@ -77,11 +79,12 @@ class Method:
     price: PriceChoice | Mapping[str, PriceChoice] | None = None
     allow_unpriced: bool = False
     local_only: bool = False
+    timeout: float | None = None
     world: World | None = None
 
     def __post_init__(self) -> None:
         self._config = team_config(self.method, self.prompts, self.strict)
-        options = model_options(self.thinking, self.price, self.local_only, role_names())
+        options = model_options(self.thinking, self.price, self.local_only, role_names(), self.timeout)
         made = registry.make_models(self.model, role_names(), options, self.world)
         if self._config is not None and any(getattr(made[role], "weak_pointing", False) for role in POINTING_ROLES):
             self._config = replace(self._config, axes=True)
@@ -140,8 +143,9 @@ class Method:
         rest = next(iter([role for role in self._models if role not in named] or self._models))
         everyone = (*subscribers, *self.subscribers)
         return registry.MethodSetup(
-            self._models, self._models[rest], self._caps, everyone, self.concurrency, self._config
-        )
+            self._models, self._models[rest], self._caps, everyone, self.concurrency, self._config,
+            self.timeout or DEADLINE_S,
+        )  # fmt: skip
 
     def words(self) -> Mapping[str, str]:
         """The words of the roles, by file name; none for a method of one's own."""
@@ -157,6 +161,7 @@ class Method:
             "concurrency": self.concurrency,
             "thinking": dict(self.thinking) if isinstance(self.thinking, Mapping) else self.thinking,
             "local_only": self.local_only,
+            "timeout": self.timeout,
             "axes": self._config is not None and self._config.axes,
             "models": {
                 role: model_identity(model) for role, model in self._models.items() if hasattr(model, "identity")

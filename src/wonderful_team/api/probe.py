@@ -12,9 +12,10 @@ from wonderful_team.core.values import Usage
 from wonderful_team.errors import ConfigError
 from wonderful_team.lab.measure import LabScene, LabTarget
 from wonderful_team.lab.probe import Options, Probed, Subject, Tell, probe
-from wonderful_team.lab.server_facts import context_length
+from wonderful_team.models.client import DEADLINE_S
 from wonderful_team.models.families import guess_family
 from wonderful_team.models.profiles import Profile, check_name, load_profile, profile_names
+from wonderful_team.models.providers.server_facts import server_facts
 from wonderful_team.registry.files import is_file_name
 from wonderful_team.runtime.loop import Caller
 
@@ -43,7 +44,7 @@ def probe_model(
     max_tokens: int | None = None,
     max_seconds: float | None = None,
     max_usd: float | None = None,
-    deadline: float = 120.0,
+    timeout: float | None = None,
     concurrency: int = 4,
     tell: Tell = lambda line: None,
 ) -> Probed:
@@ -64,7 +65,7 @@ def probe_model(
         max_tokens: Cap on tokens.
         max_seconds: Cap on the time of all: models, what a server says of itself, drawing.
         max_usd: Cap on money.
-        deadline: Longest time for one request [s].
+        timeout: Longest wait for one reply [s]; None: as `Method` has it.
         concurrency: Most calls at once.
         tell: Given one line at a time, as things are found.
 
@@ -72,15 +73,16 @@ def probe_model(
         ConfigError: A wrong name, key or option; an unknown price without a cap.
         ModelUnavailableError: The service does not answer.
         BudgetReached: A cap was met before even the convention was known.
+        ModelOutputError: It pointed at nothing, however it was asked.
     """
     if save is not None:
         check_name(save)
     caps = Caps(max_calls, max_tokens, max_seconds, max_usd)
     with limited(max_seconds):
-        subject = _subject(model, price, local_only, deadline, caps, allow_unpriced)
+        subject = _subject(model, price, local_only, timeout, caps, allow_unpriced)
         shown = bounded("drawing scenes", rendered_scenes, rendered, seed) if full else ()
         options = Options(
-            save or "", seed, most_pictures, full, scenes, shown, caps, concurrency, deadline,
+            save or "", seed, most_pictures, full, scenes, shown, caps, concurrency, timeout or DEADLINE_S,
         )  # fmt: skip
         with Caller() as caller:
             probed: Probed = caller.wait_for(probe(subject, options, tell), "probing")
@@ -88,7 +90,7 @@ def probe_model(
 
 
 def _subject(
-    model: str | Model, price: str | None, local_only: bool, deadline_s: float, caps: Caps, allow_unpriced: bool
+    model: str | Model, price: str | None, local_only: bool, timeout_s: float | None, caps: Caps, allow_unpriced: bool
 ) -> Subject:
     from wonderful_team.models.providers import check_prices, is_provider_spec, make_provider, model_options
     from wonderful_team.models.providers.library import library_version
@@ -109,7 +111,7 @@ def _subject(
             thinking=thinking,
             price=given,
             local_only=local_only,
-            deadline_s=deadline_s,
+            timeout_s=timeout_s,
             tries=TRIES,
         )
 
@@ -124,7 +126,7 @@ def _subject(
     return Subject(
         full_name, make, True, family.convention, family.max_pictures,
         None if spec.official else spec.base_url,
-        lambda: context_length(spec.service, spec.base_url, served, first.key, direct=local_only),
+        lambda: server_facts(spec.service, spec.base_url, served, first.key, direct=local_only),
         (prices[0], prices[1]), library_version(),
     )  # fmt: skip
 

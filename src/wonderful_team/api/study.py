@@ -52,7 +52,7 @@ class Study:
         store: File that keeps what ended; the same study on the same file resumes.
         repeats, replans, reobserve, shard: As `bench` has them.
         isolate: whole, planning, grounding: one or several. perturb: KIND=LEVEL: one or several; "" is the scene as it is.
-        thinking, price, allow_unpriced, local_only, cache, cache_file, prompts: As `Method` takes them.
+        thinking, price, allow_unpriced, local_only, timeout, cache, cache_file, prompts: As `Method` takes them.
         controls: Those that run beside the methods; () refuses them all.
         caps: Of the whole study. trial_caps: of each trial.
         concurrency: Most model calls at once, over all workers.
@@ -84,6 +84,7 @@ class Study:
     price: PriceChoice | Mapping[str, PriceChoice] | None = None
     allow_unpriced: bool = False
     local_only: bool = False
+    timeout: float | None = None
     cache: CacheMode | None = None
     cache_file: str | Path | None = None
     jobs: int | None = None
@@ -161,7 +162,7 @@ class Study:
             prompts=options["prompts"],
             thinking=read_roles(options["thinking"], "--thinking", "LEVEL"),
             price=read_roles(options["price"], "--price", "IN,OUT"),
-            **{name: options[name] for name in ("allow_unpriced", "local_only", "cache", "cache_file")},
+            **{name: options[name] for name in ("allow_unpriced", "local_only", "timeout", "cache", "cache_file")},
             jobs=options["jobs"],
             at_once=options["at_once"],
             ray=options["ray"],
@@ -190,6 +191,7 @@ class Study:
             "price": self.price or None,
             "allow_unpriced": self.allow_unpriced,
             "local_only": self.local_only,
+            "timeout": self.timeout,
             "cache": self.cache,
             "cache_file": self.cache_file,
         }

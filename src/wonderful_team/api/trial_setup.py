@@ -75,7 +75,9 @@ def prepared(spec: TrialSpec, settings: RunSettings, model: Any, world: World | 
     """The method of a trial with its model, capped, and limited together with all other workers."""
     caps, asked = settings.caps, dict(settings.extra)
     if settings.limiter is not None:
-        options = model_options(asked.get("thinking"), asked.get("price"), bool(asked.get("local_only")), role_names())
+        options = model_options(
+            asked.get("thinking"), asked.get("price"), bool(asked.get("local_only")), role_names(), asked.get("timeout")
+        )
         made = registry.make_models(model, role_names(), options, world)
         behind = {id(one): RateLimitedModel(one, settings.limiter) for one in made.values()}
         model = {role: behind[id(one)] for role, one in made.items()}
@@ -118,7 +120,9 @@ def reproduce(spec: TrialSpec, asked: Mapping[str, Any] | None = None) -> str:
         str(condition.replans),
         *(["--reobserve", str(condition.reobserve)] if condition.reobserve else []),
     ]
-    return shlex.join(["wonderful-team", *words, *replans, "--method", condition.method, *models])
+    timeout = (asked or {}).get("timeout")
+    waits = [] if timeout is None or condition.method in CONTROLS else ["--timeout", f"{timeout:g}"]
+    return shlex.join(["wonderful-team", *words, *replans, "--method", condition.method, *models, *waits])
 
 
 def _of_role(role: str, value: str) -> str:

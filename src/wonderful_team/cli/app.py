@@ -40,7 +40,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
 }
 
 
-RENAMED_FLAGS = {"--looks": "--reobserve"}
+RENAMED_FLAGS = {"--looks": "--reobserve", "--deadline": "--timeout"}
 """Flags of the last release."""
 
 
@@ -156,7 +156,7 @@ def _tell(argv: list[str], error: Exception) -> int:
     if isinstance(error, OSError):
         # The machine's word, not a defect: a full disk, a folder without the right to write.
         file = f"{error.filename}: " if error.filename else ""
-        return _fail(argv, name, f"{file}{error.strerror or error}", 2)
+        return _fail(argv, name, f"{file}{error.strerror or str(error) or name}", 2)
     message = f"unexpected {name}: {error}. This is a defect of wonderful-team; `wonderful-team --debug …` shows where"
     return _fail(argv, name, message, CRASHED)
 

@@ -50,6 +50,12 @@ QUIET_S = 10.0
 @click.option("--allow-unpriced", is_flag=True, help="Accept models of unknown price without a cap on tokens.")
 @click.option("--local-only", is_flag=True, help="Refuse models outside this machine and private networks.")
 @click.option(
+    "--timeout",
+    type=click.FloatRange(0, min_open=True),
+    metavar="S",
+    help="Longest wait for one reply of a model. [default: 150 s, thinking 300 s; more for a service that shows to be slow]",
+)
+@click.option(
     "--cache",
     type=click.Choice(["on", "off", "only"]),
     help="Keep answers; only: never call a model. [default: on for vendors and servers, else off]",

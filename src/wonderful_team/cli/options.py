@@ -45,6 +45,7 @@ class Common:
     price: Mapping[str, str]
     allow_unpriced: bool
     local_only: bool
+    timeout: float | None
     method: str
     caps: Mapping[str, float]
     concurrency: int
@@ -65,6 +66,7 @@ class Common:
             "price": self.price,
             "allow_unpriced": self.allow_unpriced,
             "local_only": self.local_only,
+            "timeout": self.timeout,
             "method": self.method,
             "concurrency": self.concurrency,
             "cache": self.cache,
@@ -88,6 +90,7 @@ def common(command: Command) -> Callable[..., Any]:
             price=read_roles(values.pop("price"), "--price", "IN,OUT"),
             allow_unpriced=values.pop("allow_unpriced"),
             local_only=values.pop("local_only"),
+            timeout=values.pop("timeout"),
             method=values.pop("method"),
             caps={key: value for key, value in caps.items() if value is not None},
             concurrency=values.pop("concurrency"),
@@ -134,6 +137,13 @@ _COMMON: tuple[Callable[[Any], Any], ...] = (
     ),
     click.option("--allow-unpriced", is_flag=True, help="Accept models of unknown price without --max-tokens."),
     click.option("--local-only", is_flag=True, help="Refuse models outside this machine and private networks."),
+    click.option(
+        "--timeout",
+        type=click.FloatRange(0, min_open=True),
+        metavar="S",
+        help="Longest wait for one reply of a model. [default: 150 s, thinking 300 s; more for a service that shows to be "
+        "slow]",
+    ),
     click.option(
         "--method",
         default="team",

@@ -32,11 +32,16 @@ from wonderful_team.cli.output import Document, finish
 )
 @click.option("--allow-unpriced", is_flag=True, help="Accept a model of unknown price without --max-tokens.")
 @click.option("--local-only", is_flag=True, help="Refuse models outside this machine and private networks.")
+@click.option(
+    "--timeout",
+    type=click.FloatRange(0, min_open=True),
+    metavar="S",
+    help="Longest wait for one reply of a model. [default: 150 s, thinking 300 s; more for a service that shows to be slow]",
+)
 @click.option("--max-calls", type=click.IntRange(1), help="Most calls of the model.")
 @click.option("--max-tokens", type=click.IntRange(1), help="Most tokens.")
 @click.option("--max-seconds", type=click.FloatRange(0, min_open=True), help="Longest time of all.")
 @click.option("--max-usd", type=click.FloatRange(0, min_open=True), help="Most money, where the price is known.")
-@click.option("--deadline", type=click.FloatRange(0, min_open=True), default=120.0, show_default=True, help="Seconds for one request.")  # fmt: skip
 @click.option("--concurrency", type=click.IntRange(1), default=4, show_default=True, help="Calls at once.")
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON document instead of text.")
 def command(model: str, save: str | None, as_json: bool, **options: Any) -> int:
@@ -46,6 +51,7 @@ def command(model: str, save: str | None, as_json: bool, **options: Any) -> int:
     Fits order, unit, scale, offset, clamping and the model's own resize; checks the fit on fresh pictures; finds how many
     pictures a request may hold, whether schemas are enforced and thinking can be switched off, context, latency, price.
     Where nothing fits, the profile says so, and planning draws labelled axes instead of trusting native coordinates.
+    A model that points at nothing at all ends with exit code 1, and no profile is saved.
     """
     from wonderful_team.api.probe import probe_model
     from wonderful_team.cli.progress import cost_line

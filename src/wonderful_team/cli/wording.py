@@ -66,6 +66,8 @@ def plan_lines(made: PlanResult) -> list[str]:
     else:
         lines += [f"GOAL  {subgoal.id} {said_of(made.plan.instruction, subgoal.text)}" for subgoal in made.subgoals]
         lines += [target_line(target, words) for target in made.targets]
+    if made.status == "planned" and not made.subgoals:
+        lines.append("note: that is the model's word for it; nothing measured it (--json: no actions)")
     if made.status == "planned" and not made.verified:
         lines.append("note: Verification did not approve this plan (--strict refuses such plans)")
     return lines

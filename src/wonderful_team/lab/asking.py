@@ -21,7 +21,7 @@ from wonderful_team.errors import ModelOutputError
 from wonderful_team.lab.fit import Sighting
 from wonderful_team.lab.marks import MarkedScene
 from wonderful_team.models.budget import Budget
-from wonderful_team.models.client import ModelClient
+from wonderful_team.models.client import DEADLINE_S, ModelClient
 from wonderful_team.models.conventions import PIXELS, Convention
 from wonderful_team.models.profiles import Profile
 
@@ -57,6 +57,11 @@ class Plain:
         self.inner = model
         self.name = str(getattr(model, "name", type(model).__name__))
 
+    @property
+    def deadline_s(self) -> float:
+        """How long the model's own tries may take; 0 when it does not say."""
+        return float(getattr(self.inner, "deadline_s", 0.0))
+
     async def answer(self, request: Request) -> Any:
         from wonderful_team.models.client import call_model
 
@@ -87,7 +92,7 @@ class Bench:
     budget: Budget
     concurrency: int = 4
     attempts: int = 2
-    deadline_s: float = 120.0
+    deadline_s: float = DEADLINE_S
     answers: list[Answer] = field(default_factory=list)
     _asked: int = 0
     _made: list[Model] = field(default_factory=list)
@@ -129,13 +134,19 @@ class Seen:
     Attributes:
         points_px: Shape (N, 2); NaN where it gave none.
         boxes: None where it gave none, or one whose edges are in the wrong order.
-        answer: None when no valid answer came.
+        answer: None when no valid answer came; `problem` says why.
     """
 
     scene: MarkedScene
     points_px: Array
     boxes: tuple[Box | None, ...]
     answer: Answer | None
+    problem: str = ""
+
+    @property
+    def answered(self) -> bool:
+        """It points at anything at all."""
+        return bool(np.isfinite(self.points_px).any())
 
     def sighting(self, asked: Convention) -> Sighting:
         """The numbers as the model wrote them, when it was asked in the convention `asked`."""
@@ -188,9 +199,9 @@ async def look(
         request = replace(request, parts=_moved_back(request.parts, picture))
     try:
         answer = await bench.ask(model, replace(request, question=Loose(question)))
-    except ModelOutputError:
+    except ModelOutputError as error:
         nothing = np.full((len(scene.marks), 2), np.nan)
-        return Seen(scene, nothing, (None,) * len(scene.marks), None)
+        return Seen(scene, nothing, (None,) * len(scene.marks), None, str(error))
     return _read(scene, answer)
 
 

@@ -38,7 +38,7 @@ async def picture_limit(
     while best < most:
         count = min(best * 2, most)
         right, told = await _holds(bench, profile, count, seed)
-        tell(f"{count} pictures in one request: {'answered rightly' if right else 'not answered rightly'}")
+        tell(_told(profile, count, right))
         if right:
             best = count
             continue
@@ -53,7 +53,7 @@ async def _between(
     while bad - good > 1:
         middle = told if told is not None and good < told < bad else (good + bad) // 2
         right, told = await _holds(bench, profile, middle, seed)
-        tell(f"{middle} pictures in one request: {'answered rightly' if right else 'not answered rightly'}")
+        tell(_told(profile, middle, right))
         if right:
             good, told = middle, None
         else:
@@ -81,14 +81,20 @@ async def _holds(bench: Bench, profile: Profile, count: int, seed: int) -> tuple
         if isinstance(told, int) and told < count:
             return False, told
         if not profile.native_points:
-            # Where it points says nothing then; that an answer came says that the request was taken.
-            if seen.answer is None:
+            # Where it points says nothing then; that it points at all says that the request was taken.
+            if not seen.answered:
                 return False, None
             continue
         limit = WILD * float(np.hypot(*scene.picture.size_px))
         if np.mean(np.nan_to_num(seen.errors_px, nan=np.inf) <= limit) < LEAST_RIGHT:
             return False, None
     return True, None
+
+
+def _told(profile: Profile, count: int, right: bool) -> str:
+    """How a trial went; where a model points says nothing of one that no convention fits."""
+    how = "answered rightly" if profile.native_points else "answered"
+    return f"{count} pictures in one request: {how if right else f'not {how}'}"
 
 
 async def schema_kept(bench: Bench, profile: Profile, seed: int) -> Schemas:
@@ -125,7 +131,7 @@ async def thinking_kind(bench: Bench, profile: Profile, seed: int) -> Thinking:
         return "always"
     except WonderfulTeamError:
         return "unknown"
-    return "always" if _thought(answer) else "switchable"
+    return "always" if _thought(answer) or getattr(model, "thinking_refused", False) else "switchable"
 
 
 def _question(seed: int) -> ReadScene:

@@ -11,15 +11,17 @@ import numpy as np
 
 from wonderful_team.core.caps import Caps
 from wonderful_team.core.values import Usage
-from wonderful_team.errors import BudgetReached, WonderfulTeamError
+from wonderful_team.errors import BudgetReached, ModelOutputError, WonderfulTeamError
 from wonderful_team.lab.asking import Bench, MakeModel, Seen, convention_of, look
 from wonderful_team.lab.fit import WILD, Fit, fit_convention
 from wonderful_team.lab.limits import picture_limit, schema_kept, thinking_kind
 from wonderful_team.lab.marks import MarkedScene, marked_scene
 from wonderful_team.lab.measure import LabScene, measure_errors
 from wonderful_team.models.budget import Budget
+from wonderful_team.models.client import DEADLINE_S
 from wonderful_team.models.conventions import CONVENTIONS, PIXELS, Convention, Resize, Size
 from wonderful_team.models.profiles import FitFigures, Profile, clamp_words, convention_words
+from wonderful_team.models.providers.facts import Facts
 
 FIT_SIZES: tuple[Size, ...] = ((601, 461), (1563, 879), (1247, 1563))
 """Small and 4:3, wide, tall and large. The sides are far from multiples of 28 and 32, so that such a resize shows."""
@@ -60,7 +62,7 @@ class Subject:
         make: Makes it, set up by a profile (services only) and a thinking level.
         provider: It is a service with a convention of its own.
         guess: What its name suggests.
-        context: Finds the context length, with where that stands; None when nobody says.
+        context: Finds out what the service says of the model's context.
         prices: US dollars per million tokens in and out.
     """
 
@@ -70,7 +72,7 @@ class Subject:
     guess: Convention = PIXELS
     guessed_max_pictures: int | None = None
     base_url: str | None = None
-    context: Callable[[], tuple[int, str] | None] = lambda: None
+    context: Callable[[], Facts] = Facts
     prices: tuple[float | None, float | None] = (None, None)
     library: str = ""
 
@@ -93,7 +95,7 @@ class Options:
     scenes: tuple[LabScene, ...] = ()
     caps: Caps = field(default_factory=Caps)
     concurrency: int = 4
-    deadline_s: float = 120.0
+    deadline_s: float = DEADLINE_S
 
 
 async def probe(subject: Subject, options: Options, tell: Tell = lambda line: None) -> Probed:
@@ -103,6 +105,7 @@ async def probe(subject: Subject, options: Options, tell: Tell = lambda line: No
 
     Raises:
         BudgetReached: A cap was reached before the convention was known.
+        ModelOutputError: It pointed at nothing, however it was asked: nothing was measured.
         ConfigError, ModelUnavailableError: The model cannot be asked at all.
     """
     bench = Bench(
@@ -245,11 +248,23 @@ class _Run:
         except BudgetReached as error:
             return replace(profile, warnings=(*profile.warnings, f"labelled axes were not tried: {error}"))
         median, answered, near, asked = _held(seen)
+        if not answered and not any(fit.answered for _, fit in self.fits):
+            raise self._silent(seen)
         told = f"with labelled axes {near} of {asked} marks are pointed at" + (
             f", median {median:.1f} px" if near else ""
         )
         self.note(told)
         return replace(profile, warnings=(*profile.warnings, told))
+
+    def _silent(self, seen: Sequence[Seen]) -> ModelOutputError:
+        """It never pointed at any mark: there is nothing to keep."""
+        marks = sum(fit.asked for _, fit in self.fits) + sum(len(item.scene.marks) for item in seen)
+        why = next((item.problem for item in seen if item.problem), "its answers say that nothing is there")
+        spent = self.bench.budget.spent
+        return ModelOutputError(
+            f"{self.subject.model} pointed at none of {marks} marks, asked in {len(self.fits)} conventions and with labelled "
+            f"axes: nothing was measured, and no profile is kept ({spent.calls} calls, {spent.tokens:,} tokens; {why})"
+        )
 
     # -- the service ------------------------------------------------------------------------------------------------
 
@@ -263,9 +278,15 @@ class _Run:
         thinking = await thinking_kind(self.bench, profile, self.options.seed)
         self.note(f"thinking: {thinking}")
         found = await asyncio.to_thread(self.subject.context)
-        self.note(f"context: {found[0]} tokens ({found[1]})" if found else "context: unknown, the service does not say")
-        tokens, source = found or (None, "")
-        return replace(profile, schemas=schemas, thinking=thinking, context_tokens=tokens, context_source=source)
+        known = found.context is not None
+        self.note(
+            f"context: {found.context} tokens ({found.source})"
+            if known
+            else "context: unknown, the service does not say"
+        )
+        return replace(
+            profile, schemas=schemas, thinking=thinking, context_tokens=found.context, context_source=found.source
+        )
 
     async def pictures(self, profile: Profile) -> Profile:
         """How many pictures one request may hold."""

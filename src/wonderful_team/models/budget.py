@@ -24,6 +24,7 @@ class Ticket:
 
     Attributes:
         max_out: Most tokens that the answer may have under the caps; None for no limit.
+        held_by: The cap that sets it, in words.
         seconds: Time that the call may take, all its tries together; None for no limit.
         tries: How often it was sent.
         lost: What tries without an answer may have cost.
@@ -33,6 +34,7 @@ class Ticket:
     budget: Budget | None = None
     estimate: Estimate | None = None
     max_out: int | None = None
+    held_by: str = "the caps"
     seconds: float | None = None
     tries: int = 1
     tokens: int = 0
@@ -50,11 +52,20 @@ class Ticket:
             self.budget.admit_again(self)
         self.tries += 1
 
-    def book_lost_try(self) -> None:
-        """The last try brought no answer but may have been worked on: its request counts as spent."""
+    def book_lost_try(self, limit: int | None = None) -> None:
+        """The last try brought no answer but may have been worked on: its request and the longest answer count as spent.
+
+        Args:
+            limit: Most tokens that its answer could have; None: what the caps left.
+        """
         if self.estimate is None:
             return
-        lost = Usage(tokens_in=self.estimate.tokens_in, usd=self.estimate.usd_in)
+        reckoned = self.estimate
+        out = min(most for most in (limit, self.max_out, reckoned.tokens_out) if most is not None)
+        share = out / reckoned.tokens_out if reckoned.tokens_out else 0.0
+        priced = reckoned.usd_in is not None and reckoned.usd_out is not None
+        usd = (reckoned.usd_in or 0.0) + (reckoned.usd_out or 0.0) * share if priced else None
+        lost = Usage(tokens_in=reckoned.tokens_in, tokens_out=out, usd=usd)
         self.lost = self.lost + lost
         if self.budget is not None:
             self.budget.hold_more(self, lost)
@@ -153,7 +164,7 @@ class Budget:
         self._check_calls_and_time()
         caps, busy = self.caps, self._calls > 0
         reckoned = estimate or Estimate(self._dearest_tokens, 0, self._dearest_usd, 0.0)
-        most = float(reckoned.tokens_out)
+        most, held_by = float(reckoned.tokens_out), "the caps"
         if caps.tokens is not None:
             least = reckoned.tokens_in + min(LEAST_OUT, reckoned.tokens_out)
             if self.spent.tokens + least > caps.tokens:
@@ -161,7 +172,8 @@ class Budget:
             free = caps.tokens - self.spent.tokens - self._tokens
             if least > free and busy:
                 return None
-            most = min(most, free - reckoned.tokens_in)
+            if free - reckoned.tokens_in < most:
+                most, held_by = free - reckoned.tokens_in, f"the cap of {caps.tokens} tokens"
         usd_in, usd_out = reckoned.usd_in, reckoned.usd_out
         if caps.usd is not None and self.spent.usd is not None and usd_in is not None and usd_out is not None:
             per_token = usd_out / reckoned.tokens_out if reckoned.tokens_out else 0.0
@@ -171,13 +183,13 @@ class Budget:
             free_usd = caps.usd - self.spent.usd - self._usd
             if least_usd > free_usd and busy:
                 return None
-            if per_token:
-                most = min(most, math.floor((free_usd - usd_in) / per_token + 1e-9))
+            if per_token and (affordable := math.floor((free_usd - usd_in) / per_token + 1e-9)) < most:
+                most, held_by = affordable, f"the cap of {caps.usd:g} USD"
         out = max(0, int(most))
         share = out / reckoned.tokens_out if reckoned.tokens_out else 0.0
         usd = (usd_in or 0.0) + (usd_out or 0.0) * share
         capped = estimate is not None and (caps.tokens is not None or caps.usd is not None)
-        ticket = Ticket(self, estimate, out if capped else None, tokens=reckoned.tokens_in + out, usd=usd)
+        ticket = Ticket(self, estimate, out if capped else None, held_by, tokens=reckoned.tokens_in + out, usd=usd)
         self._calls += 1
         self._tokens += ticket.tokens
         self._usd += ticket.usd

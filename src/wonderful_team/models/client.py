@@ -37,6 +37,8 @@ from wonderful_team.redaction import redact_all, redact_known
 
 UNSENT = frozenset({"cached", "replayed"})
 """Provenance of answers for which no model was called: they cost nothing."""
+DEADLINE_S = 300.0
+"""Longest time for one request to a model that has no deadline of its own."""
 DEFAULT = "*"
 """Key of the model that serves every role without one of its own."""
 
@@ -48,7 +50,7 @@ class ModelClient:
         models: One model for all roles, or a mapping from role to model with "*" for the rest.
         attempts: How often an answer may be tried, the first try included.
         concurrency: Most requests in flight at once.
-        deadline_s: Longest time for one whole request.
+        deadline_s: Longest time for one whole request; a model's own `deadline_s` counts where it is longer.
 
     Raises:
         ConfigError: No model serves some role, or a number is not positive.
@@ -62,7 +64,7 @@ class ModelClient:
         subscribers: Sequence[Subscriber] = (),
         attempts: int = 3,
         concurrency: int = 8,
-        deadline_s: float = 300.0,
+        deadline_s: float = DEADLINE_S,
     ) -> None:
         if attempts < 1 or concurrency < 1 or deadline_s <= 0:
             raise ConfigError(
@@ -114,6 +116,8 @@ class ModelClient:
             sent = replace(request, attempt=attempt)
             answer = await self._send(model, sent)
             total = total + answer.usage
+            for notice in answer.notices:
+                self.tell("warning", sent.id, f"{_name(model)}: {notice}")
             try:
                 value, repairs = validate_answer(sent, answer.value)
             except (ValueError, RecursionError, OverflowError) as error:
@@ -145,17 +149,19 @@ class ModelClient:
             try:
                 self.tell("request", request.id, request)
                 left = budget.seconds_left
-                longest_s = self._deadline_s if left is None else max(0.001, min(self._deadline_s, left))
+                # A service knows how long its own tries may take.
+                most_s = max(self._deadline_s, float(getattr(model, "deadline_s", 0.0)))
+                longest_s = most_s if left is None else max(0.001, min(most_s, left))
                 ticket.seconds = longest_s
                 hand_over(ticket)
                 try:
                     answer = as_answer(await asyncio.wait_for(call_model(model, request), longest_s), model)
                 except TimeoutError as error:
                     ticket.book_lost_try()
-                    if left is not None and longest_s < self._deadline_s:
+                    if left is not None and longest_s < most_s:
                         raise budget.time_is_up(f"asking {_name(model)} to {request.contract}") from error
                     raise ModelUnavailableError(
-                        f"{_name(model)} did not answer {request.contract} within {self._deadline_s:g} s"
+                        f"{_name(model)} did not answer {request.contract} within {most_s:g} s"
                     ) from error
                 seconds = time.monotonic() - started
                 if answer.provenance in UNSENT:

@@ -1,7 +1,9 @@
 """What coordinates model families speak, and exact conversion to and from pixels of the picture that was sent.
 
 A convention is measured by `probe`; the table here is only the first guess for a family (see `families.py`).
-Sources of each row: Google's robotics documentation (Gemini), Anthropic's vision documentation (Claude), the issue threads of
+Sources of each row: Google's robotics documentation (Gemini), Anthropic's vision documentation (Claude;
+platform.claude.com/docs/en/build-with-claude/vision and …/vision-coordinates), OpenAI's (sizes by `detail`; developers.openai.com/
+api/docs/guides/images-vision), zai-org's skill glmv-grounding (GLM-V), MoonshotAI/Kimi-VL #52 and #56, the issue threads of
 QwenLM/Qwen3-VL (#676, #721, #866, #1035, #1741), the model cards of Molmo, client documentation (Moondream), public
 benchmark code (GPT). Box orders are general knowledge.
 """
@@ -32,6 +34,7 @@ class Resize:
 
     Attributes:
         longest_side: Largest width or height [px]; None for no limit.
+        shortest_side: Largest value of the shorter of the two [px]; None for no limit.
         max_pixels, min_pixels: Bounds on width x height [px].
         multiple: Width and height become multiples of this [px].
         always: Smaller pictures are enlarged to `longest_side` too.
@@ -42,9 +45,10 @@ class Resize:
     min_pixels: int | None = None
     multiple: int = 1
     always: bool = False
+    shortest_side: int | None = None
 
     def __post_init__(self) -> None:
-        bounds = (self.longest_side, self.max_pixels, self.min_pixels, self.multiple)
+        bounds = (self.longest_side, self.shortest_side, self.max_pixels, self.min_pixels, self.multiple)
         if any(value is not None and value < 1 for value in bounds):
             raise ValueError(f"resize: every bound must be at least 1, got {bounds}")
         if self.always and self.longest_side is None:
@@ -55,6 +59,9 @@ class Resize:
         width, height = size_px
         if self.longest_side is not None and (self.always or max(width, height) > self.longest_side):
             shrink = self.longest_side / max(width, height)
+            width, height = max(1, round(width * shrink)), max(1, round(height * shrink))
+        if self.shortest_side is not None and min(width, height) > self.shortest_side:
+            shrink = self.shortest_side / min(width, height)
             width, height = max(1, round(width * shrink)), max(1, round(height * shrink))
         step = self.multiple
         fitted = (max(step, round(width / step) * step), max(step, round(height / step) * step))
@@ -176,12 +183,18 @@ CONVENTIONS: dict[str, Convention] = {
         PIXELS,
         Convention("gemini", "yx", "thousandths", shape=Shape(box="box_2d")),
         Convention("claude", "xy", "pixels", Resize(longest_side=1568, max_pixels=1_176_000)),
+        # Up to 2576 px and 4784 tokens of 28 x 28 px, which are begun ones.
+        Convention("claude-4.7", "xy", "pixels", Resize(longest_side=2576, max_pixels=3_600_000)),
         Convention("gpt", "xy", "pixels"),
+        Convention("gpt-tiles", "xy", "pixels", Resize(longest_side=2000, shortest_side=768)),
+        Convention("gpt-patches", "xy", "pixels", Resize(longest_side=2048, max_pixels=1_500_000)),
         Convention("qwen2-vl", "xy", "thousandths", shape=_QWEN_BOX),
         Convention(
             "qwen2.5-vl", "xy", "pixels", Resize(max_pixels=12_845_056, min_pixels=3136, multiple=28), shape=_QWEN_BOX
         ),
         Convention("qwen3-vl", "xy", "thousandths", shape=_QWEN_BOX),
+        Convention("glm-v", "xy", "thousandths", shape=Shape(box="bbox_2d")),
+        Convention("kimi-vl", "xy", "unit", shape=Shape(box="bbox_2d")),
         Convention("molmo1", "xy", "percent"),
         Convention("molmo2", "xy", "thousandths"),
         Convention("internvl", "xy", "thousandths"),

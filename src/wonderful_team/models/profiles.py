@@ -169,6 +169,8 @@ def resize_words(resize: Resize) -> str:
     words = []
     if resize.longest_side is not None:
         words.append(f"longest side {'always' if resize.always else 'at most'} {resize.longest_side} px")
+    if resize.shortest_side is not None:
+        words.append(f"shorter side at most {resize.shortest_side} px")
     if resize.max_pixels is not None:
         words.append(f"at most {resize.max_pixels} pixels")
     if resize.min_pixels is not None:

@@ -34,7 +34,7 @@ from wonderful_team.errors import (
     WonderfulTeamError,
 )
 from wonderful_team.models.budget import Budget
-from wonderful_team.models.client import ModelClient
+from wonderful_team.models.client import DEADLINE_S, ModelClient
 from wonderful_team.planning import acting, grounding, judging, plan_loop
 from wonderful_team.planning.config import TeamConfig
 from wonderful_team.planning.functions import write_functions
@@ -73,7 +73,7 @@ class TeamPolicy:
         caps: Caps | None = None,
         subscribers: Sequence[Subscriber] = (),
         concurrency: int = 8,
-        deadline_s: float = 300.0,
+        deadline_s: float = DEADLINE_S,
     ) -> None:
         self.config = config or TeamConfig()
         self.name = "team" if self.config.mode == "lean" else "team:paper"

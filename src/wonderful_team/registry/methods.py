@@ -11,7 +11,7 @@ from wonderful_team.core.protocols import Model, Policy, Subscriber
 from wonderful_team.core.renamed import RenamedKeys
 from wonderful_team.errors import ConfigError, MethodCodeError, UnknownNameError
 from wonderful_team.models.budget import Budget
-from wonderful_team.models.client import ModelClient
+from wonderful_team.models.client import DEADLINE_S, ModelClient
 from wonderful_team.planning import ABLATIONS, TeamConfig, TeamPolicy
 from wonderful_team.planning.config import Mode
 from wonderful_team.registry.files import is_file_name, make_from_file
@@ -34,6 +34,7 @@ class MethodSetup:
         models: By role of the team.
         rest: For roles that the team has not.
         config: How the team works; None for every other method.
+        deadline_s: Longest wait for one answer, unless the model itself may take longer.
     """
 
     models: Mapping[str, Model]
@@ -42,11 +43,18 @@ class MethodSetup:
     subscribers: Sequence[Subscriber] = ()
     concurrency: int = 8
     config: TeamConfig | None = None
+    deadline_s: float = DEADLINE_S
 
     def client(self) -> ModelClient:
         """Where a method asks its models: capped, and told to subscribers."""
         models = {DEFAULT_ROLE: self.rest, **self.models}
-        return ModelClient(models, budget=Budget(self.caps), subscribers=self.subscribers, concurrency=self.concurrency)
+        return ModelClient(
+            models,
+            budget=Budget(self.caps),
+            subscribers=self.subscribers,
+            concurrency=self.concurrency,
+            deadline_s=self.deadline_s,
+        )
 
 
 @dataclass(frozen=True)
@@ -66,6 +74,7 @@ def _team(setup: MethodSetup) -> Policy:
         caps=setup.caps,
         subscribers=setup.subscribers,
         concurrency=setup.concurrency,
+        deadline_s=setup.deadline_s,
     )
 
 

@@ -70,7 +70,14 @@ def make_model(
     spec = model if profile is None else profile.model
     if is_provider_spec(spec):
         thinking, price = asked.thinking_of(role), asked.price_of(role)
-        made = make_provider(spec, profile=profile, thinking=thinking, price=price, local_only=asked.local_only)
+        made = make_provider(
+            spec,
+            profile=profile,
+            thinking=thinking,
+            price=price,
+            local_only=asked.local_only,
+            timeout_s=asked.timeout_s,
+        )
         return cast(Model, made)
     if profile is not None:
         return make_model(named_by_profile(profile), options, role, world)

@@ -19,11 +19,12 @@ import pytest
 
 from tests.models.wire.scenes import picture, reading
 from wonderful_team.errors import ModelServerError, ModelUnavailableError, UnknownModelError
-from wonderful_team.lab.server_facts import context_length
 from wonderful_team.models.client import ModelClient
 from wonderful_team.models.providers import make_provider
 from wonderful_team.models.providers.bounded import FACTS_BYTES, ReplyTooLargeError, fetch_json, limit_replies
+from wonderful_team.models.providers.facts import Facts
 from wonderful_team.models.providers.listing import server_models
+from wonderful_team.models.providers.server_facts import server_facts
 from wonderful_team.models.providers.vendors import VENDORS
 from wonderful_team.models.wire import encodable, read_json
 
@@ -141,7 +142,7 @@ def test_a_list_of_models_has_a_deadline_in_all(send: Send) -> None:
 @pytest.mark.parametrize("send", [endless, drip])
 def test_facts_of_a_server_that_cannot_be_read_are_unknown(send: Send) -> None:
     with answering(send) as url:
-        assert context_length(VENDORS["openai-chat"], url, "m", None, timeout_s=0.3) is None
+        assert server_facts(VENDORS["openai-chat"], url, "m", None, timeout_s=0.3) == Facts()
 
 
 def test_a_deep_list_of_models_is_no_list() -> None:
@@ -185,7 +186,7 @@ def test_a_models_reply_has_a_size_limit_and_is_not_asked_for_again(send: Send) 
 
     before = memory_mb()
     with answering(counted) as url:
-        model = make_provider(f"{url}#m", deadline_s=20)
+        model = make_provider(f"openai-chat:m@{url}", deadline_s=20)
         with pytest.raises(ModelServerError, match="the reply (has more than|is packed as|cannot be unpacked)"):
             asyncio.run(ModelClient(model).ask(reading(picture(), ())))
     assert len(asked) == 1

@@ -115,7 +115,7 @@ def test_final_faults_are_typed_and_not_tried_again(fault: str, asking: Asking) 
     asking.server.always(fault)
     asked = asking.ask()
     assert isinstance(asked.error, FINAL[fault]), asked.error
-    assert asked.requests == 1
+    assert asked.requests == 1, asked.error
     _tells_no_key(asked.error)
 
 
@@ -151,7 +151,7 @@ def test_a_spent_quota_is_the_providers_fault(asking: Asking) -> None:
     if asking.wire.vendor not in ("anthropic", "google"):
         # These two say it in the words of a rate limit, which passes.
         assert isinstance(asked.error, errors.ModelQuotaError)
-        assert asked.requests == 1
+        assert asked.requests == 1, asked.error
 
 
 def test_one_picture_that_is_too_many_ends_it(asking: Asking) -> None:
@@ -166,7 +166,7 @@ def test_an_absent_target_is_an_answer(asking: Asking) -> None:
     asked = asking.ask()
     assert asked.answer is not None, asked.error
     assert [target.found for target in asked.answer.value.targets] == [False, True]
-    assert asked.requests == 1
+    assert asked.requests == 1, asked.error
 
 
 def _tells_no_key(error: BaseException) -> None:

@@ -13,11 +13,12 @@ from tests.models.wire.scenes import answer_px, picture, reading
 from tests.servers.brains import AgentSession, Tapped, typed_brain
 from tests.servers.server import KEY, Rules, WireServer
 from tests.servers.wiring import WIRES
-from wonderful_team.errors import ModelAuthError
-from wonderful_team.lab.server_facts import context_length
+from wonderful_team.errors import ConfigError, ModelAuthError
 from wonderful_team.models.client import ModelClient
 from wonderful_team.models.prices import TablePrice
-from wonderful_team.models.providers import is_provider_spec, parse_spec
+from wonderful_team.models.providers import is_provider_spec, library, parse_spec
+from wonderful_team.models.providers.facts import Facts
+from wonderful_team.models.providers.server_facts import server_facts
 from wonderful_team.models.providers.vendors import VENDORS, Vendor
 from wonderful_team.models.providers.vendors.openai import CHAT
 
@@ -57,7 +58,33 @@ def test_its_name_means_it_wherever_names_are_read(acme: Vendor) -> None:
     assert is_provider_spec("acme:m")
     assert parse_spec("acme:m").service is acme
     assert not parse_spec("acme:m@http://127.0.0.1:9/v1").official
-    assert context_length(acme, acme.base_url, "unknown", KEY) is None
+    assert server_facts(acme, acme.base_url, "unknown", KEY) == Facts()
+
+
+def test_its_key_and_headers_may_be_its_own_and_no_others_leave(acme: Vendor, monkeypatch: pytest.MonkeyPatch) -> None:
+    row = replace(acme, key_header=("X-Acme-Key", "Token "), headers=frozenset({"x-acme-version"}))
+    monkeypatch.setitem(VENDORS, "acme", row)
+    given = {"X-Acme-Key": f"Token {KEY}", "X-Acme-Version": "1", "X-Team": "leaked"}
+
+    async def sent() -> dict[str, str]:
+        client = library.http_client(parse_spec("acme:m"), KEY, True)
+        try:
+            return dict((await client.get(f"{row.base_url}/models", headers=given)).request.headers)
+        finally:
+            await client.aclose()
+
+    headers = asyncio.run(sent())
+    assert headers["x-acme-key"] == f"Token {KEY}"
+    assert headers["x-acme-version"] == "1"
+    assert "x-team" not in headers
+
+
+def test_its_names_may_have_a_form(acme: Vendor, monkeypatch: pytest.MonkeyPatch) -> None:
+    row = replace(acme, name_fault=lambda name: "" if "/" in name else "names are MAKER/NAME")
+    monkeypatch.setitem(VENDORS, "acme", row)
+    assert parse_spec("acme:a/m").model == "a/m"
+    with pytest.raises(ConfigError, match="names are MAKER/NAME"):
+        parse_spec("acme:m")
 
 
 @pytest.mark.parametrize("name", sorted(VENDORS))

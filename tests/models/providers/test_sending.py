@@ -35,7 +35,7 @@ from wonderful_team.models.budget import Budget
 from wonderful_team.models.client import ModelClient
 from wonderful_team.models.prices import GivenPrice
 from wonderful_team.models.profiles import Profile
-from wonderful_team.models.providers import make_provider
+from wonderful_team.models.providers import SERVER_KEY, make_provider
 from wonderful_team.models.wire import compose
 
 VIEW = picture()
@@ -309,7 +309,48 @@ def test_an_unknown_thinking_level_is_refused() -> None:
         make_provider("openai:gpt-5", api_key="x", thinking="max")  # type: ignore[arg-type]
 
 
-def test_a_wrong_key_is_exit_2_and_names_the_variable(desk: AgentSession) -> None:
-    wire = WIRES["google"]
-    with serve(wire, desk) as server, pytest.raises(ModelAuthError, match="refused the key"):
-        ask(wire.provider(server, api_key="another-key-altogether"), desk)
+@pytest.mark.parametrize("name", WIRES)
+def test_a_wrong_key_is_told_from_a_missing_one(name: str, desk: AgentSession, monkeypatch: pytest.MonkeyPatch) -> None:
+    wire = WIRES[name]
+    with serve(wire, desk) as server:
+        monkeypatch.setenv(SERVER_KEY, "another-key-altogether")
+        with pytest.raises(ModelAuthError, match=f"refused the key that {SERVER_KEY} holds") as wrong:
+            ask(wire.provider(server, api_key=None), desk)
+        monkeypatch.delenv(SERVER_KEY)
+        with pytest.raises(ModelAuthError, match=f"none was sent: set the environment variable {SERVER_KEY}"):
+            ask(wire.provider(server, api_key=None), desk)
+    assert wrong.value.exit_code == 2
+    assert "another-key" not in str(wrong.value)
+
+
+@pytest.mark.parametrize("status", [401, 403])
+def test_a_list_of_models_that_refuses_the_key_names_what_holds_it(
+    status: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    class Refusing(BaseHTTPRequestHandler):
+        def do_GET(self) -> None:  # noqa: N802  http.server's name
+            self.send_response(status)
+            self.send_header("Content-Length", "0")
+            self.end_headers()
+
+        def log_message(self, *_: object) -> None:
+            pass
+
+    monkeypatch.setenv(SERVER_KEY, "a-wrong-key")
+    with HTTPServer(("127.0.0.1", 0), Refusing) as server:
+        thread = threading.Thread(target=server.handle_request)
+        thread.start()
+        with pytest.raises(ModelAuthError, match=f"refused the key that {SERVER_KEY} holds"):
+            make_provider(f"http://127.0.0.1:{server.server_port}/v1")
+        thread.join()
+
+
+@pytest.mark.parametrize("name", ["openai-chat", "openai-responses"])
+@pytest.mark.parametrize(("model", "detail"), [("gpt-4o", "high"), ("gpt-5.6", "original"), ("my-planner", None)])
+def test_openai_is_told_in_which_detail_to_look(name: str, model: str, detail: str | None, desk: AgentSession) -> None:
+    wire = replace(WIRES[name], model=model)
+    with serve(wire, desk) as server:
+        ask(wire.provider(server), desk)
+    said = json.dumps(server.heard[0].body)
+    told = [word for word in ("high", "original") if f'"detail": "{word}"' in said]
+    assert told == ([] if detail is None else [detail])

@@ -40,6 +40,14 @@ def test_other_names_are_refused(text: str) -> None:
 
 
 @pytest.mark.parametrize(
+    "text", ["openrouter:gpt-5.6", "openrouter:openai/", "openrouter:/gpt", "openrouter:m@http://h/v1"]
+)
+def test_an_openrouter_name_without_a_maker_says_what_is_valid(text: str) -> None:
+    with pytest.raises(ConfigError, match="MAKER/NAME, as in openrouter:openai/gpt-5"):
+        parse_spec(text)
+
+
+@pytest.mark.parametrize(
     "text", ["http://me:s3cret@gpu3/v1#x", "http://gpu3/v1?api_key=s3cret#x", "openai:x@http://a:s3cret@gpu3/v1"]
 )
 def test_an_address_that_holds_a_secret_is_refused_without_repeating_it(text: str) -> None:
@@ -59,7 +67,7 @@ def test_a_vendors_key_goes_to_the_vendor_alone() -> None:
 @pytest.mark.parametrize("vendor", sorted(VENDORS))
 def test_a_missing_key_is_named_before_anything_is_sent(vendor: str) -> None:
     with pytest.raises(ModelAuthError, match=VENDORS[vendor].keys[0]):
-        find_key(parse_spec(f"{vendor}:m"), None, {})
+        find_key(parse_spec(f"{vendor}:maker/m"), None, {})
 
 
 @pytest.mark.parametrize(

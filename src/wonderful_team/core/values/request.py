@@ -130,6 +130,7 @@ class Answer:
     Attributes:
         value: An instance of the request's output type.
         repairs: What was clamped or repaired, in words.
+        notices: What the user should know of the service, once, in words.
     """
 
     value: Any
@@ -139,3 +140,4 @@ class Answer:
     tries: int = 1
     provenance: Provenance = "model"
     repairs: tuple[str, ...] = ()
+    notices: tuple[str, ...] = ()

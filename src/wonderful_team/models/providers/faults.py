@@ -15,6 +15,7 @@ from wonderful_team.errors import (
     ModelRateLimitError,
     ModelServerError,
     ModelTimeoutError,
+    NoPicturesError,
     RequestRejectedError,
     TooManyPicturesError,
     UnknownModelError,
@@ -25,9 +26,36 @@ from wonderful_team.redaction import redact
 
 _LONGEST_BODY = 300
 _CONTEXT = re.compile(
-    r"context (length|window|size)|maximum context|too many tokens|prompt is too long|max_model_len|input token count",
+    r"context (length|window|size|limit)|maximum (context|model length)|too many tokens|prompt is too long|max_model_len"
+    r"|input token count",
     re.I,
 )
+_LENGTH = re.compile(
+    r"(?:context length is|model length of|max_model_len\D{0,12}|available context size \(|\bn_ctx\D{1,5}"
+    r"|tokens >|\d \+ \d+ >)\s*(\d[\d,]*)",
+    re.I,
+)
+"""The context's length in a refusal: vLLM and OpenAI; llama.cpp; Anthropic ("prompt is too long: 9 tokens > 8 maximum",
+"input length and `max_tokens` exceed context limit: 7 + 4 > 8")."""
+_TAKEN = re.compile(
+    r"(\d[\d,]*) in the messages|your request has (\d[\d,]*) input tokens|prompt contains (\d[\d,]*) input tokens"
+    r"|messages resulted in (\d[\d,]*) tokens|request \((\d[\d,]*) tokens\)|prompt \(length (\d[\d,]*)\)"
+    r"|\bn_prompt_tokens\D{1,5}(\d+)|too long: (\d[\d,]*) tokens|limit: (\d[\d,]*) \+",
+    re.I,
+)
+"""The request's own length in it."""
+_MOST_OUT = re.compile(
+    r"max_(?:completion_|output_)?tokens.{0,60}?(?:supports at most (\d[\d,]*)|\d > (\d[\d,]*), which is the maximum)",
+    re.I,
+)
+"""The longest answer: OpenAI ("supports at most 16384 completion tokens"), Anthropic ("9 > 8, which is the maximum allowed")."""
+_NO_PICTURES = re.compile(
+    r"(image|vision|picture|multi-?modal)s?( input| inputs)?( is| are)? not supported|not a (multi-?modal|vision)"
+    r"|does ?n[o']t support (image|vision|multi-?modal|picture)|no endpoints found that support image"
+    r"|at most 0 (image|picture|multi-?modal)|image_url is only supported by|missing data required for image",
+    re.I,
+)
+"""A model that takes no pictures: llama.cpp (status 500), vLLM, OpenRouter (404), OpenAI, Ollama."""
 _PICTURES = re.compile(
     r"(at most|too many|maximum (number )?of|limit of|up to|more than)\D{0,20}?(\d+)?\D{0,20}?(image|picture|multi-?modal)"
     r"|(image|picture)s?\b.{0,40}(limit|at most|too many|exceed)",
@@ -36,7 +64,11 @@ _PICTURES = re.compile(
 _SCHEMA = re.compile(
     r"response_format|json_schema|guided|structured output|output_config|output_format|response_schema|grammar", re.I
 )
-_THINKING = re.compile(r"chat_template_kwargs|reasoning_effort|enable_thinking", re.I)
+_THINKING = re.compile(
+    r"chat_template_kwargs|reasoning[_.]effort|enable_thinking|(support|enabl)\w* (adaptive )?(thinking|reasoning)"
+    r"|thinking(\.type|_?budget|_?level| mode)|(thinking|reasoning) is not",
+    re.I,
+)
 _BAD_KEY = re.compile(
     r"\bapi.?key\b.{0,40}(not valid|invalid|incorrect|expired|missing)|(invalid|incorrect) api.?key", re.I
 )
@@ -54,6 +86,8 @@ class Fault:
         schema: It refused the schema.
         thinking: It refused the switch for thinking.
         billed: It may have worked on the request, so the request may cost something.
+        context, taken: Tokens of the model's context and of the request, when it says them.
+        most_out: Most tokens of an answer, when it says that.
     """
 
     error: WonderfulTeamError
@@ -63,29 +97,39 @@ class Fault:
     schema: bool = False
     thinking: bool = False
     billed: bool = False
+    context: int | None = None
+    taken: int | None = None
+    most_out: int | None = None
 
 
-def fault_of(error: BaseException, name: str, where: str, key_names: str) -> Fault:
-    """Sort an error of the library; keys are taken out of every text, `key_names` are the variables that may hold ours."""
+def fault_of(error: BaseException, name: str, where: str, refused: str) -> Fault:
+    """Sort an error of the library; keys are taken out of every text. `refused` says which key it is (`key_refused`)."""
+    own = _caused_by(error, WonderfulTeamError)
+    if isinstance(own, WonderfulTeamError):
+        return Fault(own)
     too_large = _caused_by(error, ReplyTooLargeError)
     if too_large is not None:
         return Fault(ModelServerError(f"{name}: {where}: {too_large}"), billed=True)
-    return _sorted(error, name, where, key_names)
+    said = _said(error)
+    if _NO_PICTURES.search(said):
+        # Whatever the status: some call it their own failure, some an unknown model.
+        valid = "a vision-language model (llama.cpp: started with --mmproj FILE)"
+        return Fault(NoPicturesError(f"{name}: the model takes no pictures ({said}); valid: {valid}"))
+    return _sorted(error, said, name, where, refused)
 
 
-def _sorted(error: Any, name: str, where: str, key_names: str) -> Fault:
+def _sorted(error: Any, said: str, name: str, where: str, refused: str) -> Fault:
     from pydantic_ai import exceptions as lib
 
-    said = _said(error)
     match error:
         case lib.ModelAuthenticationError():
-            return Fault(ModelAuthError(f"{name}: {where} refused the key; it is read from {key_names} ({said})"))
+            return Fault(ModelAuthError(f"{name}: {refused} ({said})"))
         case lib.ModelNotFoundError():
             return Fault(UnknownModelError(f"{name}: {where} has no such model, or is not the right address ({said})"))
         case lib.ModelQuotaExceededError():
             return Fault(ModelQuotaError(f"{name}: no credit or quota left ({said})"))
         case lib.ModelContextWindowExceededError():
-            return Fault(ContextTooLongError(f"{name}: the request is longer than the model's context ({said})"))
+            return _too_long(name, said)
         case lib.ModelRateLimitError():
             fault = ModelRateLimitError(f"{name}: the provider asks for fewer requests ({said})")
             return Fault(fault, True, _asked_wait(error))
@@ -98,9 +142,9 @@ def _sorted(error: Any, name: str, where: str, key_names: str) -> Fault:
         case lib.ModelUnavailableError() | lib.ModelServerError():
             return Fault(ModelServerError(f"{name}: the provider failed ({said})"), True, _asked_wait(error))
         case lib.ModelHTTPError():
-            return _rejected(error.status_code, name, where, said, _asked_wait(error))
+            return _rejected(error.status_code, name, where, said, _asked_wait(error), refused)
         case lib.ModelRequestRejectedError():
-            return _rejected(400, name, where, said, None)
+            return _rejected(400, name, where, said, None, refused)
         case lib.UserError():
             return Fault(RequestRejectedError(f"{name}: the client library refuses the request ({said})"), schema=True)
         case _:
@@ -117,22 +161,40 @@ def _caused_by(error: BaseException | None, kind: type[BaseException]) -> BaseEx
     return None
 
 
-def _rejected(status: int, name: str, where: str, said: str, wait_s: float | None) -> Fault:
+def key_refused(where: str, key: str | None, key_holder: str) -> str:
+    """That a key is wrong, or that there is none, with what holds it or should."""
+    if not key:
+        return f"{where} wants a key, and none was sent: set the environment variable {key_holder}"
+    return f"{where} refused the key that {key_holder} holds"
+
+
+def _rejected(status: int, name: str, where: str, said: str, wait_s: float | None, refused: str) -> Fault:
     """A reply with a status of its own; 4xx are final unless another form of the request may do."""
     if status in (408, 409, 425) or status >= 500:
         return Fault(ModelServerError(f"{name}: the provider failed ({said})"), True, wait_s)
     if 300 <= status < 400:
         return Fault(UnknownModelError(f"{name}: {where} sends elsewhere (status {status}); give the final address"))
     if _BAD_KEY.search(said):
-        return Fault(ModelAuthError(f"{name}: {where} refused the key ({said})"))
+        return Fault(ModelAuthError(f"{name}: {refused} ({said})"))
     pictures = _PICTURES.search(said)
     if pictures is not None:
         limit = int(pictures.group(3)) if pictures.group(3) else 0
         return Fault(TooManyPicturesError(f"{name}: too many pictures in one request ({said})"), picture_limit=limit)
-    if status == 413 or _CONTEXT.search(said):
-        return Fault(ContextTooLongError(f"{name}: the request is longer than the model takes ({said})"))
+    most_out = _number(_MOST_OUT, said)
+    if most_out is None and (status == 413 or _CONTEXT.search(said)):
+        return _too_long(name, said)
     rejected = RequestRejectedError(f"{name}: {where} refused the request ({said})")
-    return Fault(rejected, schema=bool(_SCHEMA.search(said)), thinking=bool(_THINKING.search(said)))
+    return Fault(rejected, schema=bool(_SCHEMA.search(said)), thinking=bool(_THINKING.search(said)), most_out=most_out)
+
+
+def _too_long(name: str, said: str) -> Fault:
+    error = ContextTooLongError(f"{name}: the request is longer than the model takes ({said})")
+    return Fault(error, context=_number(_LENGTH, said), taken=_number(_TAKEN, said))
+
+
+def _number(pattern: re.Pattern[str], text: str) -> int | None:
+    found = pattern.search(text)
+    return None if found is None else int(next(part for part in found.groups() if part).replace(",", ""))
 
 
 def _asked_wait(error: Any) -> float | None:

@@ -7,10 +7,10 @@ from __future__ import annotations
 
 import importlib
 import importlib.metadata
-from collections.abc import Sequence
+from collections.abc import Awaitable, Callable, Sequence
 from typing import TYPE_CHECKING, Any, cast
 
-from wonderful_team.errors import MissingExtraError
+from wonderful_team.errors import ConfigError, MissingExtraError
 from wonderful_team.models.providers.bounded import limit_replies
 from wonderful_team.models.providers.specs import Spec, is_loopback
 from wonderful_team.models.wire import Composed
@@ -22,7 +22,14 @@ if TYPE_CHECKING:
 
 LIBRARY = "pydantic-ai-slim"
 NO_KEY = "none"
-"""Sent to servers that ask for no key: the clients insist on some word."""
+"""Given to the vendors' clients where there is no key: they insist on some word. It is never sent."""
+SENT_HEADERS = frozenset({
+    "accept", "accept-encoding", "connection", "content-length", "content-type", "host", "transfer-encoding", "user-agent",
+})  # fmt: skip
+"""Headers that leave this machine, beside the one with the key and those of the vendor's format: vendors' clients add more
+from variables such as OPENAI_ORG_ID and ANTHROPIC_CUSTOM_HEADERS, which name accounts and hold secrets."""
+KEY_HEADERS = frozenset({"authorization", "x-api-key", "x-goog-api-key"})
+"""Where vendors' clients put the key; which of these it is depends on their version."""
 
 
 def library_version() -> str:
@@ -50,15 +57,41 @@ def preload(module: str, text: str) -> None:
         raise MissingExtraError(f"model {text!r}", "vendors") from error
 
 
-def http_client(spec: Spec, timeout_s: float, local_only: bool) -> httpx2.AsyncClient:
-    """A connection pool of our own: no redirects (a key must not follow one), no proxy for this machine, no endless reply."""
+def http_client(spec: Spec, key: str | None, local_only: bool) -> httpx2.AsyncClient:
+    """A connection pool of our own for one service and one key.
+
+    No redirects (a key must not follow one), no proxy for this machine, no endless reply, no headers but `SENT_HEADERS`,
+    the vendor's own and exactly this key, no address but the service's. How long a reply may take is the caller's to limit.
+    """
     import httpx2
 
     limits = httpx2.Limits(max_connections=64, max_keepalive_connections=16)
-    timeout = httpx2.Timeout(timeout_s, connect=min(10.0, timeout_s))
+    timeout = httpx2.Timeout(None, connect=10.0)
     outside = not (local_only or is_loopback(spec.base_url))
     client = httpx2.AsyncClient(timeout=timeout, limits=limits, follow_redirects=False, trust_env=outside)
+    client.event_hooks = {"request": [_guard(spec, key)], "response": []}
     return limit_replies(client)
+
+
+def _guard(spec: Spec, key: str | None) -> Callable[[httpx2.Request], Awaitable[None]]:
+    """Lets through what we decided to send, whatever a vendor's client found in the environment."""
+    import httpx2
+
+    home = httpx2.URL(spec.base_url)
+    place = (home.scheme, home.host, home.port)
+    known, (key_header, before) = SENT_HEADERS | spec.service.headers, spec.service.key_header
+    key_headers = KEY_HEADERS | {key_header.lower()}
+    keys = () if key is None else (key, f"Bearer {key}", f"{before}{key}")
+
+    async def guard(request: httpx2.Request) -> None:
+        url = request.url
+        if (url.scheme, url.host, url.port) != place:
+            raise ConfigError(f"a request for {spec.base_url} was about to go to {url.scheme}://{url.host}")
+        for name in set(request.headers):
+            if name not in known and not (name in key_headers and request.headers[name] in keys):
+                del request.headers[name]
+
+    return guard
 
 
 def build_model(spec: Spec, model: str, key: str | None, client: httpx2.AsyncClient) -> LibraryModel:
@@ -66,17 +99,21 @@ def build_model(spec: Spec, model: str, key: str | None, client: httpx2.AsyncCli
 
     Raises:
         MissingExtraError: A vendor's client is not installed.
+        ConfigError: The library cannot use such a name.
     """
     try:
         return spec.service.build(spec.base_url, model, key or NO_KEY, client)
     except ImportError as error:
         raise MissingExtraError(f"model {spec.text!r}", "vendors") from error
+    except Exception as error:
+        # It reads names of models in ways of its own.
+        raise ConfigError(f"model {spec.text!r}: the client library cannot use it ({type(error).__name__})") from error
 
 
-def messages_of(composed: Composed, turns: Sequence[tuple[str, str]]) -> list[ModelMessage]:
+def messages_of(composed: Composed, turns: Sequence[tuple[str, str]], detail: str | None = None) -> list[ModelMessage]:
     """System words, the request, and after it the model's earlier answers, each with what was wrong with it.
 
-    A turn is (what the model said, what it was told), in order.
+    A turn is (what the model said, what it was told), in order. `detail` goes with each picture.
     """
     from pydantic_ai.messages import (
         BinaryImage,
@@ -88,8 +125,10 @@ def messages_of(composed: Composed, turns: Sequence[tuple[str, str]]) -> list[Mo
         UserPromptPart,
     )
 
+    metadata = None if detail is None else {"detail": detail}
     content: list[UserContent] = [
-        piece if isinstance(piece, str) else BinaryImage(piece, media_type="image/png") for piece in composed.pieces
+        piece if isinstance(piece, str) else BinaryImage(piece, media_type="image/png", vendor_metadata=metadata)
+        for piece in composed.pieces
     ]
     first: list[Any] = [SystemPromptPart(composed.system)] if composed.system else []
     messages: list[ModelMessage] = [ModelRequest(parts=[*first, UserPromptPart(content)])]

@@ -12,12 +12,20 @@ from wonderful_team.errors import (
     UnknownModelError,
 )
 from wonderful_team.models.providers.bounded import ReplyTooLargeError, fetch_json
+from wonderful_team.models.providers.faults import key_refused
 from wonderful_team.models.providers.specs import is_loopback
 from wonderful_team.models.providers.vendors import SERVER_KEY
 from wonderful_team.redaction import redact
 
 
-def server_models(base_url: str, key: str | None, *, timeout_s: float = 10.0, local_only: bool = False) -> list[str]:
+def server_models(
+    base_url: str,
+    key: str | None,
+    *,
+    timeout_s: float = 10.0,
+    local_only: bool = False,
+    key_holder: str = SERVER_KEY,
+) -> list[str]:
     """Names of the models that an OpenAI-compatible server offers.
 
     Raises:
@@ -37,7 +45,7 @@ def server_models(base_url: str, key: str | None, *, timeout_s: float = 10.0, lo
         reason = f"{type(error).__name__}: {redact(str(error))}"
         raise ModelUnavailableError(f"no model server answers at {base_url} ({reason})") from None
     if status in (401, 403):
-        raise ModelAuthError(f"{base_url} wants a key: set the environment variable {SERVER_KEY}")
+        raise ModelAuthError(key_refused(base_url, key, key_holder))
     if status >= 500:
         raise ModelUnavailableError(f"{base_url}/models failed with status {status}")
     found = _names(said) if status == 200 else None

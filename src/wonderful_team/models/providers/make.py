@@ -13,7 +13,7 @@ from wonderful_team.models.providers import library
 from wonderful_team.models.providers.listing import only_model, server_models
 from wonderful_team.models.providers.provider import Provider
 from wonderful_team.models.providers.settings import FIRST_WAIT_S, MAX_TOKENS, SERVER_MAX_TOKENS, Settings, Thinking
-from wonderful_team.models.providers.specs import Spec, find_key, parse_spec, require_local
+from wonderful_team.models.providers.specs import Spec, find_key, key_holder, parse_spec, require_local
 
 if TYPE_CHECKING:
     from wonderful_team.models.profiles import Profile
@@ -25,7 +25,8 @@ def make_provider(
     profile: Profile | None = None,
     thinking: Thinking | None = None,
     max_tokens: int | None = None,
-    deadline_s: float = 300.0,
+    deadline_s: float | None = None,
+    timeout_s: float | None = None,
     base_url: str | None = None,
     api_key: str | None = None,
     local_only: bool = False,
@@ -40,7 +41,9 @@ def make_provider(
         profile: What `probe` measured; it takes the place of what the name suggests.
         thinking: off, low, medium or high; None leaves the service's default.
         max_tokens: Most tokens of one answer, thinking included.
-        deadline_s: Longest time for one request with all its tries.
+        deadline_s: Longest time for one request with all its tries; None: time for two tries that time out.
+        timeout_s: Longest time for one try; None: 150 s, with thinking 300 s, and more once the service has shown that it
+            takes longer.
         base_url: Address to use instead of the vendor's own; a vendor's key is not sent there.
         api_key: Key to send; None takes it from the environment. It is kept out of every record, text and repr.
         local_only: Refuse addresses outside this machine and private networks.
@@ -54,28 +57,45 @@ def make_provider(
     """
     if thinking is not None and thinking not in MAX_TOKENS:
         raise ConfigError(f"thinking {thinking!r}: valid are off, low, medium, high")
-    if deadline_s <= 0 or tries < 1 or (max_tokens is not None and max_tokens < 1):
-        raise ConfigError(f"deadline_s, tries, max_tokens must be positive: {deadline_s}, {tries}, {max_tokens}")
+    for name, value in {
+        "deadline_s": deadline_s,
+        "timeout_s": timeout_s,
+        "tries": tries,
+        "max_tokens": max_tokens,
+    }.items():
+        if value is not None and value <= 0:
+            raise ConfigError(f"{name} must be positive, got {value}")
     parsed = parse_spec(spec, base_url)
     if local_only:
         require_local(parsed)
     key = find_key(parsed, api_key)
     library.preload(parsed.service.module, spec)
+    holder = key_holder(parsed, api_key)
     model = parsed.model or only_model(
-        parsed.base_url, server_models(parsed.base_url, key, timeout_s=min(10.0, deadline_s), local_only=local_only)
+        parsed.base_url,
+        server_models(
+            parsed.base_url, key, timeout_s=min(10.0, deadline_s or 10.0), local_only=local_only, key_holder=holder
+        ),
     )
     family = guess_family(model)
     most = max_tokens or (MAX_TOKENS[thinking] if parsed.vendor or thinking not in (None, "off") else SERVER_MAX_TOKENS)
-    settings = Settings(thinking, most, deadline_s, tries, first_wait_s)
+    settings = Settings(thinking, most, deadline_s, tries, first_wait_s, timeout_s)
+    if parsed.service.takes_detail:
+        settings = replace(settings, detail=family.detail)
     convention, weak = family.convention, family.weak_pointing
     if profile is not None:
         native = profile.native_points and profile.native_boxes
         convention = profile.convention if native else PIXELS
         weak = profile.axes or not native
-        settings = replace(settings, schemas=profile.schemas != "refused", max_pictures=profile.max_pictures)
+        settings = replace(
+            settings,
+            schemas=profile.schemas != "refused",
+            max_pictures=profile.max_pictures,
+            context=profile.context_tokens,
+        )
     name = spec if parsed.model else f"{parsed.base_url}#{model}"
     return Provider(
-        profile.name if profile is not None else name,
+        (profile.name if profile is not None else "") or name,
         parsed,
         model,
         convention,
@@ -85,6 +105,7 @@ def make_provider(
         local_only,
         "" if profile is not None else _note(name, family),
         key,
+        holder,
     )
 
 

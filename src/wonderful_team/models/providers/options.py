@@ -26,11 +26,13 @@ class ModelOptions:
         thinking: Level by role; roles without one keep the service's default.
         prices: Given prices by role, instead of a table's or a profile's.
         local_only: Refuse models outside this machine and private networks.
+        timeout_s: Longest time for one try at a request; None: it follows how slow the service is.
     """
 
     thinking: Mapping[str, Thinking] = field(default_factory=dict)
     prices: Mapping[str, GivenPrice] = field(default_factory=dict)
     local_only: bool = False
+    timeout_s: float | None = None
 
     def thinking_of(self, role: str) -> Thinking | None:
         return self.thinking.get(role, self.thinking.get(REST))
@@ -48,6 +50,7 @@ def model_options(
     price: PriceChoice | Mapping[str, PriceChoice] | None,
     local_only: bool,
     roles: Sequence[str],
+    timeout_s: float | None = None,
 ) -> ModelOptions:
     """Options from what a user says: one value for all roles, or a mapping with "*" for the rest.
 
@@ -68,7 +71,9 @@ def model_options(
         if level not in LEVELS:
             raise ConfigError(f"thinking {level!r} for {_who(role)}: valid are {', '.join(LEVELS)}")
     held = {role: given if isinstance(given, GivenPrice) else read_price(given) for role, given in prices.items()}
-    return ModelOptions(cast(Mapping[str, Thinking], levels), held, local_only)
+    if timeout_s is not None and not timeout_s > 0:
+        raise ConfigError(f"timeout {timeout_s!r}: valid is a number of seconds above 0")
+    return ModelOptions(cast(Mapping[str, Thinking], levels), held, local_only, timeout_s)
 
 
 def check_prices(models: Iterable[Model], caps: Caps, allow_unpriced: bool) -> None:

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import asyncio
+import functools
 import hashlib
-import json
 import math
 import time
 from collections.abc import AsyncGenerator, Mapping
@@ -13,10 +13,12 @@ from typing import TYPE_CHECKING, Any
 from weakref import WeakKeyDictionary
 
 from wonderful_team.core.caps import Estimate
-from wonderful_team.core.values import Answer, Request, Usage, Words
+from wonderful_team.core.interrupts import in_thread
+from wonderful_team.core.values import Answer, Request, Usage
 from wonderful_team.errors import (
     BudgetReached,
     ContentFilterError,
+    ContextTooLongError,
     ModelCutOffError,
     ModelRefusalError,
     ModelTimeoutError,
@@ -27,9 +29,13 @@ from wonderful_team.models.budget import Ticket, current_ticket
 from wonderful_team.models.conventions import Convention
 from wonderful_team.models.prices import Prices
 from wonderful_team.models.providers import library
-from wonderful_team.models.providers.faults import Fault, fault_of
-from wonderful_team.models.providers.settings import LONGEST_WAIT_S, Settings
-from wonderful_team.models.providers.specs import Spec
+from wonderful_team.models.providers.facts import UNKNOWN
+from wonderful_team.models.providers.faults import Fault, fault_of, key_refused
+from wonderful_team.models.providers.learned import Learned
+from wonderful_team.models.providers.server_facts import server_facts
+from wonderful_team.models.providers.settings import LONGEST_WAIT_S, TIMED_OUT_TRIES, Settings, Thinking
+from wonderful_team.models.providers.specs import Spec, is_loopback
+from wonderful_team.models.providers.tokens import MOST_CHARACTERS_PER_TOKEN, as_said, reckoned, usage_of
 from wonderful_team.models.providers.vendors import SERVER_KEY
 from wonderful_team.models.wire import Composed, Reading, Unreadable, compose, encodable, ticks_of
 from wonderful_team.redaction import keep_secret, redact, redact_known
@@ -37,18 +43,8 @@ from wonderful_team.redaction import keep_secret, redact, redact_known
 if TYPE_CHECKING:
     from pydantic_ai.messages import ModelResponse
 
-CHARACTERS_PER_TOKEN = 3.0
-PIXELS_PER_TOKEN = 500.0
-"""On the careful side for every vendor's way of counting pictures; corrected by what the service reports."""
-
-
-@dataclass
-class _Learned:
-    """What the service taught while it was asked: it is told once, not before every request."""
-
-    schemas: bool
-    max_pictures: int | None
-    tokens_ratio: float = 1.0
+FACTS_S = 5.0
+"""Time for each question about the server itself."""
 
 
 @dataclass
@@ -60,6 +56,7 @@ class Provider:
         weak_pointing: Whole views should carry labelled axes.
         prices: What tokens cost.
         note: What the user should know before trusting its places; "" when they were measured.
+        key_holder: The variable that holds the key, or would.
     """
 
     name: str
@@ -72,13 +69,14 @@ class Provider:
     local_only: bool = False
     note: str = ""
     key: str | None = field(default=None, repr=False)
+    key_holder: str = SERVER_KEY
     _clients: WeakKeyDictionary[asyncio.AbstractEventLoop, tuple[Any, AsyncGenerator[None]]] = field(
         default_factory=WeakKeyDictionary, repr=False
     )
 
     def __post_init__(self) -> None:
         keep_secret(self.key)
-        self._learned = _Learned(self.settings.schemas, self.settings.max_pictures)
+        self._learned = Learned.of(self.settings)
 
     @property
     def ticks(self) -> Ticks:
@@ -110,18 +108,29 @@ class Provider:
         """The service does not take schemas: they are told in words only."""
         return not self._learned.schemas
 
+    @property
+    def thinking_refused(self) -> bool:
+        """The service does not take the switch for thinking."""
+        return not self._learned.thinking
+
+    @property
+    def deadline_s(self) -> float:
+        """Longest time for one request with all its tries."""
+        held = self.settings
+        if held.deadline_s is not None:
+            return held.deadline_s
+        # The second of two tries may take twice as long as the first; and there are pauses.
+        return 1.05 * self._learned.try_s * (3 if held.adapts else TIMED_OUT_TRIES) + LONGEST_WAIT_S
+
     def estimate(self, request: Request) -> Estimate:
         """What a request may cost at most, before it is sent (see `Budget`)."""
-        characters = len(request.system) + sum(len(part.text) for part in request.parts if isinstance(part, Words))
-        characters += 1500 + len(request.feedback)
-        pixels = 0.0
-        for picture in request.pictures:
-            width, height = self.convention.seen_size(picture.size_px)
-            pixels += width * height + 150_000
-        tokens_in = (characters / CHARACTERS_PER_TOKEN + pixels / PIXELS_PER_TOKEN) * self._learned.tokens_ratio
+        tokens_in = self._learned.careful(self._reckoned(request))
         most = self.settings.max_tokens
-        prices = (self.prices.usd(Usage(tokens_in=round(tokens_in))), self.prices.usd(Usage(tokens_out=most)))
-        return Estimate(round(tokens_in), most, *prices)
+        prices = (self.prices.usd(Usage(tokens_in=tokens_in)), self.prices.usd(Usage(tokens_out=most)))
+        return Estimate(tokens_in, most, *prices)
+
+    def _reckoned(self, request: Request) -> float:
+        return reckoned(request, self.convention)
 
     async def answer(self, request: Request) -> Answer:
         """The model's answer, not yet checked against the question.
@@ -134,29 +143,37 @@ class Provider:
         """
         # The first request of a loop builds the client, which takes time that is not the service's.
         await self._client()
-        started = time.monotonic()
         ticket = current_ticket()
+        started = time.monotonic()
         # A little earlier than whoever waits, so that the error can say what was tried.
-        deadline_s = min(self.settings.deadline_s, math.inf if ticket.seconds is None else 0.97 * ticket.seconds)
-        composed = self._compose(request)
-        tries, doubts = 0, 0
+        deadline_s = min(self.deadline_s, math.inf if ticket.seconds is None else 0.97 * ticket.seconds)
+        await self._ask_facts(deadline_s)
+        tries, doubts, timed_out, wait_s = 0, 0, 0, 0.0
         while True:
+            composed = self._compose(request)
+            limit = self._limit(request, ticket)
             if tries:
                 ticket.another_try()
             tries += 1
-            left = deadline_s - (time.monotonic() - started)
-            outcome = await self._try(request, composed, ticket, left)
+            began = time.monotonic()
+            outcome = await self._try(request, composed, limit, deadline_s - (began - started))
             if not isinstance(outcome, Fault):
-                return self._answered(request, composed, outcome, tries, ticket)
+                self._learned.took(time.monotonic() - began)
+                return await self._answered(request, composed, outcome, limit, tries, ticket)
             if outcome.billed:
-                ticket.book_lost_try()
-            if self._learn(outcome, composed) and doubts < 3:
+                ticket.book_lost_try(limit)
+            if isinstance(outcome.error, ModelTimeoutError):
+                timed_out += 1
+                if self.settings.adapts:
+                    self._learned.too_short(time.monotonic() - began)
+            size = self._reckoned(request)
+            if doubts < 3 and self._learned.take(outcome, len(composed.sizes_px), self._thinking, limit, size):
                 doubts += 1
-                composed = self._compose(request)
                 continue
             left = deadline_s - (time.monotonic() - started)
             wait_s = self._wait(outcome, request, tries)
-            if not outcome.retry or tries >= self.settings.tries or wait_s > LONGEST_WAIT_S or wait_s >= left:
+            again = outcome.retry and tries < self.settings.tries and timed_out < TIMED_OUT_TRIES
+            if not again or wait_s > LONGEST_WAIT_S or wait_s >= left:
                 raise _told(outcome.error, tries, wait_s, left) from None
             await asyncio.sleep(wait_s)
 
@@ -174,14 +191,39 @@ class Provider:
         told = not self._learned.schemas or self.spec.vendor is None
         return compose(request, self.convention, one_picture=pasted, schema_in_words=told)
 
-    async def _try(
-        self, request: Request, composed: Composed, ticket: Ticket, left_s: float
-    ) -> tuple[ModelResponse, int] | Fault:
-        """One HTTP request: the library's reply with the limit of tokens it had, or what went wrong."""
-        keys = self.spec.service.keys if self.spec.official else (SERVER_KEY,)
-        limit = self.settings.max_tokens if ticket.max_out is None else min(self.settings.max_tokens, ticket.max_out)
-        # A hang must leave time for another try.
-        longest = max(0.001, min(left_s, self.settings.deadline_s / 2 if self.settings.tries > 1 else left_s))
+    @property
+    def _thinking(self) -> Thinking | None:
+        return self.settings.thinking if self._learned.thinking else None
+
+    def _limit(self, request: Request, ticket: Ticket) -> int:
+        """Most tokens that the answer may have, by the settings, the caps and the context.
+
+        Raises:
+            ContextTooLongError: The request alone fills the context.
+        """
+        most = self.settings.max_tokens
+        limit = most if ticket.max_out is None else min(most, ticket.max_out)
+        try:
+            return self._learned.fitted(limit, self._reckoned(request))
+        except ContextTooLongError as error:
+            raise ContextTooLongError(f"{self.name}: {error}", stage=request.stage) from None
+
+    async def _ask_facts(self, within_s: float) -> None:
+        """Ask a server named by its address for its context, before the first request."""
+        if self.spec.vendor is not None or not self._learned.facts_wanted:
+            return
+        self._learned.facts_asked += 1
+        self._learned.facts = self._learned.facts or UNKNOWN
+        direct = self.local_only or is_loopback(self.spec.base_url)
+        ask = functools.partial(
+            server_facts, self.spec.service, self.spec.base_url, self.model, self.key,
+            timeout_s=min(FACTS_S, within_s / 4), direct=direct,
+        )  # fmt: skip
+        self._learned.know(await in_thread(ask, name="server facts"))
+
+    async def _try(self, request: Request, composed: Composed, limit: int, left_s: float) -> ModelResponse | Fault:
+        """One HTTP request: the library's reply, or what went wrong."""
+        longest = max(0.001, min(left_s, self._learned.try_s))
         try:
             async with asyncio.timeout(longest):
                 model = await self._client()
@@ -192,21 +234,22 @@ class Provider:
                         request, self.convention, one_picture=len(composed.sizes_px) < len(request.pictures),
                         schema_in_words=True,
                     )  # fmt: skip
-                turns = [(_as_said(request.previous), self._complaint(request, composed))] if request.feedback else []
-                messages = library.messages_of(composed, turns)
-                return await library.send(model, messages, self._settings(limit), schema, request.contract), limit
+                turns = [(as_said(request.previous), self._complaint(request, composed))] if request.feedback else []
+                messages = library.messages_of(composed, turns, self.settings.detail)
+                return await library.send(model, messages, self._settings(limit), schema, request.contract)
         except TimeoutError:
-            return Fault(
-                ModelTimeoutError(f"{self.name} gave no whole reply within {longest:.3g} s"), True, billed=True
-            )
+            text = f"{self.name} gave no whole reply within {longest:.3g} s (--timeout S, timeout=S, allows more)"
+            return Fault(ModelTimeoutError(text), True, billed=True)
         except WonderfulTeamError:
             raise
         except Exception as error:  # noqa: BLE001  every fault of the library or the wire is sorted
-            return fault_of(error, self.name, self.spec.base_url, " or ".join(keys))
+            refused = key_refused(self.spec.base_url, self.key, self.key_holder)
+            return fault_of(error, self.name, self.spec.base_url, refused)
 
     def _settings(self, max_tokens: int) -> dict[str, Any]:
-        thinking, service = self.settings.thinking, self.spec.service
-        return {"max_tokens": max_tokens, **service.settings, **({} if thinking is None else service.think(thinking))}
+        thinking, service = self._thinking, self.spec.service
+        switch = {} if thinking is None else service.think(thinking, self._learned.facts or UNKNOWN)
+        return {"max_tokens": max_tokens, **service.settings, **switch}
 
     def _complaint(self, request: Request, composed: Composed) -> str:
         """What was wrong with the last answer, in a further turn."""
@@ -223,23 +266,12 @@ class Provider:
         loop = asyncio.get_running_loop()
         held = self._clients.get(loop)
         if held is None:
-            client = library.http_client(self.spec, self.settings.deadline_s, self.local_only)
+            client = library.http_client(self.spec, self.key, self.local_only)
             keeper = _keep_open(client)
             await anext(keeper)
             held = (library.build_model(self.spec, self.model, self.key, client), keeper)
             self._clients[loop] = held
         return held[0]
-
-    def _learn(self, fault: Fault, composed: Composed) -> bool:
-        """Take in what the service refused; True when the request should be sent in another form."""
-        if fault.schema:
-            # Perhaps another request that is under way has learned it already: this one was still sent with a schema.
-            self._learned.schemas = False
-            return True
-        if fault.picture_limit is not None and len(composed.sizes_px) > 1:
-            self._learned.max_pictures = min(fault.picture_limit or 1, len(composed.sizes_px) - 1)
-            return True
-        return False
 
     def _wait(self, fault: Fault, request: Request, tries: int) -> float:
         """How long to pause: what the provider asked for, else doubling, spread by request so that none march in step."""
@@ -250,17 +282,17 @@ class Provider:
 
     # -- reading ---------------------------------------------------------------------------------------------------
 
-    def _answered(
-        self, request: Request, composed: Composed, reply: tuple[ModelResponse, int], tries: int, ticket: Ticket
+    async def _answered(
+        self, request: Request, composed: Composed, response: ModelResponse, limit: int, tries: int, ticket: Ticket
     ) -> Answer:
         from pydantic_ai.messages import TextPart, ThinkingPart
 
-        response, limit = reply
         said = "".join(part.content for part in response.parts if isinstance(part, TextPart))
         thought = "".join(part.content for part in response.parts if isinstance(part, ThinkingPart))
         said, thought = (encodable(redact_known(text)) for text in (said, thought))
         usage = self._usage(request, response, said, thought, tries)
         ticket.answered = usage
+        await self._check_whole(request, composed, response.usage.input_tokens)
         details = response.provider_details or {}
         if response.finish_reason == "content_filter" or details.get("refusal"):
             raise self._declined(request, details, said)
@@ -274,7 +306,20 @@ class Provider:
         if response.finish_reason == "length" and not _whole(request, value):
             # Half an answer may still hold a whole object inside: that is no wrong answer to send back, but a cut one.
             raise self._cut_off(request, limit, ticket)
-        return Answer(value, usage, response.model_name or self.model, said, repairs=repairs)
+        model = response.model_name or self.model
+        return Answer(value, usage, model, said, repairs=repairs, notices=self._learned.told())
+
+    async def _check_whole(self, request: Request, composed: Composed, counted: int) -> None:
+        """Refuse the answer to a request that the server has cut without a word; servers named by address may."""
+        if self.spec.vendor is not None:
+            return
+        # An Ollama says how long its context is once the model is loaded.
+        await self._ask_facts(FACTS_S)
+        characters = len(composed.system) + sum(len(piece) for piece in composed.pieces if isinstance(piece, str))
+        try:
+            self._learned.check_whole(counted, characters / MOST_CHARACTERS_PER_TOKEN)
+        except ContextTooLongError as error:
+            raise ContextTooLongError(f"{self.name}: {error}", stage=request.stage) from None
 
     def _read(self, composed: Composed, said: str, thought: str) -> Reading:
         if said.strip() or "{" not in thought:
@@ -295,39 +340,21 @@ class Provider:
         )
 
     def _cut_off(self, request: Request, limit: int, ticket: Ticket) -> WonderfulTeamError:
-        if limit < self.settings.max_tokens:
+        if ticket.max_out is not None and limit == ticket.max_out < self.settings.max_tokens:
             return BudgetReached(
-                f"the answer to {request.contract} was cut off at {limit} tokens: no more were left under the caps"
+                f"the answer to {request.contract} was cut off at {limit} tokens: no more were left under {ticket.held_by}"
             )
+        why = "thinking included" if limit == self.settings.max_tokens else "all that the model or its context leaves"
         return ModelCutOffError(
-            f"{self.name}: the answer to {request.contract} was cut off at {limit} tokens (thinking included)",
-            stage=request.stage,
+            f"{self.name}: the answer to {request.contract} was cut off at {limit} tokens ({why})", stage=request.stage
         )
 
     def _usage(self, request: Request, response: ModelResponse, said: str, thought: str, tries: int) -> Usage:
         """Tokens and money as the service reports them; where it reports none, what was reckoned beforehand."""
-        reported, reckoned = response.usage, self.estimate(request)
-        details = reported.details or {}
-        thinking = next((details[name] for name in ("reasoning_tokens", "thoughts_tokens") if details.get(name)), 0)
-        if thought and not thinking:
-            # Many servers show the thinking but do not count it apart.
-            thinking = min(reported.output_tokens, math.ceil(len(thought) / CHARACTERS_PER_TOKEN))
-        if reported.input_tokens or reported.output_tokens:
-            usage = Usage(
-                tries,
-                tokens_in=reported.input_tokens,
-                tokens_cached=reported.cache_read_tokens,
-                tokens_thinking=thinking,
-                tokens_out=max(0, reported.output_tokens - thinking),
-                pictures=len(request.pictures),
-            )
-            if reckoned.tokens_in:
-                ratio = self._learned.tokens_ratio * reported.input_tokens / reckoned.tokens_in
-                self._learned.tokens_ratio = min(100.0, max(self._learned.tokens_ratio, ratio))
-        else:
-            out = round(len(said) / CHARACTERS_PER_TOKEN)
-            usage = Usage(tries, reckoned.tokens_in, tokens_out=out, pictures=len(request.pictures))
-        return replace(usage, usd=self.prices.usd(usage))
+        usage = usage_of(response.usage, said, thought, self._learned.careful(self._reckoned(request)))
+        if response.usage.input_tokens:
+            self._learned.count(response.usage.input_tokens, self._reckoned(request))
+        return replace(usage, calls=tries, pictures=len(request.pictures), usd=self.prices.usd(usage))
 
 
 async def _keep_open(client: Any) -> AsyncGenerator[None]:
@@ -348,12 +375,6 @@ def _told(error: WonderfulTeamError, tries: int, wait_s: float, left_s: float) -
     elif wait_s >= left_s:
         extra += "; no time is left for another try"
     return type(error)(f"{error}{extra}", stage=error.stage) if extra else error
-
-
-def _as_said(previous: Any) -> str:
-    if isinstance(previous, str):
-        return previous
-    return json.dumps(previous, default=str)
 
 
 def _whole(request: Request, value: Any) -> bool:

@@ -71,6 +71,9 @@ def parse_spec(text: str, base_url: str | None = None) -> Spec:
         base_url = f"http{address}"
     if not name:
         raise ConfigError(f"model {text!r}: the model's name is missing, as in {head}:NAME")
+    wrong = vendor.name_fault(name)
+    if wrong:
+        raise ConfigError(f"model {text!r}: {wrong}")
     if base_url is None:
         return Spec(text, head.lower(), name, vendor.base_url, True)
     url = checked_url(base_url)
@@ -102,15 +105,34 @@ def find_key(spec: Spec, given: str | None, environment: Mapping[str, str] | Non
     """The key to send. A vendor's key goes to that vendor's own address only.
 
     Raises:
-        ModelAuthError: A vendor needs a key and none is set; names the variable.
+        ModelAuthError: A vendor needs a key and none is set, or it is none that can be sent; names the variable.
     """
     held = os.environ if environment is None else environment
-    names = spec.service.keys if spec.official else (SERVER_KEY,)
-    key = given or next((held[name] for name in names if held.get(name)), None)
+    holder = key_holder(spec, given, held)
+    key = given or held.get(holder)
     keep_secret(key)
-    if key is None and spec.official:
-        raise ModelAuthError(f"model {spec.text!r} needs a key: set the environment variable {' or '.join(names)}")
-    return key
+    if not key and spec.official:
+        raise ModelAuthError(
+            f"model {spec.text!r} needs a key: set the environment variable {' or '.join(_holders(spec))}"
+        )
+    if key and not (key.isascii() and key.isprintable() and " " not in key):
+        raise ModelAuthError(
+            f"model {spec.text!r}: {holder} holds spaces, line breaks or other characters that no key has"
+        )
+    return key or None
+
+
+def key_holder(spec: Spec, given: str | None, environment: Mapping[str, str] | None = None) -> str:
+    """What holds the key that is sent: a variable's name, the one to set where there is no key, or the argument."""
+    held = os.environ if environment is None else environment
+    if given:
+        return "the argument api_key"
+    names = _holders(spec)
+    return next((name for name in names if held.get(name)), names[0])
+
+
+def _holders(spec: Spec) -> tuple[str, ...]:
+    return spec.service.keys if spec.official else (SERVER_KEY,)
 
 
 def is_loopback(base_url: str) -> bool:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from wonderful_team.models.providers.vendors.vendor import Vendor
+from wonderful_team.models.providers.vendors.vendor import Vendor, own_headers
 
 if TYPE_CHECKING:
     import httpx2
@@ -16,7 +16,7 @@ def _build(base_url: str, model: str, key: str, client: httpx2.AsyncClient) -> L
     from pydantic_ai.models.anthropic import AnthropicModel
     from pydantic_ai.providers.anthropic import AnthropicProvider
 
-    sdk = AsyncAnthropic(base_url=base_url, api_key=key, http_client=client, max_retries=0)
+    sdk = own_headers(AsyncAnthropic)(base_url=base_url, api_key=key, http_client=client, max_retries=0)
     return AnthropicModel(model, provider=AnthropicProvider(anthropic_client=sdk))
 
 
@@ -28,4 +28,5 @@ ANTHROPIC = Vendor(
     ("ANTHROPIC_API_KEY",),
     "anthropic",
     "Anthropic",
+    headers=frozenset({"anthropic-version"}),
 )

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from wonderful_team.models.providers.vendors.vendor import Place, Vendor
+from wonderful_team.models.providers.facts import Facts, read_facts
+from wonderful_team.models.providers.vendors.vendor import Ask, Vendor
 
 if TYPE_CHECKING:
     import httpx2
@@ -18,8 +19,9 @@ def _build(base_url: str, model: str, key: str, client: httpx2.AsyncClient) -> L
     return GoogleModel(model, provider=GoogleProvider(api_key=key, base_url=base_url, http_client=client))
 
 
-def _context(base_url: str, model: str) -> tuple[Place, ...]:
-    return (("GET", f"{base_url}/v1beta/models/{model}", None),)
+def _facts(ask: Ask, base_url: str, model: str) -> Facts:
+    url = f"{base_url}/v1beta/models/{model}"
+    return read_facts(ask("GET", url), model, f"GET {url}")
 
 
 GOOGLE = Vendor(
@@ -31,6 +33,6 @@ GOOGLE = Vendor(
     "google",
     "Google Gemini",
     settings={},  # its client knows no max_retries; it does not try again by itself
-    context=_context,
+    facts=_facts,
     key_header=("x-goog-api-key", ""),
 )

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from wonderful_team.models.providers.vendors.vendor import Vendor, listed_models
+from wonderful_team.models.providers.vendors.vendor import Vendor, listed_facts, own_headers
 
 if TYPE_CHECKING:
     import httpx2
@@ -18,7 +18,7 @@ def openai_client(base_url: str, key: str, client: httpx2.AsyncClient) -> Any:
     """OpenAI's own client, for everything that speaks its format."""
     from openai import AsyncOpenAI
 
-    return AsyncOpenAI(base_url=base_url, api_key=key, http_client=client, max_retries=0)
+    return own_headers(AsyncOpenAI)(base_url=base_url, api_key=key, http_client=client, max_retries=0)
 
 
 def _chat(base_url: str, model: str, key: str, client: httpx2.AsyncClient) -> LibraryModel:
@@ -43,6 +43,7 @@ RESPONSES = Vendor(
     ("OPENAI_API_KEY",),
     "openai",
     settings={"max_retries": 0, "openai_store": False},
+    takes_detail=True,
 )
-CHAT = replace(RESPONSES, api="openai-chat", build=_chat, settings={"max_retries": 0}, context=listed_models)
+CHAT = replace(RESPONSES, api="openai-chat", build=_chat, settings={"max_retries": 0}, facts=listed_facts)
 OPENAI = replace(RESPONSES, words="OpenAI (Responses); openai-chat:NAME for Chat Completions")

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from wonderful_team.models.providers.vendors.openai import openai_client
-from wonderful_team.models.providers.vendors.vendor import Vendor, listed_models
+from wonderful_team.models.providers.vendors.vendor import Vendor, listed_facts
 
 if TYPE_CHECKING:
     import httpx2
@@ -26,6 +26,12 @@ def _build(base_url: str, model: str, key: str, client: httpx2.AsyncClient) -> L
     return Lenient(model, provider=OpenRouterProvider(openai_client=openai_client(base_url, key, client)))
 
 
+def _name_fault(name: str) -> str:
+    if all(name.partition("/")[::2]):
+        return ""
+    return "OpenRouter's names are MAKER/NAME, as in openrouter:openai/gpt-5 or openrouter:qwen/qwen3-vl"
+
+
 OPENROUTER = Vendor(
     "openrouter",
     "pydantic_ai.models.openrouter",
@@ -34,5 +40,6 @@ OPENROUTER = Vendor(
     ("OPENROUTER_API_KEY",),
     "openrouter",
     "OpenRouter",
-    context=listed_models,
+    facts=listed_facts,
+    name_fault=_name_fault,
 )

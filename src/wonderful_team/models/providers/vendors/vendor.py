@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING, Any, Protocol, TypeAlias
 
+from wonderful_team.models.providers.facts import UNKNOWN, Facts, read_facts
 from wonderful_team.models.providers.settings import Thinking
 
 if TYPE_CHECKING:
@@ -15,18 +16,54 @@ if TYPE_CHECKING:
 
 Build: TypeAlias = "Callable[[str, str, str, httpx2.AsyncClient], LibraryModel]"
 """The client library's model from base address, model, key and our connection pool; it may import the vendor's client."""
-Place: TypeAlias = tuple[str, str, Mapping[str, Any] | None]
-"""Method, address and body of a question beside the library."""
 
 
-def no_places(base_url: str, model: str) -> tuple[Place, ...]:
+class Ask(Protocol):
+    """A question beside the library: what the service sends back as JSON; None for every status but 200."""
+
+    def __call__(self, method: str, url: str, body: Mapping[str, Any] | None = None) -> Any: ...
+
+
+class Think(Protocol):
+    """Settings of a request for a level of thinking."""
+
+    def __call__(self, level: Thinking, facts: Facts = ...) -> dict[str, Any]: ...
+
+
+def no_facts(ask: Ask, base_url: str, model: str) -> Facts:
     """The service says nothing of a model without being asked a question."""
-    return ()
+    return UNKNOWN
 
 
-def listed_models(base_url: str, model: str) -> tuple[Place, ...]:
-    """What the service says of its models stands in its list of them."""
-    return (("GET", f"{base_url}/models", None),)
+def listed_facts(ask: Ask, base_url: str, model: str) -> Facts:
+    """What the service says of a model stands in its list of them."""
+    url = f"{base_url}/models"
+    return read_facts(ask("GET", url), model, f"GET {url}")
+
+
+def library_think(level: Thinking, facts: Facts = UNKNOWN) -> dict[str, Any]:
+    """The client library's own switch."""
+    return {"thinking": False if level == "off" else level}
+
+
+def any_name(name: str) -> str:
+    """Whatever stands there may be a model's name."""
+    return ""
+
+
+def own_headers(client_class: type[Any]) -> type[Any]:
+    """A vendor's client that gives no header a value from OPENAI_CUSTOM_HEADERS or ANTHROPIC_CUSTOM_HEADERS.
+
+    Every copy that the library makes of it reads these variables again.
+    """
+
+    class Own(client_class):  # type: ignore[misc]
+        @property
+        def default_headers(self) -> Any:
+            self._custom_headers: Any = {}
+            return super().default_headers
+
+    return Own
 
 
 @dataclass(frozen=True)
@@ -43,8 +80,11 @@ class Vendor:
         words: What `list models` says of it; "" for a further name of one that is listed.
         settings: Of every request.
         think: Settings of a request for a level of thinking.
-        context: Where the length of a model's context stands, in order.
-        key_header: How a question beside the library carries the key: name, and what goes before the key.
+        takes_detail: It has a switch for the detail in which pictures are to be looked at.
+        facts: What the service says of a model without being asked a question.
+        name_fault: What is wrong with a model's name; "" when nothing is.
+        key_header: How a question beside the library carries the key, and a request may: name, and what goes before the key.
+        headers: Further headers of its format, in lower case; no others leave this machine.
     """
 
     api: str
@@ -55,6 +95,9 @@ class Vendor:
     price_id: str = ""
     words: str = ""
     settings: Mapping[str, Any] = field(default_factory=lambda: MappingProxyType({"max_retries": 0}))
-    think: Callable[[Thinking], dict[str, Any]] = lambda level: {"thinking": False if level == "off" else level}
-    context: Callable[[str, str], tuple[Place, ...]] = no_places
+    think: Think = library_think
+    takes_detail: bool = False
+    facts: Callable[[Ask, str, str], Facts] = no_facts
+    name_fault: Callable[[str], str] = any_name
     key_header: tuple[str, str] = ("Authorization", "Bearer ")
+    headers: frozenset[str] = frozenset()

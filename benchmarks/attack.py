@@ -13,6 +13,7 @@
 | kills   | kill -9 of sweeps with their workers, at random moments                             | --kills    |
 | clocks  | deaths of processes, and clocks that jump by a minute, over a study with a cap      | --jumps    |
 | files   | damaged files and options of every kind, read by the commands that read them        | --files    |
+| writes  | every write of every command fails, once and from then on (a full disk)             | --writes   |
 
 Each group draws from what the tests draw from (`tests/`), for longer. Printed, for each: attempts; crashes (an error that is none of ours,
 or an exit code that means nothing); hangs (past the stated limit: a plan 90 s, a program 2 s more than it was given, a sweep 120 s, a
@@ -40,6 +41,7 @@ from tests.evals.claims_walk import walk
 from tests.evals.sweeps import killed
 from tests.fuzzing import KINDS, AgentSession
 from tests.sandbox.programs import program, ran
+from tests.write_fault_cases import CASES, fail_writes, prepare
 
 SIZES = {
     "model": ("faults", 10_000),
@@ -49,6 +51,7 @@ SIZES = {
     "kills": ("kills", 50),
     "clocks": ("jumps", 150),
     "files": ("files", 1_000),
+    "writes": ("writes", 1_500),
 }
 """Option and size of each group."""
 KILLS_A_SWEEP = 5
@@ -168,6 +171,26 @@ def files(files: int, seed: int) -> Found:
     return Found(tried, f"inputs of {len(KINDS)} kinds", crashes, tally.hung, words=sorted(tally.wrong))
 
 
+def writes(writes: int, seed: int) -> Found:
+    """Writes that fail: as many of each command's as are asked for, at even distances."""
+    found, points = Found(0, ""), 0
+    with tempfile.TemporaryDirectory() as folder:
+        setting = prepare(Path(folder))
+        each = max(1, writes // (2 * len(CASES)))
+        for case in CASES:
+            for lasting in (False, True):
+                # The first one alone tells how many there are.
+                total, outcomes = fail_writes(case, setting, every=10**9, lasting=lasting)
+                if each > 1:
+                    total, outcomes = fail_writes(case, setting, every=max(1, total // each), lasting=lasting)
+                points += total
+                found.attempts += len(outcomes)
+                found.lost += sum(bool(one.wrong) for one in outcomes)
+                found.words += [f"{case.name}, {one.point}: {'; '.join(one.wrong)}" for one in outcomes if one.wrong]
+    found.what = f"writes of {points} in {len(CASES)} commands, once and lasting"
+    return found
+
+
 GROUPS: dict[str, Callable[[int, int], Found]] = {
     "model": model,
     "sandbox": sandbox,
@@ -176,6 +199,7 @@ GROUPS: dict[str, Callable[[int, int], Found]] = {
     "kills": kills,
     "clocks": clocks,
     "files": files,
+    "writes": writes,
 }
 """One function a group: how many attempts, and the seed."""
 

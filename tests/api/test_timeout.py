@@ -42,6 +42,17 @@ def test_a_model_of_ones_own_has_it_as_its_deadline() -> None:
         asyncio.run(client.ask(question()))
 
 
+def test_every_method_waits_as_long_for_a_model_of_ones_own() -> None:
+    class Own:
+        name = "own"
+
+        async def answer(self, request: Any) -> Any:
+            return "none"
+
+    for method in ("team", "team:paper"):
+        assert wt.Team(model=Own(), method=method, timeout=0.2).policy()._client._deadline_s == 0.2
+
+
 def test_a_study_hands_it_on() -> None:
     study = Study(suite="rotate", models=["offline"], seeds=range(1, 2), timeout=12.5)
     assert study._asked()["timeout"] == 12.5

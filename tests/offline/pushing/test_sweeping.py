@@ -230,3 +230,21 @@ def test_no_place_on_a_way_is_found_in_noise() -> None:
     reading = ask(ReadScene(plan_targets(plan), lines, picture(noised(drawn())), (), ()))
     assert isinstance(reading, SceneReading)
     assert not any(item.found for item in reading.targets)
+
+
+THIN = (469, 160 - 52, 471, 160 + 52)
+"""A line across the opening that is thinner than a lane is wide by far."""
+
+
+@pytest.mark.parametrize(("x", "y"), [(250, 105), (310, 105), (310, 215), (250, 245)])
+def test_the_end_of_a_thin_line_is_not_passed_over(x: int, y: int) -> None:
+    (stops,) = places(TOUCH.format("one", ""), drawn(("red", x, y), line=THIN))
+    assert not lane_meets([(float(x), float(y)), *stops], THIN)
+
+
+@pytest.mark.parametrize("blocks", [((180, 140), (419, 92)), ((240, 160), (420, 102)), ((240, 185), (443, 228))])
+def test_nothing_is_to_rest_where_another_stands_in_the_picture(blocks: tuple[tuple[int, int], ...]) -> None:
+    view = drawn(*(("red", x, y) for x, y in blocks), line=AT_MOUTH)
+    stops = [stop for way in places(TOUCH.format("two", "s"), view) for stop in way]
+    assert len(stops) >= len(blocks)
+    assert all(np.hypot(stop[0] - x, stop[1] - y) > SIDE / np.sqrt(2) for stop in stops for x, y in blocks)

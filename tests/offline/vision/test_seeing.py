@@ -19,6 +19,7 @@ from tests.offline.vision.drawn import (
     box_shape,
     dotted,
     plain,
+    polygon,
     regular,
     round_shape,
     striped,
@@ -165,3 +166,16 @@ def test_coins_in_a_photo_are_all_found() -> None:
     scene = see(Picture("photo", photo, Frame.whole("photo", (384, 303))))
     assert len(scene.things) == 24
     assert sum(thing.look.shape in ("circle", "oval") for thing in scene.things) >= 22
+
+
+@pytest.mark.parametrize("width", [5.5, 6.0])
+def test_a_flat_line_of_tiles_is_one_thing_whatever_shows_between_them(width: float) -> None:
+    drawing = Drawing(noise=0.0, slope=0.0)
+    for number in range(5):
+        top, bottom = -56 + 22.4 * number + 1.5, -56 + 22.4 * (number + 1) - 1.5
+        corners = [(-width / 2, top), (width / 2, top), (width / 2, bottom), (-width / 2, bottom)]
+        paint = plain((114, 178, 188) if number == 2 else (100, 160, 168))
+        drawing.add(polygon((320, 160), corners, 5), paint, height_m=0.001)
+    (thing,) = see(drawing.picture(depth=True)).things
+    assert thing.flat
+    assert thing.box.height == pytest.approx(109, abs=4)

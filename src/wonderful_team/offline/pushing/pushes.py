@@ -40,7 +40,10 @@ WORTH_ROOM = 12.0
 """What free space beside a lane and distance from a line are worth, and what one more push costs, as sides of way."""
 SHORTEST = 0.4
 HALF = 0.5
-STEP = 0.3
+STEP = 2 * ROOM_LEFT
+"""How far apart the places lie at which a lane is measured: ROOM_LEFT sees half as far, so no thin line falls between them."""
+FREE_NOW = 0.75
+"""How far from where the picture shows things a thing may rest: a place that is taken now is judged to be no free place."""
 GRID = 0.55
 OFF_DRAWN = 0.85
 """How far from walls that are only drawn the middle of a thing rests on its way."""
@@ -79,7 +82,8 @@ class Field:
 
     Attributes:
         blocks: Everything that can be pushed, by number, where it is believed to be.
-        masks: Where each of them shows, bool.
+        masks: Where each of them is believed to cover the table, bool.
+        shown: Where the picture shows any of them, whatever was pushed since, bool.
         fixed: What a lane must keep off with thing and tool, bool.
         line: What only the thing must keep off, bool.
         room: Where to.
@@ -90,6 +94,7 @@ class Field:
 
     blocks: dict[int, Block]
     masks: dict[int, Array]
+    shown: Array
     fixed: Array
     line: Array
     room: Room
@@ -139,15 +144,13 @@ def study_field(
     blocks = {thing.number: _block(thing, masks[thing.number]) for thing in movable}
     around = _around(scene, [*masks.values()])
     fixed = around if room.walls is None or flat_walls else around | room.walls
-    line = np.zeros(shape, bool)
-    least = 0.0
-    for thing in lines:
-        mask = whole_mask(thing, shape)
-        line |= mask
-        if limit:
-            least = max(least, _reach(room, mask))
+    drawn = [whole_mask(thing, shape) for thing in lines]
+    line = np.any([np.zeros(shape, bool), *drawn], axis=0)
+    least = max([0.0, *(_reach(room, mask) for mask in drawn if limit)])
     open_round = flat_walls or not room.mouth
-    return Field(blocks, {number: masks[number] for number in blocks}, fixed, line, room, least, scene.zoom, open_round)
+    masks = {number: masks[number] for number in blocks}
+    shown = np.any([np.zeros(shape, bool), *masks.values()], axis=0)
+    return Field(blocks, masks, shown, fixed, line, room, least, scene.zoom, open_round)
 
 
 def _around(scene: Scene, masks: Sequence[Array]) -> Array:
@@ -244,9 +247,8 @@ def _columns(room: Room, side: float) -> Array:
 
 
 def _spread(low: float, high: float, step: float) -> Array:
-    return (
-        np.linspace(low, high, max(1, round((high - low) / step) + 1)) if high > low else np.array([(low + high) / 2])
-    )
+    count = max(1, round((high - low) / step) + 1)
+    return np.linspace(low, high, count) if high > low else np.array([(low + high) / 2])
 
 
 def _stops(field: Field, block: Block) -> Array:
@@ -301,7 +303,8 @@ class _Lanes:
 
     def __init__(self, field: Field, block: Block) -> None:
         self.side = block.side
-        self.solid, self.line = _distance(_solid(field, block.number)), _distance(field.line)
+        blocked = (_solid(field, block.number), field.line, field.shown)
+        self.solid, self.line, self.shown = map(_distance, blocked)
 
     def costs(self, starts: Array, yaws: Array, ends: Array) -> Array:
         """From each start, the thing turned by yaw there, to each end, shape (S, E)."""
@@ -314,7 +317,8 @@ class _Lanes:
         off = np.abs((off + np.pi / 4) % (np.pi / 2) - np.pi / 4)
         half = np.where(off < SQUARE_RAD, 0.5 + DRIFT / 2, np.sqrt(0.5) + DRIFT)
         clear = np.full(count, np.inf)
-        alive = np.flatnonzero(length > SHORTEST * side)
+        seen_free = self._least(self.shown, ends, np.zeros_like(ends), 0.0, np.zeros(len(ends))) > FREE_NOW * side
+        alive = np.flatnonzero((length > SHORTEST * side) & np.tile(seen_free, len(starts)))
         # The middle of a lane first: most lanes are barred there, and the rest of them need not be looked at.
         for part in (0.0, -1.0, 1.0, -0.5, 0.5):
             for away, first, past, wide in (

@@ -21,6 +21,9 @@ LEAST_SHARE = 0.0006
 _JUMP_M = 0.010
 """A step in height that separates two things [m]."""
 
+SAME_PAPER = 9.0
+"""Flat patches whose median colours differ by no more than this in any channel may be parts of one thing (CIELAB)."""
+
 
 @dataclass(frozen=True, eq=False)
 class Segment:
@@ -132,12 +135,8 @@ def _with_height(lab: Array, table: Table, least: float) -> list[Segment]:
             continue
         grown = cv2.dilate(patch.astype(np.uint8), kernel(5)) > 0
         papers.append(patch | (grown & table.stands_out & ~table.raised))
-    papers = _join_papers(lab, papers, raised)
-    out = [Segment(mask, False) for mask in raised]
-    for paper in papers:
-        for part in split_by_colour(lab, paper, least):
-            out.append(Segment(_under(part, raised), True))
-    return out
+    papers = _join_papers(lab, [part for paper in papers for part in split_by_colour(lab, paper, least)], raised)
+    return [*(Segment(mask, False) for mask in raised), *(Segment(_under(paper, raised), True) for paper in papers)]
 
 
 def _under(paper: Array, raised: list[Array]) -> Array:
@@ -153,22 +152,17 @@ def _under(paper: Array, raised: list[Array]) -> Array:
 
 
 def _join_papers(lab: Array, papers: list[Array], raised: list[Array]) -> list[Array]:
-    """Join flat patches of one colour that a thing lying across them has cut apart."""
+    """Join flat patches of one colour that lie a hair apart or that a thing lying across them has cut apart."""
     joined: list[Array] = []
-    colours: list[Array] = []
     for paper in papers:
-        colour = np.median(lab[paper], axis=0)
-        for k, other in enumerate(joined):
-            if np.abs(colours[k] - colour).max() > 9:
-                continue
-            near = cv2.dilate(paper.astype(np.uint8), kernel(5)) > 0
+        apart, parts = list[Array](), [paper]
+        colour, near = np.median(lab[paper], axis=0), cv2.dilate(paper.astype(np.uint8), kernel(5)) > 0
+        for other in joined:
             far = cv2.dilate(other.astype(np.uint8), kernel(5)) > 0
-            if any((near & thing).any() and (far & thing).any() for thing in raised):
-                joined[k] = other | paper
-                break
-        else:
-            joined.append(paper)
-            colours.append(colour)
+            meet = (near & far).any() or any((near & thing).any() and (far & thing).any() for thing in raised)
+            alike = np.abs(np.median(lab[other], axis=0) - colour).max() <= SAME_PAPER
+            (parts if meet and alike else apart).append(other)
+        joined = [*apart, np.any(parts, axis=0)]
     return joined
 
 

@@ -7,6 +7,7 @@ import os
 import signal
 import subprocess
 import sys
+import time
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -219,6 +220,19 @@ def test_ctrl_c_never_aborts_what_runs_in_native_code(after: str, start, runs_fo
         held = json.loads(record.read_text(encoding="utf-8"))
         assert held["state"] in ("finished", "interrupted")
         assert (record.parent / "page.html").is_file()
+
+
+@pytest.mark.parametrize("later_s", [0.0, 0.05, 0.1, 0.2])
+def test_ctrl_c_after_the_work_is_done(later_s: float, start) -> None:
+    """The interpreter is being taken down then, in which a signal would kill the process."""
+    process = start("-u", "-m", "wonderful_team", "run", "tabletop/rotate", "--seed", "3")
+    assert process.stdout is not None
+    assert any(line.startswith("page: ") for line in process.stdout)
+    time.sleep(later_s)
+    process.send_signal(signal.SIGINT)
+    _, told = process.communicate(timeout=PATIENCE_S)
+    assert process.returncode in (0, 130), told
+    assert "Traceback" not in told
 
 
 def test_a_study_ends_with_the_signals_number(own: Path, start, tmp_path: Path) -> None:

@@ -99,7 +99,9 @@ def main(argv: Sequence[str] | None = None) -> None:
     """Run one command and exit with its code."""
     # To the very end: a thread of somebody's code may fail after the command did.
     redact_streams()
-    leave(run(list(sys.argv[1:] if argv is None else argv)))
+    if argv is not None:
+        sys.exit(run(list(argv)))
+    leave(run(sys.argv[1:]))
 
 
 def run(argv: list[str]) -> int:

@@ -220,9 +220,16 @@ atexit.register(_wait_for_threads)
 
 
 def leave(code: int) -> NoReturn:
-    """End the program with this exit code, also while threads are still in native code."""
+    """End the program with this exit code, also while threads are still in native code.
+
+    Python's own taking down of the interpreter, during which a signal kills it whatever the program has set, is left out.
+    """
+    for number in SIGNALS:
+        if signal.getsignal(number) in (signal.SIG_DFL, signal.default_int_handler):
+            signal.signal(number, lambda number, frame: os._exit(128 + number))
     if not any(thread.is_alive() for thread in _threads):
-        sys.exit(code)
+        # Threads of the user's own code are waited for, as Python does.
+        threading._shutdown()  # type: ignore[attr-defined]
     atexit.unregister(_wait_for_threads)
     atexit._run_exitfuncs()
     for stream in (sys.stdout, sys.stderr):

@@ -154,11 +154,11 @@ class FileNotWrittenError(ConfigError):
 class UnknownNameError(ConfigError):
     """A name that is not registered; lists the known ones and the nearest."""
 
-    def __init__(self, kind: str, name: str, known: Iterable[str]) -> None:
+    def __init__(self, kind: str, name: str, known: Iterable[str], where: str = "") -> None:
         names = sorted(known)
         near = difflib.get_close_matches(name, names, n=1)
         hint = f" Did you mean {near[0]!r}?" if near else ""
-        super().__init__(f"unknown {kind} {name!r}.{hint} Known: {', '.join(names) or 'none'}")
+        super().__init__(f"unknown {kind} {name!r}{where}.{hint} Known: {', '.join(names) or 'none'}")
 
 
 class MissingExtraError(ConfigError):

@@ -275,21 +275,13 @@ def test_a_model_that_babbles_is_the_methods_failure(desk: Path, own: Path, caps
     assert "no valid answer to DraftPlan in 3 attempts" in capsys.readouterr().out
 
 
+def approved_run(own: Path) -> list[str]:
+    return f"run tabletop/rotate --seed 3 --method {own}:Fixed --approve --replans 0 --json".split()
+
+
 def test_approval_that_is_refused_moves_nothing(own: Path, monkeypatch: pytest.MonkeyPatch, capsys: Any) -> None:
     monkeypatch.setattr("builtins.input", lambda: "n")
-    argv = [
-        "run",
-        "tabletop/rotate",
-        "--seed",
-        "3",
-        "--method",
-        f"{own}:Fixed",
-        "--approve",
-        "--replans",
-        "0",
-        "--json",
-    ]
-    assert run(argv) == 4
+    assert run(approved_run(own)) == 4
     result = document(capsys)["result"]
     assert result["executed"] == 0
     assert any("approval" in reason for reason in result["refusals"])
@@ -297,19 +289,7 @@ def test_approval_that_is_refused_moves_nothing(own: Path, monkeypatch: pytest.M
 
 def test_approval_that_is_given_lets_it_run(own: Path, monkeypatch: pytest.MonkeyPatch, capsys: Any) -> None:
     monkeypatch.setattr("builtins.input", lambda: "y")
-    argv = [
-        "run",
-        "tabletop/rotate",
-        "--seed",
-        "3",
-        "--method",
-        f"{own}:Fixed",
-        "--approve",
-        "--replans",
-        "0",
-        "--json",
-    ]
-    run(argv)
+    run(approved_run(own))
     assert document(capsys)["result"]["executed"] == 1
 
 

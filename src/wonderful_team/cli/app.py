@@ -126,7 +126,10 @@ def run(argv: list[str]) -> int:
         return _interrupted(argv, error)
     except click.ClickException as error:
         hint = error.ctx.command_path if isinstance(error, click.UsageError) and error.ctx else "wonderful-team"
-        return _fail(argv, "UsageError", f"{error.format_message()} (see {hint} --help)", 2)
+        told = (
+            error.format_message().replace("valid integer range", "whole number").replace("valid float range", "number")
+        )
+        return _fail(argv, "UsageError", f"{told} (see {hint} --help)", 2)
     except BrokenPipeError:
         sys.stderr.close()
         return 0

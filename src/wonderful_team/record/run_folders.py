@@ -68,7 +68,7 @@ def find_run(name: str, out: str | Path | None = None) -> Path:
     if len(fitting) > 1:
         raise ConfigError(f"run {name!r} fits several: {', '.join(fitting[:5])}")
     if not fitting:
-        raise UnknownNameError(f"run in {str(root)!r}", name, names[:12])
+        raise UnknownNameError("run", name, names[:12], where=f" in {str(root)!r}")
     return root / fitting[0]
 
 

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import Any, ClassVar, Literal, TypeAlias
+from typing import Any, ClassVar, Literal, Self, TypeAlias
 
 from pydantic import BaseModel, ConfigDict, Field, FiniteFloat
 
@@ -34,6 +34,12 @@ class PointPx(AnswerModel):
     x: FiniteFloat
     y: FiniteFloat
 
+    @classmethod
+    def of(cls, point: Point, picture: Picture) -> Self:
+        """A point as an answer, kept inside the picture."""
+        width, height = picture.size_px
+        return cls(x=min(max(point[0], 0.0), float(width)), y=min(max(point[1], 0.0), float(height)))
+
     @property
     def as_tuple(self) -> Point:
         return self.x, self.y
@@ -46,6 +52,12 @@ class BoxPx(AnswerModel):
     y0: FiniteFloat
     x1: FiniteFloat
     y1: FiniteFloat
+
+    @classmethod
+    def of(cls, box: Box, picture: Picture) -> Self:
+        """A box as an answer, cut at the picture's edges."""
+        inside = box.intersection(picture.frame.whole_box) or box
+        return cls(x0=inside.x0, y0=inside.y0, x1=inside.x1, y1=inside.y1)
 
     @property
     def as_box(self) -> Box:

@@ -6,10 +6,12 @@ import math
 
 from wonderful_team.contracts import (
     BoxAnswer,
+    BoxPx,
     ChooseMark,
     GiveBox,
     LocatePoints,
     MarkChoice,
+    PointPx,
     Points,
     ReadScene,
     RolePoint,
@@ -22,7 +24,7 @@ from wonderful_team.core.pictures import Picture, PointMark
 from wonderful_team.core.values import PointRole, Target
 from wonderful_team.simulated.context import Context
 from wonderful_team.simulated.draft import Meaning
-from wonderful_team.simulated.places import Place, box_px, place_of, point_of, point_px
+from wonderful_team.simulated.places import Place, place_of, point_of
 from wonderful_team.simulated.seeing import Seen
 
 POINT_PX = 20.0
@@ -70,7 +72,7 @@ def answer_locate(context: Context, question: LocatePoints) -> Points:
     seen, place = found
     role: PointRole = "pick" if question.purpose == "centre" else "place"
     point = point_of(place, role, seen)
-    return Points(reasoning=f"the {question.target.words}", found=True, points=[point_px(point, question.view)])
+    return Points(reasoning=f"the {question.target.words}", found=True, points=[PointPx.of(point, question.view)])
 
 
 def answer_choose_mark(context: Context, question: ChooseMark) -> MarkChoice:
@@ -105,7 +107,7 @@ def answer_give_box(context: Context, question: GiveBox) -> BoxAnswer:
     found = find(context, question.target, question.view, question.examples, at)
     if found is None:
         return BoxAnswer(reasoning=NOT_HERE.format(words=question.target.words), box=None)
-    return BoxAnswer(reasoning=f"round the {question.target.words}", box=box_px(found[1].box, question.view))
+    return BoxAnswer(reasoning=f"round the {question.target.words}", box=BoxPx.of(found[1].box, question.view))
 
 
 def answer_read_scene(context: Context, question: ReadScene) -> SceneReading:
@@ -118,8 +120,8 @@ def answer_read_scene(context: Context, question: ReadScene) -> SceneReading:
             continue
         seen, place = found
         points = [
-            RolePoint(role=role, point=point_px(point_of(place, role, seen), question.view)) for role in target.roles
+            RolePoint(role=role, point=PointPx.of(point_of(place, role, seen), question.view)) for role in target.roles
         ]
-        items.append(SceneTarget(id=target.id, found=True, box=box_px(place.box, question.view), points=points))
+        items.append(SceneTarget(id=target.id, found=True, box=BoxPx.of(place.box, question.view), points=points))
     here = sum(item.found for item in items)
     return SceneReading(reasoning=f"{here} of {len(items)} targets show in this picture", targets=items)

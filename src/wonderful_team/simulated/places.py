@@ -6,9 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from wonderful_team.contracts import BoxPx, PointPx
 from wonderful_team.core.geometry import Box
-from wonderful_team.core.pictures import Picture, Point
+from wonderful_team.core.pictures import Point
 from wonderful_team.core.values import PointRole
 from wonderful_team.simulated.draft import Meaning
 from wonderful_team.simulated.seeing import Seen
@@ -58,15 +57,3 @@ def point_of(place: Place, role: PointRole, seen: Seen) -> Point:
     assert meaning.at_m is not None  # place_of gives no place without it
     point = seen.project(np.array([*meaning.at_m, 0.0]))
     return place.box.centre if point is None else point
-
-
-def box_px(box: Box, picture: Picture) -> BoxPx:
-    """A box as an answer, cut at the picture's edges."""
-    inside = box.intersection(picture.frame.whole_box) or box
-    return BoxPx(x0=inside.x0, y0=inside.y0, x1=inside.x1, y1=inside.y1)
-
-
-def point_px(point: Point, picture: Picture) -> PointPx:
-    """A point as an answer, kept inside the picture."""
-    width, height = picture.size_px
-    return PointPx(x=min(max(point[0], 0.0), float(width)), y=min(max(point[1], 0.0), float(height)))

@@ -20,8 +20,6 @@ from wonderful_team.contracts import (
     SceneReading,
     SceneTarget,
 )
-from wonderful_team.core.geometry import Box
-from wonderful_team.core.pictures import Picture, Point
 from wonderful_team.core.values import PointRole, Target
 from wonderful_team.offline.answers.finding import (
     Found,
@@ -42,18 +40,6 @@ ALSO = 0.85
 """Further places are offered while they score at least this share of the best one."""
 
 
-def box_px(box: Box, picture: Picture) -> BoxPx:
-    """A box as an answer, cut at the picture's edges."""
-    inside = box.intersection(picture.frame.whole_box) or box
-    return BoxPx(x0=inside.x0, y0=inside.y0, x1=inside.x1, y1=inside.y1)
-
-
-def point_px(point: Point, picture: Picture) -> PointPx:
-    """A point as an answer, kept inside the picture."""
-    width, height = picture.size_px
-    return PointPx(x=min(max(point[0], 0.0), float(width)), y=min(max(point[1], 0.0), float(height)))
-
-
 def answer_locate(question: LocatePoints, sample: int) -> Points:
     """Point at what fits, leaving out what was tried."""
     eyes = eyes_of(question.view, question.examples)
@@ -69,7 +55,7 @@ def answer_locate(question: LocatePoints, sample: int) -> Points:
     points = []
     for item in good:
         point = item.box.centre if role == "pick" and item.thing is None else act_at(item, role, eyes)
-        points.append(point_px(varied(point, item, sample), question.view))
+        points.append(PointPx.of(varied(point, item, sample), question.view))
     return Points(reasoning=told(left[0]), found=True, points=points)
 
 
@@ -100,8 +86,8 @@ def answer_give_box(question: GiveBox) -> BoxAnswer:
     marks = tried(question.view)
     chosen = next((item for item in found if any(item.box.contains(point) for point in marks)), None)
     if chosen is None:
-        return BoxAnswer(reasoning=f"the mark is off; {told(found[0])}", box=box_px(found[0].box, question.view))
-    return BoxAnswer(reasoning=f"at the mark: {told(chosen)}", box=box_px(chosen.box, question.view))
+        return BoxAnswer(reasoning=f"the mark is off; {told(found[0])}", box=BoxPx.of(found[0].box, question.view))
+    return BoxAnswer(reasoning=f"at the mark: {told(chosen)}", box=BoxPx.of(chosen.box, question.view))
 
 
 def answer_read_scene(question: ReadScene) -> SceneReading:
@@ -168,6 +154,7 @@ def _scene_target(target: Target, found: Found | None, eyes: Eyes, question: Rea
         return SceneTarget(id=target.id, found=False, box=None, points=[])
     towards = push_goal(question.plan, target, eyes, question.targets) if "push_start" in target.roles else None
     points = [
-        RolePoint(role=role, point=point_px(act_at(found, role, eyes, towards), question.view)) for role in target.roles
+        RolePoint(role=role, point=PointPx.of(act_at(found, role, eyes, towards), question.view))
+        for role in target.roles
     ]
-    return SceneTarget(id=target.id, found=True, box=box_px(found.box, question.view), points=points)
+    return SceneTarget(id=target.id, found=True, box=BoxPx.of(found.box, question.view), points=points)

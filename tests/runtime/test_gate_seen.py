@@ -38,6 +38,7 @@ from wonderful_team.runtime import check_gate, rollout
 
 RED = Block(0.40, -0.30, 0.46, -0.24)
 BLUE = Block(0.50, 0.10, 0.56, 0.16)
+BLUE_BESIDE = Block(0.40, 0.10, 0.46, 0.16)
 GREEN = Block(0.50, 0.17, 0.56, 0.23)
 CAMERAS = {"from above": affine_top(), "slanted": looking_down(tilt_deg=15)}
 
@@ -250,6 +251,16 @@ def test_a_method_without_a_plan_says_by_its_heights_what_it_touches() -> None:
     assert reasons(red, (*BLUE.centre, 0.0)) == {"place height"}
     assert reasons((*RED.centre, 0.0), (0.6, 0.3, 0.0)) == {"pick height"}
     assert reasons(red, (0.6, 0.3, 0.1)) == {"place height"}
+
+
+@pytest.mark.parametrize(("apart", "refused"), [(0.045, {"place is free"}), (0.08, set())])
+def test_without_a_plan_too_what_was_put_down_takes_its_room(apart: float, refused: set[str]) -> None:
+    camera, plate = affine_top(), Block(0.55, -0.05, 0.70, 0.25, 0.02)
+    now = Observation({"top": scene(camera, RED, BLUE_BESIDE, plate)})
+    first = (0.62, 0.05, 0.02)
+    actions = method(RED.top(), first) + method(BLUE_BESIDE.top(), (0.62, 0.05 + apart, 0.02))
+    report = check_gate(actions, vocabulary=PICK_PLACE, limits=LIMITS, plan=None, then=now, now=now)
+    assert failed(report) == refused
 
 
 class Nudged:

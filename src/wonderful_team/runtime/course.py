@@ -92,6 +92,8 @@ class Course:
         self._relief = self._seen = Relief.of(view)
         self._held: tuple[str, Carried, Array] | None
         self._things: dict[str, Array] = {}
+        # What was put somewhere and has no name that the plan knows.
+        self._nameless: list[Array] = []
         self._bases: dict[str, float] = {}
         self._regions: dict[str, Any] = {}
         self._lies_at: dict[str, str] = {}
@@ -264,13 +266,19 @@ class Course:
         points[hidden], px[hidden] = GONE_M, np.nan
         points[mine], px[mine] = moved, np.nan
         self._relief = Relief(points, px, relief.spacing_m)
-        if name in self._grounded:
-            self._things[name] = np.flatnonzero(own)
-            self._bases[name] = float(end[2])
+        indices = np.flatnonzero(own)
+        # A point belongs to what took it along last.
+        self._nameless = [others[~own[others]] for others in self._nameless]
+        if name not in self._grounded:
+            self._nameless.append(indices)
+            return
+        self._things[name] = indices
+        self._bases[name] = float(end[2])
 
     def _put(self, place: str) -> Array | None:
         """Which points belong to things that earlier actions have put elsewhere than at a place, shape (N,) bool."""
         moved = [indices for name, indices in self._things.items() if place not in (name, self._lies_at.get(name))]
+        moved += self._nameless
         return self._mask(np.concatenate(moved)) if moved else None
 
     def _mask(self, indices: Array) -> Array:

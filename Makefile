@@ -8,7 +8,7 @@ VENV   := .venv
 PYTHON := $(VENV)/bin/python
 
 .DEFAULT_GOAL := all
-.PHONY: all setup demo test lint types format lock images clean
+.PHONY: all setup demo test lint types format lock images prompts clean
 
 all: lint types test
 
@@ -39,6 +39,9 @@ lock: setup
 
 images: setup
 	$(PYTHON) docs/make_images.py
+
+prompts: setup
+	$(PYTHON) docs/make_prompts.py
 
 clean:
 	rm -rf $(VENV) .mypy_cache .pytest_cache .ruff_cache .hypothesis build dist

@@ -78,7 +78,8 @@ def _is_adjective(piece: str) -> bool:
 
 def _with_choices(tokens: list[Token]) -> list[Token]:
     """What "any" means: a free choice of what is to be moved ("put any block"), all of several ("any blocks"), and
-    every one in a rule ("any block that is red goes there"); it stays unread where it may mean one or all."""
+    every one in a rule ("any block that is red goes there"); it stays unread where it may mean one or all.
+    """
     out: list[Token] = []
     for at, token in enumerate(tokens):
         if token.kind == "ANY":

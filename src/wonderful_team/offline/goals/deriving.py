@@ -31,6 +31,8 @@ SAME_SHAPE = 0.85
 """A thing has a shape when it fits at least this share as well as its best one."""
 LARGER = 1.3
 """A thing goes into another that is at least so many times its area."""
+AS_MANY = 0.8
+"""Of several that are told by a colour, those that fit at least this share as well as the best are meant."""
 HOLDERS = ("container", "area")
 """Kinds that are larger than what goes onto them."""
 
@@ -146,6 +148,9 @@ def _things(
     if wanted.shape is not None:
         # Of all that resemble it, those of that very shape: a disc is no square, though it comes near.
         matches = [m for m in matches if m.thing is not None and _has_shape(m.thing, wanted.shape)] or matches
+    if wanted.colours and not (wanted.pattern or wanted.material):
+        # Beside yellow blocks, one in yellow and blue is not meant.
+        matches = [m for m in matches if m.score >= AS_MANY * max(other.score for other in matches)]
     matches.sort(key=lambda match: match.box.x0)
     if order is not None:
         matches.sort(key=lambda match: superlative_key(match.thing, order) if match.thing is not None else 0.0)

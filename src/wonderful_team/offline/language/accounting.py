@@ -56,7 +56,7 @@ def passed_over(tokens: Sequence[Token], commands: Sequence[Command]) -> list[st
         if (
             (token.kind == "ANGLE" and "rotate" not in kinds)
             or (token.kind == "BESIDE_IT" and not any(item.related for item in things))
-            or (token.kind == "EXCEPT" and not any(item.excluded for item in things))
+            or (token.kind == "EXCEPT" and not any(item.excluded and item.quantity != "one" for item in things))
             or (token.kind == "ORIGIN" and after not in _PLACES and not hows & {"origin"} and "rotate" not in kinds)
         ):
             lost.append(token.text)

@@ -58,10 +58,6 @@ _LIMIT = (
     rf"{_LEAD}{_SHORT}{_WHAT}",
 )
 _AGAIN = rf"{_LEAD}{_NEG}\s+(?:{_TOUCH}|{_EXCEED})\s+(?:it|that|this)\b"
-_SINGLE = re.compile(
-    rf"\b(?P<verb>{_PUSH})\s+(?:exactly\s+|just\s+|only\s+)?(?:any|one|a\s+single|1)\s+(?!of\b|by\b|and\b|into\b)",
-    re.IGNORECASE,
-)
 
 
 @dataclass(frozen=True)
@@ -90,10 +86,7 @@ def set_bounds(text: str, describe: Callable[[str], Description | None]) -> Boun
     text = text_without
     if limit is not None or off is not None:
         text = re.sub(_AGAIN, " ", text, flags=re.IGNORECASE)
-    text = _plainly(text)
-    # "any block" asks for one of them, and it is free which.
-    text = _SINGLE.sub(lambda found: f"{found.group('verb')} one of the ", text)
-    return Bounds(text, off, limit, pushes=True)
+    return Bounds(_plainly(text), off, limit, pushes=True)
 
 
 def _plainly(text: str) -> str:

@@ -80,7 +80,7 @@ def _quantity(tree: Tree[Token]) -> Change:
         return lambda d: replace(d, quantity="each" if "EACH" in kinds else "number", number=1)
     if "NUMBER" in kinds:
         number = int(float(value_of(kinds["NUMBER"])))
-        return lambda d: replace(d, quantity="one" if number == 1 else "number", number=number)
+        return lambda d: replace(d, quantity="number", number=number)
     if "EACH" in kinds:
         return lambda d: replace(d, quantity="each")
     counted = 2 if any(value_of(token) == 2 for token in kinds.values()) else 1  # noqa: PLR2004  "both"

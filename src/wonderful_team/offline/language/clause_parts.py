@@ -36,6 +36,7 @@ _KEPT = frozenset(
     "CONTAIN FILL GIVE WANT AUX FACE OPPOSITE ACCORDING MEASURE ENOUGH AND COMMA ASPECT ITS SUPER PLACE_OF AROUND RESPECTIVELY".split()
 )
 _LONGEST = 14
+_MANY = ("them", "they")
 
 
 class Unclear(Exception):  # noqa: N818  caught inside this package
@@ -76,6 +77,9 @@ def _cut(clause: Sequence[Token], meaning: Meaning, apart: frozenset[str]) -> Pa
         taken, found = _noun_phrase(clause, at, apart)
         if found is not None:
             at += taken
+            if found.name == PRONOUN and token.text in _MANY and len(meaning.mentioned) > 1 and not parts.of("np"):
+                parts.items += [("np", thing) for thing in meaning.mentioned]
+                continue
             if found.name == PRONOUN and parts.of("np"):
                 if parts.items[-1][0] == "place" and len(meaning.mentioned) == 1:
                     parts.items.append(("np", meaning.mentioned[0]))

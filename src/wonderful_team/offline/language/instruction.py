@@ -17,7 +17,7 @@ from wonderful_team.offline.language.reading import try_describe, understand, un
 from wonderful_team.offline.language.shown_turns import define_turns
 from wonderful_team.offline.language.shows import Shows
 from wonderful_team.offline.language.tokens import refusal
-from wonderful_team.offline.language.turns_of_phrase import in_full
+from wonderful_team.offline.language.turns_of_phrase import written
 
 
 def read_instruction(text: str, shows: Shows) -> Understood:
@@ -30,7 +30,7 @@ def read_instruction(text: str, shows: Shows) -> Understood:
 
 
 def _read(text: str, shows: Shows) -> Understood:
-    plain = without_mentions(define_words(define_turns(in_full(text), shows, try_describe), shows), shows)
+    plain = without_mentions(define_words(define_turns(written(text), shows, try_describe), shows), shows)
 
     told: list[Understood] = []
 

@@ -81,7 +81,7 @@ _LISTED: dict[Entry, str] = {
     ("ABOVE", "above"): "north of; at back of; to north of; further up than; on far side of; in back of",
     ("BELOW", "below"): "in front of; south of; to south of; to front of; on near side of",
     ("NEAR", "near"): """
-    next to; close to; adjacent to; right next to; by side of; at side of; to side of; near to; right beside; directly
+    next to; close to; adjacent to; right next to; by side of; at side of; to side of; near to; right beside; right by; close by; directly
     next to; directly beside; immediately beside; just beside; on side of; directly adjacent to""",
     ("INTO", "into"): """
     in to; into inside of; into middle of; into centre of; over into; into center of; to inside of; to middle of; to
@@ -107,7 +107,7 @@ _LISTED: dict[Entry, str] = {
     ("SUPER", "bottommost"): "bottom most",
     ("BETWEEN", "between"): """
     in between; in gap between; in space between; into gap between; into space between; halfway between;
-    midway between""",
+    midway between; in middle between; in middle , between; right between""",
     ("TAKE", "take"): "pick up; take hold of; look for; take up; get hold of; lift up; start with; begin with",
     ("WANT", "want"): """
     i want; i would like; i d like; i want you to have; see to it that; make sure that; make sure; ensure that; ensure;
@@ -133,7 +133,8 @@ _LISTED: dict[Entry, str] = {
     you have to do is; is it possible to; would it be possible to; do me favour and; do me favor and; be dear and; in
     end; at end; as first step; as last step; to start with; to begin with; as first thing; as last thing; task; for me;
     on its own; for now; right now; at once; if you would; if you like; one after other; one after another; one by one;
-    in any order; following; as it stands""",
+    in any order; following; as it stands; over there; i do not care which; do not care which; does not matter which; no matter which;
+    it does not matter which; any will do; any one will do; do not mind which; i do not mind which""",
     ("BY", "by"): "by angle of; through angle of; by total of",
     ("ROTATE", "rotate"): "change orientation of; re orient; turn around; turn round; rotate around; spin around",
     ("NOUN", ("area", "", False)): "sheet of paper; piece of paper; patch of paper",
@@ -200,7 +201,10 @@ _LISTED: dict[Entry, str] = {
     in; shown in; shown by; pictured in; depicted in; from picture; of picture; in picture; shown as; that is shown in;
     seen in; like one in; as in; displayed in; appearing in; that appears in; matching picture; resembling; that
     resembles; illustrated in; visible in""",
-    ("EACH", "each"): "each of; every one of; each one of; every single; each single; every single one of; any",
+    (
+        "EACH",
+        "each",
+    ): "each of; every one of; each one of; every single; each single; every single one of; every last; each and every",
     ("ALL", "all"): "all of; all; all existing",
     ("ALL", 2): "both of; both",
     ("THEY", "they"): "they all; they both",

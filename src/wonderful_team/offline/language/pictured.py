@@ -24,11 +24,11 @@ _ARRANGING = frozenset(
     positions position locations location places placing arranging rearranging pattern form such accordingly corresponding corresponds one a an
     should must be have has workspace here's there current present go goes where belong belongs stand lie lies stands i want we need can could would you
     will laid out appear appears appearing tidy final end result finished their stood standing agree agrees agreeing equal equals let first kindly things
-    again d objective aim task scene's do doing version snapshot reference""".split()
+    again d objective aim task sort out scene's do doing version snapshot reference""".split()
 )
 _ARRANGE_CUES = frozenset(
     """rearrange arrange rearranged arranged make match set put place bring move get change adjust reorganise reorganize organise organize reorder reproduce recreate
-    rebuild copy imitate transform turn tidy goal target should must want need until belong belongs let aim objective final desired wanted go""".split()
+    rebuild copy imitate transform turn tidy sort goal target should must want need until belong belongs let aim objective final desired wanted go""".split()
 )
 """A unit that shows a table asks for it only with one of these words; else it only says where something is seen."""
 _FOLLOWING = frozenset(

@@ -84,6 +84,9 @@ def read_clauses(tokens: Sequence[Token], meaning: Meaning) -> tuple[Command, ..
     for clause, then in clauses(tokens):
         before = len(meaning.done)
         _read(clause, meaning)
+        moved = list(dict.fromkeys(command.thing for command in meaning.done[before:]))
+        if len(moved) > 1 or (moved and len(meaning.mentioned) > 1):
+            meaning.mentioned = moved  # what "them" means next
         if then and before and before < len(meaning.done):
             meaning.done[before] = replace(meaning.done[before], after_last=True)
     if meaning.pending_turn:

@@ -44,7 +44,7 @@ def tokenise(text: str) -> list[Token]:
 
 def cut(text: str) -> tuple[list[Token], list[str]]:
     """Tokens of a text in order, and the words that are not in the vocabulary."""
-    pieces = _with_verbs(_with_heads(_PIECE.findall(_plain(text))))
+    pieces = _with_verbs(_with_heads(_with_fruits(_PIECE.findall(_plain(text)))))
     pieces = [piece for piece in pieces if piece not in ARTICLES]
     tokens: list[Token] = []
     unknown: list[str] = []
@@ -56,9 +56,52 @@ def cut(text: str) -> tuple[list[Token], list[str]]:
         elif length == 0:
             unknown.append(pieces[position])
         position += max(length, 1)
-    return tokens, unknown
+    return _with_choices(tokens), unknown
 
 
+def _with_fruits(pieces: list[str]) -> list[str]:
+    """The word "fruit" without an article or an adjective speaks of many: "put fruit in the bowl"."""
+    return [
+        "fruits" if piece == "fruit" and not (at >= 0 and _is_adjective(pieces[at])) else piece
+        for at, piece in enumerate(pieces, -1)
+    ]
+
+
+def _is_adjective(piece: str) -> bool:
+    return piece in ("the", "a", "this", "that", "of") or WORDS.get(piece, ("",))[0] in (
+        *_BEFORE_HEAD,
+        "EACH",
+        "ONE",
+        "ANY",
+    )
+
+
+def _with_choices(tokens: list[Token]) -> list[Token]:
+    """What "any" means: a free choice of what is to be moved ("put any block"), all of several ("any blocks"), and
+    every one in a rule ("any block that is red goes there"); it stays unread where it may mean one or all.
+    """
+    out: list[Token] = []
+    for at, token in enumerate(tokens):
+        if token.kind == "ANY":
+            end = next((k for k in range(at + 1, len(tokens)) if tokens[k].kind in _ENDS_CHOICE), len(tokens))
+            rest = tokens[end:]
+            many = end < len(tokens) and isinstance(tokens[end].value, tuple) and bool(tokens[end].value[-1])
+            told = [item.kind for item in rest[1:]]
+            limited = bool({*told[:1], *told[1:2]} & _LIMITS)
+            rule = not any(item.kind in _VERBS_OF_CHOICE for item in tokens[:at]) and "AUX" in told
+            if tokens[at + 1 : at + 2] and tokens[at + 1].kind == "NUMBER":
+                continue
+            if many or (rule and limited):
+                token = Token("EACH", "each", token.text)
+            elif not rule and not limited:
+                token = Token("ONE_OF", 1.0, token.text)
+        out.append(token)
+    return out
+
+
+_ENDS_CHOICE = ("NOUN", "SHAPE", "SLOT", "ORANGE", "ONE", "EVERYTHING")
+_LIMITS = frozenset(("THAT", "WITH", "WHOSE", "ON_TABLE", "SHARE", "LIKE", "MATCH", "SAME", "OF", "ASPECT"))
+_VERBS_OF_CHOICE = ("PUT", "TAKE", "ROTATE", "STACK", "PUSH", "SORT", "SWAP", "RETURN", "REMOVE", "GIVE", "WANT")
 _CLAUSE_STARTS = frozenset((*",;.:!?", "and", "then", "to"))
 _PUTTING = frozenset(("lower", "centre", "center"))
 _BEFORE_HEAD = ("COLOUR", "ORANGE", "PATTERN", "MATERIAL", "LOOK", "SUPER", "SIDE", "DARK", "ORDINAL", "LETTER", "SLOT")
@@ -135,7 +178,6 @@ def _plain_words(text: str) -> str:
     text = re.sub(r"""\b([B-HJ-Z])\b(?!['-])""", r"letter_\1", text)
     text = re.sub(r"""(?<!^)(?<![.!?]\s)\b(?<=the )(A|I)\b""", r"letter_\1", text)
     text = re.sub(r"\s*(?:->|=>|\u2192)\s*", " into ", text)
-    text = re.sub(r"\b(do|should|must|does|is|are)n't\b", r"\1 not", text, flags=re.IGNORECASE)
     text = re.sub(r"(?<!the )\bfirst\b", " ", text.lower())
     text = text.replace("-", " ").replace("'s ", " ").replace("'", " ").replace('"', " ")
     return re.sub(r"letter_([a-z])\b", lambda match: f"{{letter:{match.group(1).upper()}}}", text)

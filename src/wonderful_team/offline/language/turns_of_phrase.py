@@ -14,16 +14,41 @@ _SHORT = (
     (r"\bi['\u2019]d\b", "i would"),
     (r"\bi['\u2019]ll\b", "i will"),
     (r"\b(that|there|it|what|who|which|here|where)['\u2019]s\b", r"\1 is"),
+    (r"\b((?:the|this) [a-z]+(?: [a-z]+)?)['\u2019]s (?=(?:too|in|on|all|not|the wrong) )", r"\1 is "),
+    (r"['\u2019]em\b", " them"),
+    (r"\b(is|are|do|does|would|should|must)n['\u2019]?t\b", r"\1 not"),
+    (r"\bgotta\b", "have to"),
+    (r"\ba single (?=[a-z{])", "one "),
+    (r"\b(wan|gon)na\b", r"\1t to"),
 )
-_TURNS = (
+_OFF_PLACE = (
+    r"(?:(?:way|much|still|a bit|a little|just) )*(?:too (?:far|close)(?: (?:away|off|apart))?|(?:in|on|at) the wrong (?:place|spot|side|way)|"
+    r"the wrong way (?:round|around)|all over the (?:place|table)|out of place|a (?:complete |total )?mess)"
+)
+"""What is wrong with how things stand, and says nothing that a picture could deny."""
+_SPOKEN = (
     *_SHORT,
+    (r"\b(?:i|we) (?:think|guess|reckon|suppose|believe|figure)\b(?: that\b)?", " "),
+    (r"\b(?:(?:i|we) )?would not mind (?:having|seeing|getting)\b", "i want"),
+    (r"\b(?:would|do) you mind\b|\bwhy (?:do(?:es)? not you|do not we|not)\b|\bwhy do not you\b", " "),
+    (r"\bwhy (?:is|are) not (?P<what>[^?.;{}]+)\?", r"\g<what>."),
+    (rf"^\s*(?:it|this|that|they|everything|things|(?:right now )?(?:the|this) (?:table|desk)) (?:is|are) {_OFF_PLACE}\s*[,.;:!]", " "),
+    (rf"^\s*(?P<what>(?:the|that|this|those|these) [^,.;:!?{{}}]+?) (?:is|are) {_OFF_PLACE}\s*[,.;:!](?P<rest>[^.;!?]*?)\b(?:it|them)\b", r"\g<rest>\g<what>"),
+    (r"^\s*if (?:it|something|a thing|an object) (?P<what>(?:is|has|looks) [^,.;]+), (?P<rest>[^.;]*?)\b(?:it|that)\b", r"\g<rest>everything that \g<what>"),
+    (r"^\s*(?:(?:you|do you) )?(?:can )?see (?P<where>(?:the |this )?\{[^{}]+\})\s*[?.:;,](?P<rest>[^.;]*?)\bfrom (?:there|it)\b", r"\g<rest>from \g<where>"),
+    (r"\ba (?:bit|little|tad)\b(?=[ ,]+(?:say |about |by )*\d+ ?(?:deg|°))|\b(?:say|roughly|about|approximately)\b,?(?= \d+ ?(?:deg|°))", " "),
+    (r"[.;,]?\s*(?:(?:but|and|just|please) )*\bleave (?P<what>the [a-z ]+?) out\b(?: of (?:it|this|that))?", r" except \g<what>"),
+    (r",? \b(?:bar|minus) (?=the\b)", " except "),
+)  # fmt: skip
+"""How things are said in passing, put as they are written."""
+_TURNS = (
     (r"\b(left|right)[ -]hand\b(?= side)", r"\1"),
-    (r"\bover (?=(?:to|on|onto) the (?:left|right|other)\b|and\b)", ""),
+    (r"\bover\b(?=\s*(?:[,.;!?]|$|(?:to|on|onto|and|so|by|near|next|beside|towards) ))", ""),
     (r"(?:\b(?:on|at|to|towards|in) )(?P<what>(?:the |\{)[^,.;:'\u2019]+?)['\u2019]s (?P<side>left|right)(?: (?:hand )?side)?\b", r"to the \g<side> of \g<what>"),
     (rf"^\s*(?:out of|from|of|among|amongst) (?:all )?(?:of )?(?P<what>(?:the |these |those )?[a-z ]+?)\s*,\s*(?P<rest>.*?)\bthe (?:one (?:that is )?)?{_WHICH}(?: ones?)?\b", r"\g<rest>the \g<which> of the \g<what>"),
     (rf"^\s*(?:counting|counted|starting) from the (?P<side>left|right|top|bottom)\s*,\s*(?P<rest>.*?\bthe) {_WHICH} (?P<what>[a-z]+)", r"\g<rest> \g<which> \g<what> from the \g<side>"),
     (r"^\s*(?:with the exception of|except for|apart from|aside from|other than|excluding|except) (?P<spared>[^,]+),\s*(?P<rest>[^.!?;]+)", r"\g<rest> except \g<spared>"),
-    (r"\bput (?P<a>[^,.;]+?) where (?P<b>[^,.;]+?) (?:is|stands|lies|was)(?: now| right now| currently)?\s*,? and vice[ -]versa\b", r"swap \g<a> and \g<b>"),
+    (r"\bput (?P<a>[^,.;]+?) where (?P<b>[^,.;]+?) (?:is|stands|lies|was)(?: now| right now| currently)?\s*,? and (?:vice[ -]versa|(?:put )?(?P=b) where (?P=a) (?:is|stands|lies|was)(?: now)?)\b", r"swap \g<a> and \g<b>"),
     (rf"^[^,.;:{{}}]*? (?:the|all|all the) (?P<what>[a-z ]+?) by {_PUTTING} (?:each|every|all)(?: one)?(?: of (?:them|these))?\b", r"put all \g<what>"),
     (r"\bthe (?P<what>[a-z]+), the (?P<look>[a-z]+(?: [a-z]+)?) one,(?! and\b| the\b)", r"the \g<look> \g<what>"),
     (r"(?:^|(?<=[.;!?]))\s*which (?P<what>[^?{}]+?) (?P<is>is|are) (?P<where>[^?]+)\?(?P<rest>[^.;!?]*?)\b(?:it|that one|this one|them|those)\b", r"\g<rest> the \g<what> that \g<is> \g<where>"),
@@ -40,13 +65,15 @@ _TURNS = (
 
 def turned(text: str) -> str:
     """The same instruction without these turns of phrase."""
-    for pattern, plain in _TURNS:
-        text = re.sub(pattern, plain, text, flags=re.IGNORECASE)
-    return text
+    return _opened(written(text), _TURNS)
 
 
-def in_full(text: str) -> str:
-    """The same instruction without contractions."""
-    for pattern, plain in _SHORT:
+def written(text: str) -> str:
+    """The same instruction as it would be written: no contractions, nothing said in passing."""
+    return _opened(text, _SPOKEN)
+
+
+def _opened(text: str, table: tuple[tuple[str, str], ...]) -> str:
+    for pattern, plain in table:
         text = re.sub(pattern, plain, text, flags=re.IGNORECASE)
     return text

@@ -23,7 +23,7 @@ FILLERS = frozenset(
     entire whole  own real alone picture image shown displayed pictured seen visible workspace scene desk
     surface tabletop here away down up overall around bright vivid suitable appropriate proper  individual
     desktop single mind actually then able nice happy glad shall perhaps maybe kind happily yes well quite midway halfway whichever
-    simple simply current presently""".split()
+    simple simply current presently pls plz thx ta cheers mate um uh er hmm oh basically really yet alright sure cool great""".split()
 )
 """Words that are skipped: politeness, addressing the robot, and words that do not change what is asked."""
 
@@ -89,9 +89,9 @@ _PLURALS = {"strawberry": "strawberries", "blueberry": "blueberries", "cherry": 
 _VERBS: dict[str, str] = {
     "PUT": "put place move bring brought drop set lay laid transfer relocate deposit shift position carry deliver insert load stick "
     "store throw thrown toss slot pop stow stash dump plop tuck serve tidy add hand send sent haul release convey transport slip pass "
-    "park plant perch mount install situate settle nestle lodge plonk plunk wedge squeeze stuff cram ship",
+    "park plant perch mount install situate settle nestle lodge plonk plunk wedge squeeze stuff cram ship chuck bung fling flung lob sling balance dunk",
     "TAKE": "take taken grab pick get lift fetch find locate grasp identify seize collect gather see spot notice consider choose chosen "
-    "select look use pluck snatch retrieve raise hoist scoop",
+    "select look use pluck snatch retrieve raise hoist scoop nab snag",
     "ROTATE": "rotate turn spin spun rotation twist revolve swivel reorient orient pivot",
     "STACK": "stack pile tower",
     "SWAP": "swap exchange interchange switch trade",
@@ -137,6 +137,7 @@ _SMALL: dict[str, str] = {
     "SHARE": "shares share sharing has have shows contains holds",
     "AUX": "should must shall be is are been being live lives goes go belongs belong was were stood ends end ought gets lies lie stands stand sits sit rests wants wait comes come going",
     "EACH": "each every",
+    "ANY": "any",
     "ALL": "all",
     "ONE": "one ones",
     "RESPECTIVELY": "respectively",

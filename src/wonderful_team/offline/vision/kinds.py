@@ -37,6 +37,11 @@ FRUITS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
 """Everyday looks of fruit: colours and outlines."""
 
 
+_ROUND, _ANGULAR = ("circle", "ring", "oval", "bowl"), ("square", "rectangle", "frame", "diamond")
+_CONTAINERS = {"bowl": (_ROUND, _ANGULAR), "pan": (_ROUND, _ANGULAR), "box": (_ANGULAR, _ROUND), "pallet": (_ANGULAR, _ROUND)}  # fmt: skip
+"""Outlines of containers by name, and those that they do not have."""
+CLEARLY = 0.2
+"""A form that fits better by this much decides."""
 FITS_ROUND = 0.6
 """Fit of a circle from which something is round."""
 RIVAL_FRUIT = 0.5
@@ -56,6 +61,10 @@ def named_score(thing: Thing, description: Description) -> float:
             return own  # "the green apple": the words say which of its colours is meant
         best = max(_fruit_fit(thing, other, named=False) for other in FRUITS)
         return own * float(np.clip((own / max(best, 1e-6) - RIVAL_FRUIT) / (0.85 - RIVAL_FRUIT), 0, 1))
+    own_form, other_form = _CONTAINERS.get(name, ((), ()))
+    shapes = thing.look.shapes
+    if own_form and max(shapes[form] for form in own_form) < max(shapes[form] for form in other_form) - CLEARLY:
+        return 0.4
     return 1.0
 
 
@@ -113,8 +122,10 @@ def container_score(thing: Thing) -> float:
     return float(0.45 + 0.55 * max(hollow, 0.8 * form))
 
 
-ROOMY = 0.3
+ROOMY = 0.45
 """What holds things is at least this share of the largest object of its table."""
+GLYPH = 1.3
+"""What fits a letter so many times as well as any other shape is a letter and holds nothing."""
 BENT = 0.3
 """Fit of a crescent from which a thing is no block."""
 BLOCKS = 4.0
@@ -125,7 +136,8 @@ def is_kind_here(thing: Thing, noun: str, scene: Scene) -> bool:
     """Whether a thing is of a kind beside what else is there: next to a bowl, a block of a tenth of its size is no bowl."""
     sizes = [other.area_px for other in scene.objects] or [thing.area_px]
     if noun == "container":
-        return thing.area_px >= ROOMY * max(sizes)
+        others = max(fit for name, fit in thing.look.shapes.items() if name != "letter")
+        return thing.area_px >= ROOMY * max(sizes) and thing.look.shapes["letter"] <= GLYPH * others
     return noun != "block" or thing.look.shapes["circle"] < FITS_ROUND or thing.area_px <= BLOCKS * min(sizes)
 
 

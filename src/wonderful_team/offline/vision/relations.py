@@ -142,6 +142,8 @@ def pick_superlative(scene: Scene, matches: list[Match], superlative: str, ordin
 
 OUTER = 1 / 3
 """A side or corner of the table is the part nearer to its edges than this share of the table's width and height."""
+CORNER = 1 / 4
+"""The same for what is said to lie in a corner."""
 
 
 def shares_from(scene: Scene, point: Point, wishes: str) -> list[float]:
@@ -158,14 +160,14 @@ def shares_from(scene: Scene, point: Point, wishes: str) -> list[float]:
     return [shares[wish] for wish in wishes.split()]
 
 
-def is_at(scene: Scene, point: Point, wishes: str) -> bool:
+def is_at(scene: Scene, point: Point, wishes: str, within: float = OUTER) -> bool:
     """Whether a point lies at that side, corner or middle of the table."""
-    return max(shares_from(scene, point, wishes)) <= OUTER
+    return max(shares_from(scene, point, wishes)) <= within
 
 
 def pick_in_corner(scene: Scene, matches: list[Match], corner: str) -> list[Match]:
     """What lies in a corner of the table, the nearest to it first."""
-    there = [match for match in matches if is_at(scene, match.box.centre, corner)]
+    there = [match for match in matches if is_at(scene, match.box.centre, corner, CORNER)]
     return sorted(there, key=lambda match: sum(shares_from(scene, match.box.centre, corner)))[:1]
 
 

@@ -113,7 +113,9 @@ def colour_fit(look: Look, description: Description) -> float:
     needed = {1: 0.24 if patterned else 0.45, 2: 0.24}.get(len(description.colours), 0.1)
     scores, shown = [], 0.0
     for name in description.colours:
-        share = sum(look.memberships[alias] * weight for alias, weight in _aliases(name, description.dark))
+        own, *others = (look.memberships[alias] * weight for alias, weight in _aliases(name, description.dark))
+        # Near colours add to what shows of a colour itself and do not stand in for it: an olive ring is not green.
+        share = own + (sum(others) if description.dark else min(sum(others), own))
         score = float(np.clip(share / needed, 0, 1))
         shown += share
         if len(description.colours) == 1:

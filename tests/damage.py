@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import json
 from typing import Any
 
@@ -20,6 +21,11 @@ WRONG_TEXTS = [one for one in WRONG if isinstance(one, str) and one not in (HUGE
 LETTERS = st.sampled_from(
     [*"0123456789.,:;=x/@#?&-+ {}[]()\"'%*~\n", "\u202e", "é", "1e308", "-", "nan", "inf", "px", "10000"]
 )
+
+
+def _wrong() -> st.SearchStrategy[Any]:
+    """One of the wrong values, a copy: it may be damaged further, and would otherwise come to hold itself."""
+    return st.sampled_from(WRONG).map(copy.deepcopy)
 
 
 def _places(value: Any) -> list[tuple[Any, Any]]:
@@ -45,14 +51,14 @@ def damaged_json(draw: st.DrawFn, text: str) -> bytes:
         home, key = draw(st.sampled_from(chosen)) if chosen else (held, 0)
         match draw(st.sampled_from(["replace", "replace", "replace", "remove", "add", "move"])):
             case "replace":
-                home[key] = draw(st.sampled_from(WRONG))
+                home[key] = draw(_wrong())
             case "remove" if home is not held:
                 del home[key]
             case "add":
                 if isinstance(home, dict):
-                    home[draw(st.sampled_from(WRONG_TEXTS))] = draw(st.sampled_from(WRONG))
+                    home[draw(st.sampled_from(WRONG_TEXTS))] = draw(_wrong())
                 else:
-                    home.append(draw(st.sampled_from(WRONG)))
+                    home.append(draw(_wrong()))
             case _:
                 other, other_key = draw(st.sampled_from(places))
                 home[key] = json.loads(json.dumps(other[other_key]))

@@ -41,7 +41,11 @@ def test_doctor_names_the_command_for_a_missing_part(
     assert found["ok"]
     assert all(name in found["text"] for name in EXTRAS)
     assert "ray not installed" in found["text"]
-    assert "-m pip install 'ray" in found["fix"]
+    assert "-m pip install 'ray" in found["optional"]
+    assert run(["doctor"]) == 0
+    said = capsys.readouterr().out
+    assert "     optional extras: ray: " in said
+    assert "to fix" not in said
 
 
 def test_doctor_offers_another_folder_for_one_that_cannot_be_written(

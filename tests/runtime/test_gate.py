@@ -66,8 +66,8 @@ def test_all_problems_are_reported_at_once():
     bad = put((0.1, 0.0, 0.0), (0.5, 0.7, 0.4))
     report = gate([bad, planned(2, *MOVE)], vocabulary=Vocabulary(("push",)), approval_required=True)
     assert failed(report) == {"approval", "vocabulary", "workspace x", "workspace y", "height", "carrying height"}
-    assert "action 1: workspace x: 0.100 to 0.500 m (limit [0.250, 0.750] m)" in report.reasons
-    assert "action 2: vocabulary: pick_place (limit push)" in report.reasons
+    assert "action 1: workspace x: 0.100 to 0.500 m (valid: [0.250, 0.750] m)" in report.reasons
+    assert "action 2: vocabulary: pick_place (valid: push)" in report.reasons
 
 
 def test_nothing_to_run_is_refused():
@@ -92,7 +92,7 @@ def test_the_swept_path_may_not_cross_a_keep_out_region(region):
     """Neither end lies in it, but the way between does: in pixels through the camera, or in metres."""
     crossing = gate([planned(1, *MOVE)], limits=replace(LIMITS, keep_out=(region,)))
     assert failed(crossing) == {"keep-out cable"}
-    assert "action 1: keep-out cable: enters it (limit at least 0.010 m)" in crossing.reasons
+    assert "action 1: keep-out cable: enters it (valid: at least 0.010 m)" in crossing.reasons
     round_it = gate([planned(1, (60.0, 100.0), (200.0, 100.0))], limits=replace(LIMITS, keep_out=(region,)))
     assert round_it.admitted
 

@@ -192,7 +192,7 @@ def test_the_way_between_two_actions_may_not_cross_a_keep_out_region() -> None:
     assert gate(left, limits=wall).admitted
     assert gate(right, limits=wall).admitted
     report = gate(left, right, limits=wall)
-    assert report.reasons == ("action 2: keep-out wall: enters it (limit at least 0.010 m)",)
+    assert report.reasons == ("action 2: keep-out wall: enters it (valid: at least 0.010 m)",)
 
 
 def test_the_way_between_a_push_and_a_pick_is_looked_at_too() -> None:
@@ -250,7 +250,7 @@ def test_a_keep_out_region_above_the_horizon_of_four_corners_refuses() -> None:
     assert gate(action, now=now).admitted
     across = replace(LIMITS, keep_out=(KeepOut("lamp", Box(120, 5, 130, 118)),))
     report = gate(action, now=now, limits=across)
-    assert report.reasons == ("action 1: keep-out lamp: meets no table (limit a region on the table)",)
+    assert report.reasons == ("action 1: keep-out lamp: meets no table (valid: a region on the table)",)
 
 
 def test_source_of_a_push_may_lie_just_outside_of_the_picture_and_its_way_is_watched() -> None:

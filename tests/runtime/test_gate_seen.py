@@ -205,7 +205,7 @@ def test_depth_that_says_nothing_is_refused(depth: float) -> None:
     blind = View("top", "top", 0.0, view.rgb, np.full(view.rgb.shape[:2], depth), camera)
     grounded = {**blocks(camera, T1=RED), "A1": area("A1", px(camera, 0.53, 0.0))}
     report = gate(planned(blind, grounded, PickPlaceStep("G1", "T1", At("A1"))), blind)
-    assert "action 1: heights: no depth at pick, place (limit depth at every point)" in report.reasons
+    assert "action 1: heights: no depth at pick, place (valid: depth at every point)" in report.reasons
 
 
 def test_depth_is_asked_for_where_something_is_touched() -> None:
@@ -217,7 +217,7 @@ def test_depth_is_asked_for_where_something_is_touched() -> None:
     holed = View("top", "top", 0.0, view.rgb, depth, camera)
     grounded = {**blocks(camera, T1=RED), "A1": area("A1", (u, v))}
     report = gate(planned(holed, grounded, PickPlaceStep("G1", "T1", At("A1"))), holed)
-    assert "action 1: heights: no depth at place (limit depth at every point)" in report.reasons
+    assert "action 1: heights: no depth at place (valid: depth at every point)" in report.reasons
 
 
 def test_without_depth_heights_are_asked_for_only_where_they_must_be_measured() -> None:
@@ -228,7 +228,7 @@ def test_without_depth_heights_are_asked_for_only_where_they_must_be_measured() 
     assert gate(plan, flat).admitted
     report = gate(plan, flat, measured_heights=True)
     assert report.reasons == (
-        "action 1: heights: not measured: there is no depth (limit depth at every point (--depth FILE))",
+        "action 1: heights: not measured: there is no depth (valid: depth at every point (--depth FILE))",
     )
 
 

@@ -53,7 +53,7 @@ class Method:
         subscribers: Told of every event as it happens.
         command: The command line that reproduces the run, for the page.
         parent: Which run this one branches off, and at which stage.
-        world: Whose truth a `simulated:` model answers from; `wt.rollout(method, world)` hands it over by itself.
+        world: Whose truth a `simulated:` model answers from; `wt.rollout(method, world)` passes it by itself.
 
     Raises:
         ConfigError: An unknown name or a value out of range; before anything is sent.

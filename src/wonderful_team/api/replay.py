@@ -184,7 +184,7 @@ def _team(folder: Path, record: Mapping[str, Any], model: Model | Mapping[str, M
 
 def _plan_again(folder: Path, record: Mapping[str, Any], setup: Setup, team: Team) -> PlanResult:
     if setup.plan is not None:
-        raise ConfigError(f"{folder}: this run was handed its plan {setup.plan}: there is nothing to plan again")
+        raise ConfigError(f"{folder}: this run was given its plan {setup.plan}: there is nothing to plan again")
     with reading(f"{folder}: the record"):
         observation = stored_observation(folder, record)
         instruction = stored_instruction(folder, record)

@@ -1,4 +1,4 @@
-"""What the Python face hands back: a plan, a grounding or a trial, with its cost and its page."""
+"""What calls from Python return: a plan, a grounding or a trial, with its cost and its page."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Any
 
 from wonderful_team.core.jsonable import to_jsonable
 from wonderful_team.core.notebook import card
-from wonderful_team.core.text import counted, picture_names, spoken
+from wonderful_team.core.text import counted, ending_words, picture_names, spoken
 from wonderful_team.core.values import GateReport, Observation, Plan, PlannedAction, Subgoal, Target, Trial, Usage
 from wonderful_team.errors import ActionRefusedError
 from wonderful_team.runtime.approval import APPROVAL_S, Approval, Proposal
@@ -192,7 +192,8 @@ class TrialResult(Trial):
 
     def _repr_html_(self) -> str:
         """In a notebook: outcome, before and after, what became of each subgoal."""
-        stage = f" at {self.stage}" if self.stage else ""
+        ending, reason = ending_words(self.ending, self.reason)
+        stage = f" at {self.stage}" if self.stage and self.ending == self.outcome else ""
         said = self.plans[-1].instruction if self.plans else None
         names = {} if said is None else picture_names(said.text, said.slots)
         lines = [] if said is None else [said.plain_text]
@@ -202,7 +203,8 @@ class TrialResult(Trial):
         lines += [] if self.page is None else [f"page: {self.page}"]
         ends = [(self.runs[0].before, "before"), (self.runs[-1].after, "after")] if self.runs else []
         pictures = [(seen.main.rgb, name) for seen, name in ends]
-        return card(f"{self.outcome}{stage}: {self.reason}", [spoken(line, names) for line in lines], pictures)
+        title = spoken(f"{ending}{stage}: {reason}", names)
+        return card(title, [spoken(line, names) for line in lines], pictures)
 
 
 def target_json(target: FoundTarget) -> dict[str, Any]:

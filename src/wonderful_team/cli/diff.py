@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from wonderful_team.cli.wording import action_line
+from wonderful_team.core.text import ending_words
 from wonderful_team.core.values import GroundedTarget, Plan
 
 LABEL_WIDTH = 14
@@ -91,11 +92,12 @@ def _ends(one: tuple[Path, Mapping[str, Any]], two: tuple[Path, Mapping[str, Any
     def told(record: Mapping[str, Any]) -> list[tuple[str, str]]:
         configuration, outcome = record["configuration"], record["outcome"] or {"outcome": record["state"]}
         stage = f" at {outcome['stage']}" if outcome.get("stage") else ""
+        ending, reason = ending_words(str(outcome["outcome"]), outcome.get("reason"))
         return [
             ("instruction", str((record["planner"]["instruction"] or {}).get("text", ""))),
             ("model", str(configuration.get("model", ""))),
             ("method", str(configuration.get("method", ""))),
-            ("outcome", f"{outcome['outcome']}{stage} {outcome.get('reason') or ''}".strip()),
+            ("outcome", f"{ending}{stage} {reason}".strip()),
             ("requests", str(len(record["planner"]["requests"]))),
         ]
 

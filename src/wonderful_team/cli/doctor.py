@@ -24,12 +24,18 @@ GL_PACKAGES = "apt-get install libegl1 libgl1-mesa-dri"
 
 @dataclass(frozen=True)
 class Finding:
-    """One thing looked at. `fix` is the command that helps; `ok` False makes doctor fail."""
+    """One thing looked at; `ok` False makes doctor fail.
+
+    Attributes:
+        fix: The command that helps.
+        optional: The command that adds what is missing, where nothing depends on it.
+    """
 
     name: str
     ok: bool
     text: str
     fix: str = ""
+    optional: str = ""
 
 
 @click.command(short_help="Check this machine: versions, rendering, disk, keys, and what is missing.")
@@ -52,6 +58,7 @@ def command(out: Path | None, as_json: bool) -> int:
     ok = all(finding.ok for finding in findings)
     lines = [f"{'ok ' if item.ok else 'BAD'}  {item.name:<10} {item.text}" for item in findings]
     lines += [f"     to fix {item.name}: {item.fix}" for item in findings if item.fix]
+    lines += [f"     optional {item.name}: {item.optional}" for item in findings if item.optional]
     lines.append(f"ready: {program()} demo" if ok else "not ready: see the lines marked BAD")
     result = {"ready": ok, "findings": [vars(finding) for finding in findings]}
     return finish("doctor", text="\n".join(lines), result=result, as_json=as_json, code=0 if ok else 2)
@@ -88,7 +95,8 @@ def _extras() -> Finding:
     """Optional: what is missing is no fault."""
     missing = [name for name, modules in EXTRAS.items() if not all(map(find_spec, modules.split()))]
     text = ", ".join(f"{name} {'not installed (optional)' if name in missing else 'installed'}" for name in EXTRAS)
-    return Finding("extras", True, text, "; ".join(f"{name}: {extra_command(name)}" for name in missing))
+    commands = "; ".join(f"{name}: {extra_command(name)}" for name in missing)
+    return Finding("extras", True, text, optional=commands)
 
 
 def _rendering() -> Finding:
@@ -106,7 +114,7 @@ def _rendering() -> Finding:
         return Finding("rendering", False, f"{how}: the picture is blank", GL_PACKAGES)
     by_rays = "ray" in how
     text = f"by {how}: a scene of {view.size_px[0]} x {view.size_px[1]} px in {seconds:.1f} s"
-    return Finding("rendering", True, text, f"{GL_PACKAGES} (optional: OpenGL is faster)" if by_rays else "")
+    return Finding("rendering", True, text, optional=f"{GL_PACKAGES} (OpenGL is faster)" if by_rays else "")
 
 
 def _drawing() -> Finding:

@@ -10,7 +10,7 @@ import click
 from wonderful_team.cli.options import PATH
 from wonderful_team.cli.output import finish
 from wonderful_team.core.filesystem import make_private_folder, write_public
-from wonderful_team.core.text import counted, visible
+from wonderful_team.core.text import counted, ending_words, visible
 from wonderful_team.errors import ConfigError, reading
 
 KINDS = ("models", "worlds", "tasks", "suites", "methods", "prompts", "words", "runs")
@@ -140,6 +140,6 @@ def _runs(out: Path | None) -> dict[str, str]:
             found[folder.name] = "record unreadable"
             continue
         outcome = content.get("outcome") or {}
-        words = " ".join(str(outcome.get(key) or "") for key in ("outcome", "reason")).strip()
+        words = "  ".join(ending_words(str(outcome.get("outcome") or ""), outcome.get("reason"))).strip()
         found[folder.name] = visible(words or str(content.get("state", "")))
     return found

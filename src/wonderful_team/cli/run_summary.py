@@ -48,6 +48,7 @@ def trial_json(trial: TrialResult) -> dict[str, Any]:
         "seed": trial.seed,
         "method": trial.method,
         "model": trial.model,
+        "status": trial.ending,
         "outcome": trial.outcome,
         "stage": trial.stage,
         "reason": trial.reason,

@@ -13,7 +13,7 @@ import click
 from wonderful_team.cli.options import PATH, read_models
 from wonderful_team.cli.output import finish
 from wonderful_team.cli.run_summary import shown_path
-from wonderful_team.core.text import counted, picture_names, spoken, visible
+from wonderful_team.core.text import counted, ending_words, picture_names, spoken, visible
 from wonderful_team.errors import UnknownNameError, reading
 
 
@@ -166,7 +166,8 @@ def _story(content: Any) -> list[str]:
     said = planner["instruction"] or {"text": "", "slots": {}}
     names = picture_names(said["text"], said["slots"])
     stage = f" at {outcome['stage']}" if outcome.get("stage") else ""
-    lines = [said["text"], f"{str(outcome['outcome']).upper()}{stage}  {outcome.get('reason') or ''}".rstrip()]
+    ending, reason = ending_words(str(outcome["outcome"]), outcome.get("reason"))
+    lines = [said["text"], f"{ending.upper()}{stage}  {reason}".rstrip()]
     told = [(at_s, one["name"], one["text"]) for one, at_s in zip(planner["stages"], clock["stages"], strict=False)]
     told += [(at_s, "gate", _gate_words(gate)) for gate, at_s in zip(planner["gates"], clock["gates"], strict=False)]
     lines += [f"{at_s:5.1f} s  {name:<12} {text}" for at_s, name, text in sorted(told, key=lambda one: one[0])]
@@ -180,9 +181,11 @@ def _story(content: Any) -> list[str]:
 
 def _gate_words(gate: Any) -> str:
     """One passage through the safety gate: admitted, or every reason against it."""
+    from wonderful_team.core.values import refusal_words
+
     checks = counted(len(gate["checks"]), "check")
     failed = [one for one in gate["checks"] if not one["ok"]]
-    reasons = "; ".join(f"{one['name']}: {one['value']} (limit {one['limit']})" for one in failed)
+    reasons = "; ".join(refusal_words(one["name"], one["value"], one["limit"]) for one in failed)
     return f"{gate['where']}: " + (f"admitted ({checks})" if gate["admitted"] else f"refused ({checks}): {reasons}")
 
 

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 
 from wonderful_team.api.results import FoundTarget, PlanResult, TrialResult
-from wonderful_team.core.actions import Action, Place, Step, places_of
-from wonderful_team.core.text import counted, picture_names, spoken, visible
+from wonderful_team.core.actions import Action, OriginOf, Place, Step, places_of
+from wonderful_team.core.text import counted, ending_words, picture_names, spoken, visible
 from wonderful_team.core.values import Instruction, Plan, PlannedAction
 
 EXIT_OF_STATUS: dict[str, int] = {
@@ -55,10 +55,7 @@ def plan_lines(made: PlanResult) -> list[str]:
         lines.append("REFUSED by the safety gate")
         lines += [f"  {reason}" for reason in made.gate.reasons]
     elif made.status not in ("planned", "grounded", "checked", "draft"):
-        ending = made.status.replace("_", " ")
-        said = made.message.removeprefix(f"{ending}: ").partition(" Choices: ")[0]
-        lines.append(f"{ending.upper()}  {said_of(made.plan.instruction, said)}")
-        lines += [f"  choice: {visible(choice)}" for choice in made.choices]
+        lines += no_plan_lines(made.plan, made.status, made.message)
     elif made.message:
         lines.append(said_of(made.plan.instruction, made.message))
     if made.actions:
@@ -71,6 +68,13 @@ def plan_lines(made: PlanResult) -> list[str]:
     if made.status == "planned" and not made.verified:
         lines.append("note: Verification did not approve this plan (--strict refuses such plans)")
     return lines
+
+
+def no_plan_lines(plan: Plan, status: str, message: str) -> list[str]:
+    """Why no plan came to be, and what may be meant; the same whether a photo or a world was planned for."""
+    ending, said = ending_words(status, message.partition(" Choices: ")[0])
+    choices = [f"  choice: {said_of(plan.instruction, choice)}" for choice in plan.choices]
+    return [f"{ending.upper()}  {said_of(plan.instruction, said)}", *choices]
 
 
 def said_of(instruction: Instruction, text: str) -> str:
@@ -101,7 +105,7 @@ def action_line(planned: PlannedAction, words: Mapping[str, str]) -> str:
     for role, place in places_of(planned.step):
         point = pixels.get((role, place.target), alone)
         at = "" if point is None else f" @ ({point[0]:.0f}, {point[1]:.0f}) px"
-        ends.append(f"{_place_words(place)} {words.get(place.target, '')}".rstrip() + at)
+        ends.append(_place_words(place, words) + at)
     what = [_kind_words(planned.step), "  ->  ".join(ends), _turn(planned.step), _metres(planned.action)]
     return "  ".join(part for part in what if part)
 
@@ -113,11 +117,12 @@ def _kind_words(step: Step) -> str:
     )
 
 
-def _place_words(place: Place) -> str:
+def _place_words(place: Place, words: Mapping[str, str]) -> str:
+    target = f"{place.target} {words.get(place.target, '')}".rstrip()
     side = getattr(place, "side", None)
     if side is not None:
-        return f"{side} of {place.target}" if side in ("left", "right") else f"{side} {place.target}"
-    return f"origin of {place.target}" if type(place).__name__ == "OriginOf" else place.target
+        return f"{side} of {target}" if side in ("left", "right") else f"{side} {target}"
+    return f"where {target} stood" if isinstance(place, OriginOf) else target
 
 
 def _turn(step: Step) -> str:
@@ -177,12 +182,17 @@ def trial_lines(trial: TrialResult) -> list[str]:
     stage = f" at {trial.stage}" if trial.stage else ""
     said = trial.plans[-1].instruction if trial.plans else None
     names = {} if said is None else picture_names(said.text, said.slots)
-    lines = [f"{trial_word(trial)}{stage}  {visible(spoken(trial.reason, names))}"]
+    if trial.ending != trial.outcome:
+        lines = no_plan_lines(trial.plans[-1], trial.ending, trial.reason)
+    else:
+        lines = [f"{trial_word(trial)}{stage}  {visible(spoken(trial.reason, names))}"]
     lines += [
         f"  {verdict.subgoal} {verdict.status.replace('_', ' ')}"
         + (f": {visible(spoken(verdict.cause, names))}" if verdict.cause else "")
         for verdict in trial.verdicts
     ]
     executed = sum(report.executed for report in trial.reports)
+    if trial.ending != trial.outcome and not trial.runs:
+        return lines
     lines.append(f"  {counted(len(trial.plans), 'plan')}, {counted(executed, 'action')} executed")
     return lines

@@ -71,6 +71,12 @@ def spoken(text: str, names: Mapping[str, str]) -> str:
     return PLACEHOLDER.sub(lambda found: f"[{names[found[1]]}]" if found[1] in names else found[0], text)
 
 
+def ending_words(ending: str, reason: str | None) -> tuple[str, str]:
+    """How something ended and why, as every terminal, log and page says it; the reason does not say the ending again."""
+    words = ending.replace("_", " ")
+    return words, (reason or "").removeprefix(f"{words}: ")
+
+
 def user_path(path: str | Path) -> Path:
     """A path as a user writes it: ~ is a home folder where there is one of that name."""
     return Path(os.path.expanduser(path))

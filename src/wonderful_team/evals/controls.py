@@ -99,7 +99,7 @@ def at_seen_height(action: Action, situation: Situation) -> Action:
 
 
 def planned(action: Action, number: int) -> PlannedAction:
-    """An action as a method hands it over; its step names what truth knows and no picture shows."""
+    """An action as a method returns it; its step names what truth knows and no picture shows."""
     return PlannedAction(action.as_step(f"G{number}", "(from truth)"), action)
 
 

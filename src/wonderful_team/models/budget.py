@@ -79,7 +79,7 @@ def current_ticket() -> Ticket:
     return _CURRENT.get() or Ticket()
 
 
-def hand_over(ticket: Ticket) -> None:
+def set_current_ticket(ticket: Ticket) -> None:
     """Make a ticket the one that the model finds under `current_ticket`."""
     _CURRENT.set(ticket)
 

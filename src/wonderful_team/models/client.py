@@ -30,7 +30,7 @@ from wonderful_team.errors import (
     WonderfulTeamError,
     code_of,
 )
-from wonderful_team.models.budget import Budget, Ticket, hand_over
+from wonderful_team.models.budget import Budget, Ticket, set_current_ticket
 from wonderful_team.models.wire import chat as _chat  # noqa: F401  gives requests their messages()
 from wonderful_team.models.wire.unreadable import Unreadable
 from wonderful_team.redaction import redact_all, redact_known
@@ -153,7 +153,7 @@ class ModelClient:
                 most_s = max(self._deadline_s, float(getattr(model, "deadline_s", 0.0)))
                 longest_s = most_s if left is None else max(0.001, min(most_s, left))
                 ticket.seconds = longest_s
-                hand_over(ticket)
+                set_current_ticket(ticket)
                 try:
                     answer = as_answer(await asyncio.wait_for(call_model(model, request), longest_s), model)
                 except TimeoutError as error:

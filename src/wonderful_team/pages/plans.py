@@ -7,6 +7,7 @@ from typing import Any
 
 from markupsafe import Markup, escape
 
+from wonderful_team.core.values import refusal_words
 from wonderful_team.pages.look_up import chapters, target_words
 from wonderful_team.pages.words import step_words, word_diff
 
@@ -59,7 +60,7 @@ def replans(record: dict[str, Any]) -> list[dict[str, Any]]:
         before, after = made[number - 1]["plan"], made[number]["plan"]
         verdicts = judged[number - 1]["verdicts"] if number - 1 < len(judged) else []
         refusal = [
-            f"{check['name']}: {check['value']} (limit {check['limit']})"
+            refusal_words(check["name"], check["value"], check["limit"])
             for gate in planner["gates"]
             if not gate["admitted"] and gate["plan"] == number - 1
             for check in gate["checks"]

@@ -8,7 +8,7 @@ from typing import Any
 
 from markupsafe import Markup, escape
 
-from wonderful_team.core.text import counted, picture_names, spoken
+from wonderful_team.core.text import counted, ending_words, picture_names, spoken
 from wonderful_team.pages import cost
 from wonderful_team.pages.look_up import grounded_plan, last_plan, main_key, scene_of
 from wonderful_team.pages.pictures import Album
@@ -96,15 +96,17 @@ def head(record: dict[str, Any], asked: Sequence[Asked], planted: str = "") -> d
         ("cost", money(total[-1].usd) if total else None),
     ]
     name = str(outcome["outcome"])
-    reason = outcome.get("reason") or _plain_reason(name, current)
+    words, reason = ending_words(name, outcome.get("reason") or _plain_reason(name, current))
+    choices = current["choices"] if current else []
+    reason = reason.partition(" Choices: ")[0] if choices else reason
     return {
-        "outcome": pretty_name(name),
+        "outcome": words,
         "tone": _TONES.get(name, "bad"),
         "stage": outcome.get("stage"),
         "reason": brief(reason),
         "planted": planted,
         "whole_reason": reason if reason != brief(reason) else "",
-        "choices": current["choices"] if current else [],
+        "choices": choices,
         "badges": _badges(asked, current),
         "unverified": bool(current and current["status"] == "planned" and not current["verified"]),
         "facts": [(key, value) for key, value in facts if value not in (None, "")],
@@ -117,13 +119,14 @@ def summary(record: dict[str, Any]) -> dict[str, Any]:
     answers = [request["answer"] for request in record["planner"]["requests"] if request["answer"]]
     prices = [answer["usage"]["usd"] for answer in answers]
     name = str(outcome["outcome"])
+    words, reason = ending_words(name, outcome.get("reason") or _plain_reason(name, last_plan(record)))
     return {
         "text": _text(record),
         "started": str(record["clock"].get("started", ""))[:16].replace("T", " "),
         "scene": settings.get("scene") or "",
-        "outcome": pretty_name(name),
+        "outcome": words,
         "tone": _TONES.get(name, "bad"),
-        "reason": outcome.get("reason") or _plain_reason(name, last_plan(record)),
+        "reason": reason,
         "method": outcome.get("method") or settings.get("method") or "",
         "model": outcome.get("model") or settings.get("model") or "",
         "usd": None if any(price is None for price in prices) else sum(prices),
@@ -185,7 +188,8 @@ def story(record: dict[str, Any], asked: Sequence[Asked]) -> list[dict[str, str]
         for at_s, name, text, paid in sorted(events, key=lambda event: event[0])
     ]
     end = _outcome(record)
-    text = pretty_name(end["outcome"]) + (f": {brief(end['reason'])}" if end["reason"] else "")
+    words, reason = ending_words(str(end["outcome"]), end["reason"])
+    text = words + (f": {brief(reason)}" if reason else "")
     at = f"{record['clock']['seconds']:.1f} s" if "seconds" in record["clock"] else ""
     return [*lines, {"at": at, "name": "end", "text": text, "cost": ""}]
 

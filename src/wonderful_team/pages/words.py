@@ -91,9 +91,9 @@ def step_words(step: dict[str, Any], names: Mapping[str, str] | None = None) -> 
         return pretty_name(step["type"])
     turn = step.get("rotate_deg") or 0
     said = {name: _field_words(name, value, names) for name, value in step.items()}
-    beside = isinstance(step.get("place"), dict) and step["place"].get("type") == "Beside"
+    named = isinstance(step.get("place"), dict) and step["place"].get("type") in ("Beside", "OriginOf")
     return (kind.words.shown or kind.words.told).format(
-        **said, at="" if beside else "at ", turned=f", turned {turn:g}° clockwise" if turn else ""
+        **said, at="" if named else "at ", turned=f", turned {turn:g}° clockwise" if turn else ""
     )
 
 

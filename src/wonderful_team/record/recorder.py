@@ -17,7 +17,7 @@ from wonderful_team.core.filesystem import write_private
 from wonderful_team.core.interrupts import held
 from wonderful_team.core.jsonable import to_jsonable
 from wonderful_team.core.protocols import Event
-from wonderful_team.core.text import counted, picture_names, spoken, visible
+from wonderful_team.core.text import counted, ending_words, picture_names, spoken, visible
 from wonderful_team.core.values import GateCheck, GateReport, Instruction, Limits, Observation, Plan, Request, Trial
 from wonderful_team.errors import ActionRefusedError, BudgetReached, FileNotWrittenError, WonderfulTeamError
 from wonderful_team.images import Ticks, action_arrows, overview, to_png
@@ -315,7 +315,7 @@ class Recorder:
                 self._record["outcome"] = self._refusal() or made
             case Trial() as trial:
                 self._record["outcome"] = {
-                    "outcome": trial.outcome,
+                    "outcome": trial.ending,
                     "stage": trial.stage,
                     "reason": trial.reason,
                     "seed": trial.seed,
@@ -330,7 +330,7 @@ class Recorder:
             case _:
                 self._record["outcome"] = {"outcome": event.name, "stage": None, "reason": ""}
         outcome = self._record["outcome"]
-        self._log("done", f"{outcome['outcome']} {outcome['reason']}".strip())
+        self._log("done", "  ".join(ending_words(outcome["outcome"], outcome["reason"])).strip())
 
     def _refusal(self) -> dict[str, Any] | None:
         """The outcome of a plan that the gate refused last; None when it admitted it or was not asked."""

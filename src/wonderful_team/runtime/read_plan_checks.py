@@ -34,7 +34,7 @@ def read_plan_checks(read: ReadPlan, wanted: Instruction, now: Observation, stri
 
 
 def _same_instruction(planned: Instruction, wanted: Instruction) -> GateCheck:
-    name, limit = "instruction of the plan", f"as asked for: {wanted.plain_text[:200]!r}"
+    name, limit = "instruction of the plan", f"{wanted.plain_text[:200]!r}, the instruction of this run"
     if planned.text != wanted.text:
         return GateCheck(None, name, False, repr(planned.plain_text[:200]), limit)
     for slot in dict.fromkeys((*planned.slots, *wanted.slots)):

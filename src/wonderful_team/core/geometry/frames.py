@@ -44,8 +44,8 @@ class Frame:
 
     @classmethod
     def whole(cls, view_id: str, size_px: tuple[int, int], zoom: float = 1.0) -> Frame:
-        """The frame of a whole view of `size_px`, enlarged `zoom` times."""
-        width, height = round(size_px[0] * zoom), round(size_px[1] * zoom)
+        """The frame of a whole view of `size_px`, enlarged `zoom` times; at least one pixel each way."""
+        width, height = (max(1, round(side * zoom)) for side in size_px)
         matrix = np.diag([size_px[0] / width, size_px[1] / height, 1.0])
         return cls(view_id, matrix, (width, height), Box(0, 0, width, height))
 

@@ -19,7 +19,15 @@ from wonderful_team.core.values.plan import (
 from wonderful_team.core.values.plan_size import MAX_ACTIONS, MAX_SUBGOALS, MAX_TARGETS, size_problem
 from wonderful_team.core.values.read import ReadPlan
 from wonderful_team.core.values.request import Answer, Note, Part, Request, Usage, Words
-from wonderful_team.core.values.result import GateCheck, GateReport, StepReport, SubgoalRun, Trial, Verdict
+from wonderful_team.core.values.result import (
+    GateCheck,
+    GateReport,
+    StepReport,
+    SubgoalRun,
+    Trial,
+    Verdict,
+    refusal_words,
+)
 
 __all__ = [
     "Answer",
@@ -61,5 +69,6 @@ __all__ = [
     "Words",
     "content_hash",
     "file_hash",
+    "refusal_words",
     "size_problem",
 ]

@@ -11,6 +11,9 @@ from wonderful_team.core.values.observation import Observation
 from wonderful_team.core.values.plan import Plan, Provenance
 from wonderful_team.core.values.request import Usage
 
+NO_PLAN = ("not_found", "not_understood", "needs_clarification", "refused")
+"""How a plan ends that nothing can run of, by the method's own word."""
+
 
 @dataclass(frozen=True, eq=False)
 class StepReport:
@@ -68,9 +71,14 @@ class GateReport:
         return tuple(dict.fromkeys(_refusal(check) for check in failed))
 
 
+def refusal_words(name: str, value: str, limit: str) -> str:
+    """Why a check refused, in words, as every terminal, log and page says it."""
+    return f"{name}: {value} (valid: {limit})"
+
+
 def _refusal(check: GateCheck) -> str:
     where = f"action {check.action + 1}: " if check.action is not None else ""
-    return f"{where}{check.name}: {check.value} (limit {check.limit})"
+    return where + refusal_words(check.name, check.value, check.limit)
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,6 +117,12 @@ class Trial:
     provenance: tuple[Provenance, ...] = ()
     setting: Mapping[str, Any] = field(default_factory=dict)
     judged: bool = True
+
+    @property
+    def ending(self) -> str:
+        """How it ended: the outcome, or the status of its last plan when it failed because no plan came of it."""
+        status = self.plans[-1].status if self.plans else ""
+        return status if self.outcome == "failure" and status in NO_PLAN else self.outcome
 
     @property
     def usage(self) -> Usage:

@@ -1,0 +1,136 @@
+"""A right answer to every question of `question_samples`, as a model writes it, and how a test gives a changed one."""
+
+from __future__ import annotations
+
+import copy
+from typing import Any
+
+from tests.agents.question_samples import SAMPLES
+from wonderful_team.contracts import EDGES, AnswerModel, Question
+
+QUESTION: dict[str, Any] = {question.contract: question for question in SAMPLES}
+"""The sample of every contract."""
+
+
+def target(name: str, *, like: tuple[str, ...] = (), use: tuple[str, ...] = ("pick",)) -> dict[str, Any]:
+    return {
+        "id": name, "kind": "object", "words": "striped mug", "part": None, "where": "", "like": [*like], "use": [*use]
+    }  # fmt: skip
+
+
+def subgoal(name: str, *, after: tuple[str, ...] = (), targets: tuple[str, ...] = ("T1",)) -> dict[str, Any]:
+    return {"id": name, "text": "the mug is back", "after": [*after], "targets": [*targets], "function": None}
+
+
+PLAN: dict[str, Any] = {
+    "reasoning": "",
+    "subgoals": [subgoal("G1"), subgoal("G2", after=("G1",), targets=("T1", "T2"))],
+    "targets": [target("T1", like=("base_obj",)), target("T2")],
+    "mode": "one_step",
+    "clarification": None,
+}
+BOX = {"x0": 10, "y0": 5, "x1": 30.5, "y1": 20}
+RIGHT: dict[str, dict[str, Any]] = {
+    "DraftPlan": PLAN,
+    "ReviewPlan": {
+        "reasoning": "",
+        "approved": False,
+        "doubt": {"about": "G2", "kind": "collision", "question": "Is the way free?"},
+    },
+    "RevisePlan": {"reasoning": "", "decision": "revise", "answer": "It goes round the lamp.", "plan": PLAN},
+    "ExtractTargets": {
+        "reasoning": "",
+        "targets": PLAN["targets"],
+        "needs": [{"subgoal": "G1", "targets": ["T1"]}, {"subgoal": "G2", "targets": ["T1", "T2"]}],
+    },
+    "LocatePoints": {"reasoning": "", "found": True, "points": [{"x": 3, "y": 4}, {"x": 63.9, "y": 31}]},
+    "ChooseMark": {"reasoning": "", "number": 3},
+    "GiveBox": {"reasoning": "", "box": BOX},
+    "ReadScene": {
+        "reasoning": "",
+        "targets": [
+            {
+                "id": "T7",
+                "found": True,
+                "box": BOX,
+                "points": [{"role": "grasp", "point": {"x": 12, "y": 6}}, {"role": "pick", "point": {"x": 20, "y": 9}}],
+            },
+            {"id": "T8", "found": False, "box": None, "points": []},
+        ],
+    },
+    "Presence": {"reasoning": "", "edges": [{"edge": edge, "inside": True, "outside": False} for edge in EDGES]},
+    "JudgeBox": {"reasoning": "", "decision": "revise", "problem": "The handle is cut."},
+    "JudgeRevision": {"reasoning": "", "decision": "take_after_go_on"},
+    "MoveBox": {
+        "reasoning": "",
+        "action": "move",
+        "right_px": 4,
+        "down_px": 0,
+        "grow_left_px": 0,
+        "grow_top_px": 0,
+        "grow_right_px": 0,
+        "grow_bottom_px": 0,
+        "cut_edges": ["right"],
+    },
+    "ChoosePoint": {"reasoning": "", "number": 2},
+    "WriteSteps": {
+        "reasoning": "",
+        "steps": [
+            {
+                "subgoal": "G1",
+                "kind": "pick_place",
+                "pick": "T7",
+                "place": {"target": "T8", "how": "beside", "side": "left"},
+                "rotate_deg": -90,
+            },
+            {"subgoal": "G1", "kind": "follow", "function": "G1"},
+            {
+                "subgoal": "G2",
+                "kind": "move",
+                "to": {"target": "T7", "how": "origin", "side": None},
+                "height": "clear",
+            },
+        ],
+    },
+    "ReviewSteps": {
+        "reasoning": "",
+        "approved": False,
+        "doubt": {"about": "2", "kind": "needless_step", "question": "Why move?"},
+    },
+    "WriteFunction": {"reasoning": "", "code": "def path(boxes):\n    return [(1, 2)]"},
+    "ReviewPath": {"reasoning": "", "accepted": False, "problem": "It crosses the lamp."},
+    "Remember": {"keep": True, "key": "lamp", "summary": "The mug stands on the lamp."},
+    "JudgeOutcome": {
+        "reasoning": "",
+        "verdicts": [
+            {"subgoal": "G1", "status": "done", "cause": None, "evidence": "it stands there"},
+            {"subgoal": "G2", "status": "undone", "cause": "it slipped", "evidence": "it lies on the floor"},
+        ],
+    },
+    "Replan": {"reasoning": "", "decision": "replan", "cause": "it slipped", "advice": "Pick it at the rim."},
+}
+
+LEAVE_OUT = object()
+"""Given as a new value: the field is left out."""
+
+
+def changed(contract: str, changes: dict[str, Any]) -> dict[str, Any]:
+    """The right answer with other values at dotted places, as "plan.targets.0.words"."""
+    answer = copy.deepcopy(RIGHT[contract])
+    for place, value in changes.items():
+        home: Any = answer
+        *way, last = (int(part) if part.isdigit() else part for part in place.split("."))
+        for part in way:
+            home = home[part]
+        if value is LEAVE_OUT:
+            del home[last]
+        else:
+            home[last] = value
+    return answer
+
+
+def judged(question: Question, said: Any) -> tuple[AnswerModel, tuple[str, ...]]:
+    """What the contract makes of an answer, given as JSON text or as values: the answer and what was repaired in it."""
+    output = question.output()
+    parsed = output.model_validate_json(said) if isinstance(said, str) else output.model_validate(said)
+    return question.validate(parsed)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from wonderful_team.contracts.plans import PlanDraft, check_plan
+from wonderful_team.contracts.plans import PlanDraft, settle_plan
 from wonderful_team.contracts.shown import AnswerModel, Question, ShownTask
 
 
@@ -28,5 +28,4 @@ class DraftPlan(Question):
         return PlanDraft
 
     def validate(self, answer: Any) -> tuple[Any, tuple[str, ...]]:
-        check_plan(answer, self.task.slot_names, self.with_targets)
-        return answer, ()
+        return settle_plan(answer, self.task.slots, self.with_targets)

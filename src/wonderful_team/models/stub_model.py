@@ -13,7 +13,16 @@ from wonderful_team.core.values import Request
 from wonderful_team.models.scripted import ScriptedModel
 
 _TARGETS = [
-    {"id": "T1", "kind": "object", "words": "the first thing", "part": None, "where": "", "like": [], "use": ["pick"]},
+    {
+        "id": "T1",
+        "kind": "object",
+        "words": "the first thing",
+        "part": None,
+        "where": "",
+        "like": [],
+        "alike": "both",
+        "use": ["pick"],
+    },
     {
         "id": "T2",
         "kind": "object",
@@ -21,6 +30,7 @@ _TARGETS = [
         "part": None,
         "where": "",
         "like": [],
+        "alike": "both",
         "use": ["place"],
     },
 ]

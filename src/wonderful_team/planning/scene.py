@@ -53,8 +53,15 @@ class SceneShown:
         return ShownTask(self.instruction.text, self.views, self.slots)
 
     def examples(self, targets: Sequence[Target]) -> tuple[ShownSlot, ...]:
-        """The instruction's pictures of these targets, in the instruction's order."""
+        """The instruction's pictures of these targets, in the instruction's order.
+
+        A place is found with the scenes that define it. Where nobody says which these are, it gets all of them.
+        """
+        scenes = {slot.name for slot in self.slots if slot.whole_scene}
         wanted = {name for target in targets for name in target.like}
+        for target in targets:
+            if target.kind == "area" and not scenes & set(target.like):
+                wanted |= scenes
         return tuple(slot for slot in self.slots if slot.name in wanted)
 
 

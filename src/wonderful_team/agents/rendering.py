@@ -152,8 +152,13 @@ def instruction_parts(task: ShownTask) -> list[Part]:
 
 
 def task_parts(task: ShownTask, title: str = "The scene now") -> list[Part]:
-    """The instruction with its pictures, then the views."""
-    return [*words("The user's instruction:"), *instruction_parts(task), *view_parts(title, task.views)]
+    """The instruction with its pictures, then the views, then what is known of the robot."""
+    return [
+        *words("The user's instruction:"),
+        *instruction_parts(task),
+        *view_parts(title, task.views),
+        *listed("What is known of the robot and its place", task.facts),
+    ]
 
 
 def subgoal_words(subgoal: Subgoal) -> str:

@@ -89,11 +89,16 @@ class ShownSlot:
 
 @dataclass(frozen=True, eq=False)
 class ShownTask:
-    """The instruction with its pictures, and the views of the scene; the first view is the main one."""
+    """The instruction with its pictures, and the views of the scene; the first view is the main one.
+
+    Attributes:
+        facts: What is known of the robot and its place, one fact a line.
+    """
 
     instruction: str
     views: tuple[Picture, ...]
     slots: tuple[ShownSlot, ...] = ()
+    facts: tuple[str, ...] = ()
 
     @property
     def main(self) -> Picture:

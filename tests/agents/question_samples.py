@@ -103,7 +103,15 @@ SAMPLES: tuple[Question, ...] = (
     ),
     ChoosePoint(TARGET, "grasp", PLAN, picture("crop points", BOX, MARKS), True, EXAMPLES),
     WriteSteps(TASK, KINDS, SUBGOALS, (TARGET, AREA), ("G1",), "step 2 turns the wrong way"),
-    ReviewSteps(TASK, SUBGOALS, (TARGET, AREA), STEPS, picture("overview", BOX), ("step 1 was asked about",)),
+    ReviewSteps(
+        TASK,
+        SUBGOALS,
+        (TARGET, AREA),
+        STEPS,
+        picture("overview", BOX),
+        ("step 1 was asked about",),
+        ("step 1: carried high",),
+    ),
     WriteFunction(
         SUBGOALS[0], picture("view for path"), {"T7": Box(1.5, 2, 3, 4)}, "NameError: x", "def path(boxes): ...", 17
     ),

@@ -47,6 +47,9 @@ def stub_script() -> dict[str, Any]:
             "targets": _TARGETS,
             "needs": [{"subgoal": "G1", "targets": ["T1", "T2"]}],
         },
+        "ReviewPlan": lambda request: request.question.walked(
+            c.PlanReview(reasoning="", approved=True, doubt=None)
+        ).model_dump(),
         "LocatePoints": lambda request: {"reasoning": "", "found": True, "points": [_centre(request)]},
         "ChooseMark": lambda _: {"reasoning": "", "number": 1},
         "GiveBox": lambda request: {"reasoning": "", "box": _box(request)},

@@ -24,7 +24,16 @@ from typing import Any
 import numpy as np
 
 from benchmarks.offline_success import VIMA
-from wonderful_team.contracts import DraftPlan, JudgeBox, PlanDraft, PlanReview, Question, ReviewPlan, SceneReading
+from wonderful_team.contracts import (
+    DraftPlan,
+    JudgeBox,
+    PlanDraft,
+    PlanReview,
+    Question,
+    ReviewPlan,
+    SceneReading,
+    WalkedReview,
+)
 from wonderful_team.contracts.plans import SubgoalDraft, TargetDraft
 from wonderful_team.core.actions import PICK_PLACE
 from wonderful_team.core.geometry import Box
@@ -90,7 +99,7 @@ async def objection(session: AgentSession, question: Question, stage: str) -> st
         answer = await session.ask(question, stage=stage)
     except WonderfulTeamError as error:
         return f"refused: {str(error)[:160]}"
-    if isinstance(answer, PlanReview):
+    if isinstance(answer, PlanReview | WalkedReview):
         return answer.doubt.question[:160] if answer.doubt else None
     return None if answer.decision == "accept" else f"{answer.decision}: {answer.problem[:160]}"
 

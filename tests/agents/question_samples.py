@@ -52,6 +52,7 @@ TASK = ShownTask(
         ShownSlot("base_obj", "object", (picture("base_obj top"),)),
         ShownSlot("scene_1", "frame", (picture("scene_1 top"),), 3),
     ),
+    ("the blade is as wide as a hand", "north is up"),
 )
 EXAMPLES = (ShownSlot("base_obj", "object", (picture("example of base_obj"),)),)
 TARGET = Target("T7", "object", "striped mug", "handle", "left of the plate", "slot", ("base_obj",), ("grasp", "pick"))
@@ -72,7 +73,7 @@ STRIPS = tuple(
 )
 
 SAMPLES: tuple[Question, ...] = (
-    DraftPlan(TASK, KINDS, True, ("the lid was closed",)),
+    DraftPlan(TASK, KINDS, True, ("the lid was closed",), ("[G1] push T1",)),
     ReviewPlan(TASK, KINDS, SUBGOALS, (TARGET, AREA), "G2", ("G1 was asked about the lid",)),
     RevisePlan(TASK, KINDS, SUBGOALS, (TARGET, AREA), DOUBT, True),
     ExtractTargets(TASK, SUBGOALS),
@@ -102,7 +103,15 @@ SAMPLES: tuple[Question, ...] = (
     ),
     ChoosePoint(TARGET, "grasp", PLAN, picture("crop points", BOX, MARKS), True, EXAMPLES),
     WriteSteps(TASK, KINDS, SUBGOALS, (TARGET, AREA), ("G1",), "step 2 turns the wrong way"),
-    ReviewSteps(TASK, SUBGOALS, (TARGET, AREA), STEPS, picture("overview", BOX), ("step 1 was asked about",)),
+    ReviewSteps(
+        TASK,
+        SUBGOALS,
+        (TARGET, AREA),
+        STEPS,
+        picture("overview", BOX),
+        ("step 1 was asked about",),
+        ("step 1: carried high",),
+    ),
     WriteFunction(
         SUBGOALS[0], picture("view for path"), {"T7": Box(1.5, 2, 3, 4)}, "NameError: x", "def path(boxes): ...", 17
     ),

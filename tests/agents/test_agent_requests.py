@@ -20,7 +20,7 @@ from wonderful_team.errors import ConfigError
 EVERY = pytest.mark.parametrize("question", SAMPLES, ids=lambda question: question.contract)
 
 # Fields that are said in other words; the test of changes below watches these.
-RENAMED = {"kind", "purpose", "source", "side", "height", "role", "status"}
+RENAMED = {"kind", "alike", "purpose", "source", "side", "height", "role", "status"}
 # Where a doubt came from must not reach the model: an injected doubt has to read like a real one.
 UNSEEN = {(Critique, "provenance")}
 

@@ -9,7 +9,7 @@ from wonderful_team.core.protocols import Act
 from wonderful_team.core.values import Instruction, Plan, Subgoal
 from wonderful_team.offline import OfflineModel
 from wonderful_team.planning import TeamPolicy
-from wonderful_team.planning.looking import first_part, is_uncertain, looking_lines
+from wonderful_team.planning.looking import done_lines, first_part, is_uncertain
 from wonderful_team.runtime import rollout
 from wonderful_team.sims.tabletop import make_world
 
@@ -24,7 +24,7 @@ def test_only_plans_of_pushes_are_cut() -> None:
     first = first_part(PLAN)
     assert first.steps == PUSHES[:1]
     assert first.id != PLAN.id
-    (line,) = looking_lines(first)
+    (line,) = done_lines(first)
     assert "push the block into the frame" in line
 
 

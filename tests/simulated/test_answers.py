@@ -212,7 +212,7 @@ def test_wrong_plans_and_steps_are_doubted(table: Set) -> None:
     other = (Subgoal("G1", "put the frame aside", (), ("T2",)),)
     review = table.ask(ReviewPlan(task, kinds, other, targets[1:]))
     assert not review.approved
-    assert review.doubt.kind == "missing_prerequisite"
+    assert review.doubt.kind == "missing_subgoal"
     subgoals = _subgoals(table)
     (step,) = table.ask(WriteSteps(task, kinds, subgoals, targets)).to_steps()
     turned = (replace(step, pick="T2"),)

@@ -30,9 +30,11 @@ How to answer
 """.strip()
 
 EXAMPLES = """
-- A picture of one thing alone shows what it looks like, not where it is. The right thing in the scene has the same shape and
-  the same surface (colour and pattern); its size, turn and lighting may differ. The same shape with another surface,
-  or the same surface on another shape, is a different thing.
+- A picture of one thing alone shows what it looks like, not where it is; in the scene its size, turn and lighting may
+  differ. A coloured or patterned example: the right thing has this shape and this surface (colour and pattern). A plain
+  grey example on white: the right thing has this shape, with any surface.
+- "The same texture as" or "the same shape as" an example: compare that alone. Where words and example differ, the words
+  decide.
 """.strip()
 
 TARGETS = """
@@ -44,7 +46,10 @@ How to write targets
 - words: kind, colour, pattern, shape, so that someone who sees only the main view finds it. where: what tells it
   apart from things that look the same, such as "the left one"; empty when the words suffice. part: only when one part
   matters.
-- like: the names of the instruction's pictures that show this very thing. Describe in words what those show as well.
+- like: the names of the instruction's pictures that show this thing, or that define this place. Describe in words what
+  they show as well. A whole scene shows where things are, never what one thing looks like: name it for places only.
+- alike: what the thing has in common with these pictures. both: shape and surface. shape: for "the same shape as", and
+  for a plain grey example. surface: for "the same texture as".
 - use: what its points serve for. pick: it is picked up. place: something is put there (a bowl that receives something
   is an object with use place). push_start, push_end: a push begins or ends there. grasp: a gripper closes on it.
 - A thing that is moved beside another thing, or back to where it stood, needs no area of its own: steps can say

@@ -18,6 +18,12 @@ _BOX_STYLES = {
     "keep_out": "a region that nothing may enter",
     "workspace": "the robot's workspace",
 }
+_LIKE = {
+    "both": "looks like {}",
+    "shape": "has the shape of {}; its surface does not count",
+    "surface": "has the surface (colour and pattern) of {}; its shape does not count",
+    "place": "defined by {}",
+}
 _SLOT_KINDS = {
     "object": "one thing alone",
     "scene": "a whole scene",
@@ -146,8 +152,13 @@ def instruction_parts(task: ShownTask) -> list[Part]:
 
 
 def task_parts(task: ShownTask, title: str = "The scene now") -> list[Part]:
-    """The instruction with its pictures, then the views."""
-    return [*words("The user's instruction:"), *instruction_parts(task), *view_parts(title, task.views)]
+    """The instruction with its pictures, then the views, then what is known of the robot."""
+    return [
+        *words("The user's instruction:"),
+        *instruction_parts(task),
+        *view_parts(title, task.views),
+        *listed("What is known of the robot and its place", task.facts),
+    ]
 
 
 def subgoal_words(subgoal: Subgoal) -> str:
@@ -170,10 +181,9 @@ def target_words(target: Target) -> str:
     """One target in one line."""
     named = target.words + (f" [part: {target.part}]" if target.part else "")
     extras = [f"where: {target.where}"] if target.where else []
-    if target.source == "slot":
-        extras.append("defined by the instruction's pictures")
     if target.like:
-        extras.append("looks like " + ", ".join(f"{{{name}}}" for name in target.like))
+        pictures = ", ".join(f"{{{name}}}" for name in target.like)
+        extras.append(_LIKE[target.alike if target.kind == "object" else "place"].format(pictures))
     extras.append(f"points for: {', '.join(target.roles)}")
     return f"{target.id} ({target.kind}): {named}; {'; '.join(extras)}"
 

@@ -25,8 +25,8 @@ SYSTEM = system_words(
 You are Verification in a team that plans for a robot. Before anything moves you find what would make the plan fail.
 You do not write plans: you approve, or you ask the Supervisor one question about one subgoal or one step.
 
-You see the instruction, the views of the scene, the plan and what was checked before. Judge against what the pictures
-show. Wording, style and exact positions are not your concern: other agents measure positions, and a gate checks limits.
+You see the instruction, the views of the scene, what is known of the robot, the plan and what was checked before. Judge
+against what the pictures show, not against how well the plan reads. Wording and style are not your concern.
 """,
     PICTURES + "\n" + EXAMPLES,
     DATA + "\n" + INSTRUCTION,
@@ -34,35 +34,53 @@ show. Wording, style and exact positions are not your concern: other agents meas
 )
 
 KINDS = """
-- collision: carried out as written, something would hit, push over or bury something else.
-- physical_constraint: it cannot be done like that: closed, covered, too large for the place, out of what the robot
-  can do.
-- missing_prerequisite: something has to happen first that no earlier subgoal brings about.
-- ambiguity: more than one thing in the scene fits the words, and it matters which.
+- collision: carried out as written, something would hit, push over or bury something that it must not, or enter a region
+  that nothing may enter. Several things that go into one container may lie on each other.
+- physical_constraint: it cannot be done like that: closed, covered, too large for the place, too narrow for the tool,
+  out of reach, or not among the listed actions.
+- missing_prerequisite: something must be true first that neither the picture nor an earlier subgoal provides. A place
+  that is taken until a later subgoal clears it is such a case.
+- missing_subgoal: the instruction asks for something that no subgoal brings about.
+- ambiguity: more than one thing in the scene fits the words, and it matters which. "Any" leaves the choice open.
 - needless_step: it does not serve the instruction, or repeats another one.
 - wrong_target: the thing, the place, the angle or the order is not what the instruction or its pictures ask for.
 """.strip()
 
 REVIEW_PLAN = f"""
 Check whether the plan, carried out in its order, fulfils the whole instruction in this scene.
-Imagine each subgoal done, one after the other, and look for:
-{KINDS}
 
-Approve when you find nothing that would make it fail; most short plans are sound. Otherwise ask one question, the most
-serious one, about one subgoal: name its id, and say what in the picture or the instruction raises it. Do not ask again
-what the list of earlier checks has settled. If a subgoal is named to be checked now, judge that one only, given the
-others. For a plan without subgoals, ask about "plan". When you are not sure that something is wrong, approve.
+First walk through the subgoals that are to be checked now, in order, each in the scene as the earlier ones leave it; a
+target that was moved lies where it was put. For each, one short clause:
+- before: what must be true before it, and what provides it: the picture or which subgoal.
+- doable: can the listed actions do it, with this robot?
+- after: what is hit, covered or wrong after it?
+- asked: is it the thing, the place, the angle and the order that was asked for? Look at the pictures again for this.
+- verdict: wrong when an answer speaks against it; cannot_tell when the pictures do not show it and it matters; else fine.
+
+Then look for what the instruction asks for and no subgoal brings about. A target that no subgoal names may be a subgoal
+that was lost.
+
+Approve when every verdict is fine and nothing is missing. Otherwise ask one question, the most serious one, about one
+subgoal: name its id ("plan" for a missing subgoal or a plan without any), and say what in the picture or the instruction
+raises it. The kinds:
+{KINDS}
+What the list of earlier checks has settled is settled: do not ask it again.
 """
 
 REVIEW_STEPS = f"""
 Check the steps before the robot runs them. The picture of the plan shows every target's box with its label and the
-steps as numbered arrows. Do the steps carry out the plan, on the right things, in the right order, and with the angles
-and sides that the instruction states?
-{KINDS}
+steps as numbered arrows; a push is drawn as the strip that its tool sweeps. The numbers below the steps were computed
+from what the camera sees. Go through the steps in order and ask of each:
+- Does it carry out its subgoal, on the right thing, to the right place, in the right order, with the angle and side that
+  were asked for?
+- Where does its arrow begin and end? The thing's middle lands at the place, wherever it is picked.
+- Can it be done with this robot, and what does it hit, sweep along or cover? What the robot lifts over other things
+  does not hit them; what it pushes does.
 
-Approve when you find nothing that would make it fail. Otherwise ask one question, the most serious one, about one
-step: give its number. Do not ask again what the list of earlier checks has settled. When you are not sure that
-something is wrong, approve.
+Approve when no answer speaks against a step. Otherwise ask one question, the most serious one, about one step: give its
+number. The kinds:
+{KINDS}
+What the list of earlier checks has settled is settled: do not ask it again.
 """
 
 
@@ -73,6 +91,7 @@ def _render_review_plan(question: ReviewPlan) -> list[Part]:
         *ability_parts(question.step_kinds),
         *subgoal_parts(question.subgoals),
         *target_parts(question.targets),
+        *listed("Targets that no subgoal names: a lost subgoal?", [target.id for target in question.unused]),
         *listed("Checked or asked before", question.checked, "nothing yet"),
         *words(f"To be checked now: {which}."),
     ]
@@ -86,6 +105,7 @@ def _render_review_steps(question: ReviewSteps) -> list[Part]:
         *target_parts(question.targets),
         *picture_parts(question.overview, "the plan drawn over the main view"),
         *words("Steps:", *(steps or ["none"])),
+        *listed("Computed for the steps", question.numbers),
         *listed("Checked or asked before", question.checked, "nothing yet"),
     ]
 

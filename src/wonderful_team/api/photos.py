@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Literal
 
+from wonderful_team.core.actions import Vocabulary
 from wonderful_team.core.geometry import Box, Camera
 from wonderful_team.core.values import Instruction, KeepOut, Slot, SlotKind, View
 from wonderful_team.errors import ConfigError
@@ -30,6 +31,7 @@ __all__ = [
     "load_depth",
     "load_view",
     "read_keep_out",
+    "unknown_robot",
 ]
 
 SLOT_KINDS: tuple[SlotKind, ...] = ("object", "scene", "frame", "before", "after")
@@ -89,6 +91,22 @@ def _keep_out(text: str, number: int) -> KeepOut:
     except ValueError as error:
         why = f": {error}" if "box" in str(error) else ""
         raise ConfigError(f"keep-out {text!r}{why}; valid: [NAME=]x0,y0,x1,y1[px|m] with x0 < x1 and y0 < y1") from None
+
+
+def unknown_robot(vocabulary: Vocabulary) -> str:
+    """What planners are told where nobody says anything of the robot, one fact a line."""
+    lines = [
+        "Nothing is known of the robot's tool and reach, or of where the camera stands: take what the main view shows to be "
+        "in reach.",
+        "North is the upper edge of the main view, unless the instruction says otherwise.",
+        "A turn without a direction is clockwise, seen from above.",
+        "Where a picture shows a goal, things are turned there as they should be turned in the end.",
+    ]
+    if "pick_place" in vocabulary.kinds:
+        lines.append("A thing that is picked up is carried over all others, never through them.")
+    if "push" in vocabulary.kinds:
+        lines.append("A thing that is pushed slides on its surface; how wide the tool is, is not known.")
+    return "\n".join(lines)
 
 
 def _marks(text: str) -> list[str]:

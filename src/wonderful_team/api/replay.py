@@ -199,6 +199,7 @@ def _plan_again(folder: Path, record: Mapping[str, Any], setup: Setup, team: Tea
         limits=same_limits(setup),
         until=setup.until,  # type: ignore[arg-type]  # Team checks it
         keep_out=setup.keep_out,
+        facts=setup.facts,
     )
 
 

@@ -131,6 +131,7 @@ def rollout(
         reobserve=reobserve,
         plan=None if read is None else read.plan.id,
         scored=scorer is not None,
+        facts=guarded.facts,
     )
     place, command = (out or named.out, named.command) if named else (out, None)
     with limited(longest_s), _recording(guarded.instruction.plain_text, place, command) as recorder:

@@ -12,6 +12,7 @@ from typing import Any
 
 from wonderful_team.api.method import Method
 from wonderful_team.api.observation import Seen, seen
+from wonderful_team.api.photos import unknown_robot
 from wonderful_team.api.recording import tell, write_page_or_warn
 from wonderful_team.api.results import PlanResult
 from wonderful_team.core import values
@@ -81,6 +82,7 @@ class Team(Method):
         limits: Limits | None = None,
         until: Until = "actions",
         keep_out: Sequence[KeepOut] = (),
+        facts: str | None = None,
     ) -> PlanResult:
         """Plan for what is seen; nothing moves.
 
@@ -91,6 +93,8 @@ class Team(Method):
             limits: The workspace; default that of the photo's camera file or corners, if any.
             until: Stop early: draft, checked, grounded.
             keep_out: Regions nothing may enter.
+            facts: What planners are told of the robot and its place, one fact a line: `world.facts`, or your own words on
+                tool, reach, viewpoint, north and turns. Default: that nothing of it is known.
 
         Returns:
             The plan; its `status` says how it ended, and failures of the method keep the best so far.
@@ -104,14 +108,15 @@ class Team(Method):
         wanted = instruction_of(instruction)
         words = vocabulary_named(vocabulary)
         bounds = limits or getattr(observation, "limits", None) or NO_WORKSPACE
+        told = unknown_robot(words) if facts is None else facts
 
         def make(recorder: Recorder) -> _Work:
             planner = self.policy(recorder)
             assert isinstance(planner, Planner)
-            work = planner.make_plan(observation, wanted, words, bounds, until=until, keep_out=keep_out)
+            work = planner.make_plan(observation, wanted, words, bounds, until=until, keep_out=keep_out, facts=told)
             return _Work(work, lambda: planner.usage_by_role)
 
-        setup = setup_entry("plan", words, bounds, until=until, keep_out=keep_out)
+        setup = setup_entry("plan", words, bounds, until=until, keep_out=keep_out, facts=told)
         return self._recorded(observation, wanted, words, bounds, setup, make)
 
     def ground(

@@ -24,7 +24,7 @@ from wonderful_team.api.trial_setup import UsageCounter, fingerprint, prepared
 from wonderful_team.core.actions import Action
 from wonderful_team.core.deadline import limited
 from wonderful_team.core.jsonable import to_jsonable
-from wonderful_team.core.protocols import Policy, World, privileged
+from wonderful_team.core.protocols import Policy, World, facts_of, privileged
 from wonderful_team.core.values import Instruction, Observation, StepReport, Trial, Usage, View
 from wonderful_team.errors import ConfigError
 from wonderful_team.evals.controls import CONTROLS, make_control
@@ -101,7 +101,7 @@ class BlankWorld:
 
     def __init__(self, world: World) -> None:
         self._world = world
-        self.vocabulary, self.limits = world.vocabulary, world.limits
+        self.vocabulary, self.limits, self.facts = world.vocabulary, world.limits, facts_of(world)
         self.instruction = Instruction("(not looked at)")
         self.horizon: int | None = getattr(world, "horizon", None)
         self._blank = Observation({"top": View("blank", "blank", 0.0, np.zeros((8, 8, 3), np.uint8))})

@@ -44,6 +44,11 @@ from wonderful_team.cli.options import PATH, Common, common, read_pairs
     show_default=True,
     help="Stop early.",
 )
+@click.option(
+    "--facts",
+    metavar="TEXT",
+    help="What planners are told of the robot: tool, reach, viewpoint, north, turns. Default: that it is not known.",
+)
 @click.option("--keep-out", multiple=True, metavar="[NAME=]x0,y0,x1,y1[px|m]", help="A region nothing may enter.")
 @common
 def command(
@@ -55,6 +60,7 @@ def command(
     corners: str | None,
     vocabulary: str,
     until: str,
+    facts: str | None,
     keep_out: tuple[str, ...],
 ) -> int:
     """Plan for photos of a workspace: subgoals, targets, boxes and points, actions.
@@ -85,5 +91,6 @@ def command(
         vocabulary=vocabulary,
         until=until,  # type: ignore[arg-type]  # click has checked the choice
         keep_out=regions,
+        facts=facts,
     )
     return report_plan("plan", made, common, progress)

@@ -16,7 +16,7 @@ from wonderful_team.contracts.read_scene import ReadScene, RolePoint, SceneReadi
 from wonderful_team.contracts.remember import MemoryEntry, Remember
 from wonderful_team.contracts.replan import Advice, Replan
 from wonderful_team.contracts.review_path import PathReview, ReviewPath
-from wonderful_team.contracts.review_plan import CritiqueDraft, PlanReview, ReviewPlan
+from wonderful_team.contracts.review_plan import CritiqueDraft, PlanReview, ReviewPlan, SubgoalCheck, WalkedReview
 from wonderful_team.contracts.review_steps import ReviewSteps
 from wonderful_team.contracts.revise_plan import PlanRevision, RevisePlan
 from wonderful_team.contracts.shown import (
@@ -109,11 +109,13 @@ __all__ = [
     "ShownTask",
     "StepList",
     "Strip",
+    "SubgoalCheck",
     "SubgoalDraft",
     "SubgoalTargets",
     "TargetDraft",
     "TargetList",
     "VerdictDraft",
+    "WalkedReview",
     "WriteFunction",
     "WriteSteps",
     "step_list_type",

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from wonderful_team.contracts.plans import PlanDraft, check_plan
+from wonderful_team.contracts.plans import PlanDraft, settle_plan
 from wonderful_team.contracts.shown import AnswerModel, Question, ShownTask
 
 
@@ -17,16 +17,17 @@ class DraftPlan(Question):
         step_kinds: What the robot can do; the plan must be possible with these alone.
         with_targets: Targets are written with the draft (`lean`); else the lists stay empty (`paper`).
         advice: What went wrong before: from the Replanner, or targets that were not found.
+        done: What was carried out since the instruction was given, as planned; the views are newer than it.
     """
 
     task: ShownTask
     step_kinds: tuple[str, ...]
     with_targets: bool
     advice: tuple[str, ...] = ()
+    done: tuple[str, ...] = ()
 
     def output(self) -> type[AnswerModel]:
         return PlanDraft
 
     def validate(self, answer: Any) -> tuple[Any, tuple[str, ...]]:
-        check_plan(answer, self.task.slot_names, self.with_targets)
-        return answer, ()
+        return settle_plan(answer, self.task.slots, self.with_targets)

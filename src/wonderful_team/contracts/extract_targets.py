@@ -7,7 +7,7 @@ from typing import Any
 
 from pydantic import Field
 
-from wonderful_team.contracts.plans import TargetDraft, check_targets
+from wonderful_team.contracts.plans import TargetDraft, settle_targets
 from wonderful_team.contracts.shown import AnswerModel, Question, Reasoning, ShownTask, fits, known
 from wonderful_team.core.values import Subgoal
 
@@ -39,7 +39,7 @@ class ExtractTargets(Question):
 
     def validate(self, answer: Any) -> tuple[Any, tuple[str, ...]]:
         fits(targets=len(answer.targets))
-        check_targets(answer.targets, self.task.slot_names)
+        targets, repairs = settle_targets(answer.targets, self.task.slots)
         ids = [target.id for target in answer.targets]
         wanted = [subgoal.id for subgoal in self.subgoals]
         known([need.subgoal for need in answer.needs], wanted, "subgoal")
@@ -48,4 +48,4 @@ class ExtractTargets(Question):
         missing = set(wanted) - {need.subgoal for need in answer.needs}
         if missing:
             raise ValueError(f"needs must list every subgoal; missing: {', '.join(sorted(missing))}")
-        return answer, ()
+        return answer.model_copy(update={"targets": targets}), repairs

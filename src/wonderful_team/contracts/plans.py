@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import re
+from collections.abc import Iterable, Sequence
 from typing import Literal
 
 from pydantic import Field
 
-from wonderful_team.contracts.shown import AnswerModel, Reasoning, fits, known, unique
-from wonderful_team.core.values import PointRole, Subgoal, Target
+from wonderful_team.contracts.shown import AnswerModel, Reasoning, ShownSlot, fits, known, unique
+from wonderful_team.core.values import Alike, PointRole, Subgoal, Target
 
 
 class TargetDraft(AnswerModel):
@@ -20,6 +21,7 @@ class TargetDraft(AnswerModel):
     part: str | None = Field(description="The part that matters, such as the handle; null for the whole.")
     where: str = Field(description="How it stands to other things; empty when the words suffice.")
     like: list[str] = Field(description="Names of the instruction's pictures that show it; empty for none.")
+    alike: Alike = Field("both", description="What it has in common with these pictures; both when there are none.")
     use: list[PointRole] = Field(description="What its points are for.")
 
     def to_target(self) -> Target:
@@ -33,6 +35,7 @@ class TargetDraft(AnswerModel):
             source,
             tuple(self.like),
             tuple(dict.fromkeys(self.use)),
+            self.alike,
         )
 
 
@@ -87,21 +90,62 @@ def check_subgoals(subgoals: Sequence[SubgoalDraft], target_ids: Sequence[str] |
             known(draft.targets, target_ids, f"target of subgoal {draft.id}")
 
 
-def check_targets(targets: Sequence[TargetDraft], slot_names: Sequence[str]) -> None:
-    """Raise ValueError when ids repeat or refer to pictures that the instruction does not have."""
+def settle_targets(
+    targets: Sequence[TargetDraft], slots: Sequence[ShownSlot]
+) -> tuple[list[TargetDraft], tuple[str, ...]]:
+    """Bring the names of pictures into one form; give areas the scenes that define them, and objects none.
+
+    A name may be written in braces or as a caption has it. A whole scene shows where things are, never what one thing
+    looks like.
+
+    Returns:
+        The targets, and what was changed, in words.
+
+    Raises:
+        ValueError: Ids repeat, or a picture is named that the instruction does not have.
+    """
     unique([draft.id for draft in targets], "target ids")
+    settled, repairs = [], []
     for draft in targets:
-        known(draft.like, slot_names, f"picture in 'like' of {draft.id}")
+        names = list(dict.fromkeys(_slot_name(name, slots) for name in draft.like))
+        known(names, [slot.name for slot in slots], f"picture in 'like' of {draft.id}")
+        scenes = [slot.name for slot in slots if slot.whole_scene]
+        if draft.kind == "object" and set(names) & set(scenes):
+            lost = [name for name in names if name in scenes]
+            names = [name for name in names if name not in scenes]
+            repairs.append(f"'like' of {draft.id}: {', '.join(lost)} dropped, a whole scene describes no object")
+        if draft.kind == "area":
+            names += [name for name in scenes if name not in names and _speaks_of(draft, name)]
+        settled.append(draft.model_copy(update={"like": names}))
+    return settled, tuple(repairs)
 
 
-def check_plan(draft: PlanDraft, slot_names: Sequence[str], with_targets: bool) -> None:
-    """Raise ValueError when a draft does not hang together."""
+def _slot_name(written: str, slots: Iterable[ShownSlot]) -> str:
+    """The slot that `name`, `{name}` or a caption such as `{name} top` stands for; else what was written."""
+    text = written.strip().strip("'\"")
+    inside = re.search(r"\{([^{}]*)\}", text)
+    text = inside.group(1).strip() if inside else text
+    names = sorted((slot.name for slot in slots), key=len, reverse=True)
+    return next((name for name in names if text == name or text.startswith(f"{name} ")), text)
+
+
+def _speaks_of(draft: TargetDraft, name: str) -> bool:
+    return re.search(rf"(?<![\w-]){re.escape(name)}(?![\w-])", f"{draft.words} {draft.where}") is not None
+
+
+def settle_plan(draft: PlanDraft, slots: Sequence[ShownSlot], with_targets: bool) -> tuple[PlanDraft, tuple[str, ...]]:
+    """A draft with its targets settled, and what was changed, in words.
+
+    Raises:
+        ValueError: The draft does not hang together.
+    """
     if draft.clarification is not None:
-        return
+        return draft, ()
     fits(subgoals=len(draft.subgoals), targets=len(draft.targets))
-    check_targets(draft.targets, slot_names)
-    check_subgoals(draft.subgoals, [target.id for target in draft.targets] if with_targets else None)
+    targets, repairs = settle_targets(draft.targets, slots)
+    check_subgoals(draft.subgoals, [target.id for target in targets] if with_targets else None)
     if with_targets:
         for subgoal in draft.subgoals:
             if not subgoal.targets:
                 raise ValueError(f"subgoal {subgoal.id} names no target")
+    return draft.model_copy(update={"targets": targets}), repairs

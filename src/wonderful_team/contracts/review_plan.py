@@ -6,8 +6,9 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 from pydantic import Field
+from pydantic.json_schema import SkipJsonSchema
 
-from wonderful_team.contracts.shown import AnswerModel, Question, Reasoning, ShownTask, known
+from wonderful_team.contracts.shown import AnswerModel, Question, Reasoning, ShownTask, known, unique
 from wonderful_team.core.values import Subgoal, Target
 
 
@@ -16,9 +17,37 @@ class CritiqueDraft(AnswerModel):
 
     about: str = Field(description="Id of the subgoal (or number of the step) in doubt.")
     kind: Literal[
-        "collision", "physical_constraint", "missing_prerequisite", "ambiguity", "needless_step", "wrong_target"
+        "collision",
+        "physical_constraint",
+        "missing_prerequisite",
+        "missing_subgoal",
+        "ambiguity",
+        "needless_step",
+        "wrong_target",
     ]
     question: str = Field(min_length=1)
+
+
+CLAUSE = 300
+"""Most characters of one clause of a walk."""
+
+
+class SubgoalCheck(AnswerModel):
+    """One subgoal, imagined as it is carried out in its turn. One short clause in each field."""
+
+    subgoal: str = Field(description="Id of the subgoal.")
+    before: str = Field(
+        description="What must be true before it, and what provides it: the picture, an earlier subgoal, or nothing.",
+        max_length=CLAUSE,
+    )
+    doable: str = Field(description="Can the listed actions do it?", max_length=CLAUSE)
+    after: str = Field(description="What is hit, covered or wrong after it.", max_length=CLAUSE)
+    asked: str = Field(
+        description="Is it the thing, the place, the angle and the order that was asked for?", max_length=CLAUSE
+    )
+    verdict: Literal["fine", "wrong", "cannot_tell"] = Field(
+        description="cannot_tell: the pictures do not show it, and it matters."
+    )
 
 
 class PlanReview(AnswerModel):
@@ -26,6 +55,18 @@ class PlanReview(AnswerModel):
 
     reasoning: str = Reasoning
     approved: bool
+    doubt: CritiqueDraft | None = Field(description="Null exactly when approved.")
+
+
+class WalkedReview(AnswerModel):
+    """Verification's word on a plan: first a walk through the subgoals, then what follows from it."""
+
+    # Answers of earlier releases have a reasoning in the place of the walk; models are asked for the walk alone.
+    reasoning: SkipJsonSchema[str | None] = None
+    walk: list[SubgoalCheck] | SkipJsonSchema[None] = Field(
+        None, description="Every subgoal that is to be checked now, in the plan's order; empty for a plan without any."
+    )
+    approved: bool = Field(description="true exactly when every verdict of the walk is fine and no subgoal is missing.")
     doubt: CritiqueDraft | None = Field(description="Null exactly when approved.")
 
 
@@ -45,15 +86,64 @@ class ReviewPlan(Question):
     under_check: str | None = None
     checked: tuple[str, ...] = ()
 
+    @property
+    def to_walk(self) -> tuple[str, ...]:
+        """Ids of the subgoals that are to be checked now."""
+        return tuple(item.id for item in self.subgoals) if self.under_check is None else (self.under_check,)
+
+    @property
+    def unused(self) -> tuple[Target, ...]:
+        """Targets that no subgoal names; none while the subgoals' targets are not listed yet."""
+        named = {name for subgoal in self.subgoals for name in subgoal.targets}
+        return tuple(target for target in self.targets if named and target.id not in named)
+
     def output(self) -> type[AnswerModel]:
-        return PlanReview
+        return WalkedReview
 
     def validate(self, answer: Any) -> tuple[Any, tuple[str, ...]]:
-        check_review(answer, [subgoal.id for subgoal in self.subgoals] or ["plan"], "subgoal")
+        check_review(answer, [*(subgoal.id for subgoal in self.subgoals), "plan"], "subgoal")
+        if answer.reasoning is None:
+            self._check_walk(answer)
         return answer, ()
 
+    def _check_walk(self, answer: WalkedReview) -> None:
+        walked = [item.subgoal for item in answer.walk or ()]
+        known(walked, self.to_walk, "subgoal in the walk")
+        unique(walked, "subgoals of the walk")
+        missing = [name for name in self.to_walk if name not in walked]
+        if missing:
+            raise ValueError(f"the walk must hold every subgoal that is to be checked; missing: {', '.join(missing)}")
+        amiss = [f"{item.subgoal} {item.verdict}" for item in answer.walk or () if item.verdict != "fine"]
+        if answer.approved and amiss:
+            raise ValueError(
+                f"approved, yet the walk says {', '.join(amiss)}: raise it as the doubt, or correct the verdict where the "
+                "pictures or an earlier answer settle it"
+            )
 
-def check_review(answer: PlanReview, ids: list[str], what: str) -> None:
+    def walked(self, review: PlanReview) -> WalkedReview:
+        """A review with a walk that says no more than the review: for models that judge the plan by other means."""
+        return WalkedReview(
+            walk=[_said(item, review.doubt) for item in self.subgoals if item.id in self.to_walk],
+            approved=review.approved,
+            doubt=review.doubt,
+        )
+
+
+def _said(subgoal: Subgoal, doubt: CritiqueDraft | None) -> SubgoalCheck:
+    said = {
+        "before": f"after {', '.join(subgoal.after)}" if subgoal.after else "as the picture shows it",
+        "doable": "yes",
+        "after": "nothing",
+        "asked": "yes",
+    }
+    if doubt is None or doubt.about != subgoal.id:
+        return SubgoalCheck(subgoal=subgoal.id, **said, verdict="fine")
+    field = {"missing_prerequisite": "before", "physical_constraint": "doable", "collision": "after"}
+    said[field.get(doubt.kind, "asked")] = doubt.question[:CLAUSE]
+    return SubgoalCheck(subgoal=subgoal.id, **said, verdict="wrong")
+
+
+def check_review(answer: PlanReview | WalkedReview, ids: list[str], what: str) -> None:
     """Raise ValueError when approval and doubt contradict each other, or the doubt is about nothing."""
     if answer.approved == (answer.doubt is not None):
         raise ValueError("doubt must be null exactly when approved is true")

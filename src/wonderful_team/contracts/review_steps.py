@@ -18,6 +18,8 @@ class ReviewSteps(Question):
 
     Attributes:
         overview: The main view with every target's box and label, and the steps as numbered arrows.
+        checked: What was asked before, of the plan and of the steps, and how it was settled, one line each.
+        numbers: What code computed for the steps: heights and clearances in words, one line each.
     """
 
     task: ShownTask
@@ -26,6 +28,7 @@ class ReviewSteps(Question):
     steps: tuple[Step, ...]
     overview: Picture
     checked: tuple[str, ...] = ()
+    numbers: tuple[str, ...] = ()
 
     def output(self) -> type[AnswerModel]:
         return PlanReview

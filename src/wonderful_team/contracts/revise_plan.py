@@ -7,7 +7,7 @@ from typing import Any, Literal
 
 from pydantic import Field
 
-from wonderful_team.contracts.plans import PlanDraft, check_plan
+from wonderful_team.contracts.plans import PlanDraft, settle_plan
 from wonderful_team.contracts.shown import AnswerModel, Question, Reasoning, ShownTask
 from wonderful_team.core.values import Critique, Subgoal, Target
 
@@ -38,6 +38,7 @@ class RevisePlan(Question):
     def validate(self, answer: Any) -> tuple[Any, tuple[str, ...]]:
         if (answer.decision == "revise") != (answer.plan is not None):
             raise ValueError("plan must be given exactly when the decision is revise")
-        if answer.plan is not None:
-            check_plan(answer.plan, self.task.slot_names, self.with_targets)
-        return answer, ()
+        if answer.plan is None:
+            return answer, ()
+        plan, repairs = settle_plan(answer.plan, self.task.slots, self.with_targets)
+        return answer.model_copy(update={"plan": plan}), repairs

@@ -22,10 +22,17 @@ Edge: TypeAlias = Literal["left", "top", "right", "bottom"]
 EDGES: tuple[Edge, ...] = ("left", "top", "right", "bottom")
 
 
+def _all_required(schema: dict[str, Any]) -> None:
+    """A model is asked for every field; a default is for answers that were given before the field was there."""
+    schema["required"] = list(schema.get("properties", {}))
+    for field in schema.get("properties", {}).values():
+        field.pop("default", None)
+
+
 class AnswerModel(BaseModel):
     """Base of every answer: unknown fields are refused."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True)
+    model_config = ConfigDict(extra="forbid", frozen=True, json_schema_extra=_all_required)
 
 
 class PointPx(AnswerModel):
@@ -74,14 +81,24 @@ class ShownSlot:
     pictures: tuple[Picture, ...]
     index: int | None = None
 
+    @property
+    def whole_scene(self) -> bool:
+        """It shows where things are, not what one thing looks like."""
+        return self.kind != "object"
+
 
 @dataclass(frozen=True, eq=False)
 class ShownTask:
-    """The instruction with its pictures, and the views of the scene; the first view is the main one."""
+    """The instruction with its pictures, and the views of the scene; the first view is the main one.
+
+    Attributes:
+        facts: What is known of the robot and its place, one fact a line.
+    """
 
     instruction: str
     views: tuple[Picture, ...]
     slots: tuple[ShownSlot, ...] = ()
+    facts: tuple[str, ...] = ()
 
     @property
     def main(self) -> Picture:

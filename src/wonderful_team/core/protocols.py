@@ -41,9 +41,11 @@ def offers(thing: object, protocol: Callable[..., T]) -> TypeGuard[T]:
         for name in (*inspect.get_annotations(home), *vars(home))
         if not name.startswith("_")
     }
+    # What has a value in the protocol itself may be left out: that value then holds.
     return all(
         callable(getattr(thing, name, None)) if inspect.isfunction(member) else hasattr(thing, name)
         for name, member in members.items()
+        if member is None or callable(member) or isinstance(member, property)
     )
 
 
@@ -58,11 +60,18 @@ class Model(Protocol):
 
 @runtime_checkable
 class World(Protocol):
-    """A robot or a simulator with one task set up in it."""
+    """A robot or a simulator with one task set up in it.
+
+    Attributes:
+        facts: What planners are told of the robot and its place in plain words, one fact a line: the tool and what it can
+            hold, how wide a blade is, the reach, where the cameras look from, which way is north, what a turn without a
+            direction means, whether things are lifted over others. May be left out; "" says nothing. Read it with `facts_of`.
+    """
 
     vocabulary: Vocabulary
     limits: Limits
     instruction: Instruction
+    facts: str = ""
 
     def observe(self) -> Observation: ...
 
@@ -132,6 +141,7 @@ class Situation:
         refused: The gate's report when the last answer was refused.
         plan: A plan that was read and approved beforehand and must be run as it is.
         advice: Why a person declined the last plan; one new plan may heed it, and that is no replan.
+        facts: What the world says of the robot and its place, in words.
     """
 
     observation: Observation
@@ -147,6 +157,7 @@ class Situation:
 
     looks_left = renamed_attribute("looks_left", "reobserve_left")
     advice: str = ""
+    facts: str = ""
 
 
 @renamed_arguments(look="reobserve")
@@ -222,6 +233,11 @@ class Event:
     round: int | None = None
 
 
+def facts_of(world: World) -> str:
+    """A world's facts; "" where it says none."""
+    return getattr(world, "facts", World.facts)
+
+
 def privileged(world: World) -> Privileged | None:
     """The truth behind a simulator, for its scorer; None for real robots, own worlds without one, and changed instructions."""
     truth = getattr(world, "privileged", None)
@@ -243,4 +259,5 @@ __all__ = [
     "Situation",
     "Subscriber",
     "World",
+    "facts_of",
 ]

@@ -16,7 +16,7 @@ from wonderful_team.core.actions import Action
 from wonderful_team.core.geometry import AffineCamera, PinholeCamera, PlanarCamera
 from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.geometry.cameras import Camera
-from wonderful_team.core.protocols import World
+from wonderful_team.core.protocols import World, facts_of
 from wonderful_team.core.values import Instruction, Observation, StepReport, View
 from wonderful_team.errors import ConfigError
 
@@ -78,7 +78,7 @@ class PerturbedWorld:
     def __init__(self, world: World, kind: str, level: int, seed: int) -> None:
         self._world, self._kind, self._level = world, kind, level
         self._rng_seed = [seed, level, KINDS.index(kind)]
-        self.vocabulary, self.limits = world.vocabulary, world.limits
+        self.vocabulary, self.limits, self.facts = world.vocabulary, world.limits, facts_of(world)
         self.horizon: int | None = getattr(world, "horizon", None)
         self.privileged = getattr(world, "privileged", None)
         said = world.instruction

@@ -13,7 +13,16 @@ from wonderful_team.core.values import Request
 from wonderful_team.models.scripted import ScriptedModel
 
 _TARGETS = [
-    {"id": "T1", "kind": "object", "words": "the first thing", "part": None, "where": "", "like": [], "use": ["pick"]},
+    {
+        "id": "T1",
+        "kind": "object",
+        "words": "the first thing",
+        "part": None,
+        "where": "",
+        "like": [],
+        "alike": "both",
+        "use": ["pick"],
+    },
     {
         "id": "T2",
         "kind": "object",
@@ -21,6 +30,7 @@ _TARGETS = [
         "part": None,
         "where": "",
         "like": [],
+        "alike": "both",
         "use": ["place"],
     },
 ]
@@ -37,6 +47,9 @@ def stub_script() -> dict[str, Any]:
             "targets": _TARGETS,
             "needs": [{"subgoal": "G1", "targets": ["T1", "T2"]}],
         },
+        "ReviewPlan": lambda request: request.question.walked(
+            c.PlanReview(reasoning="", approved=True, doubt=None)
+        ).model_dump(),
         "LocatePoints": lambda request: {"reasoning": "", "found": True, "points": [_centre(request)]},
         "ChooseMark": lambda _: {"reasoning": "", "number": 1},
         "GiveBox": lambda request: {"reasoning": "", "box": _box(request)},

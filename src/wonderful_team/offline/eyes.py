@@ -195,6 +195,13 @@ def target_description(target: Target) -> Description:
     Raises:
         NotUnderstoodError: The words hold something unknown and no picture shows it.
     """
+    description = _read_words(target)
+    if target.alike != "both" and description.like is not None and description.like_only is None:
+        return replace(description, like_only="texture" if target.alike == "surface" else "shape")
+    return description
+
+
+def _read_words(target: Target) -> Description:
     words = target.words
     on_the_way = read_place(words, target.where)
     if on_the_way is not None:

@@ -10,7 +10,8 @@ from wonderful_team.core.actions import Step
 from wonderful_team.core.pictures import BoxMark, PathMark, Picture, Point, PointMark
 from wonderful_team.core.values import Critique, GroundedTarget, PlannedAction, View
 from wonderful_team.motion import ground_actions
-from wonderful_team.planning.plan_loop import PlanState
+from wonderful_team.motion.in_words import numbers_in_words
+from wonderful_team.planning.plan_loop import PlanState, settled_lines
 from wonderful_team.planning.scene import SceneShown
 from wonderful_team.planning.session import AgentSession
 
@@ -45,15 +46,21 @@ async def check_steps(
     paths: Mapping[str, tuple[Point, ...]],
 ) -> tuple[PlanState, tuple[Step, ...], tuple[PlannedAction, ...]]:
     """Verification's look at the steps, drawn over the view; doubts send them back within the bound."""
-    checked: list[str] = []
     while True:
         actions = compute(scene, steps, grounded, paths)
         if not session.members.verification:
             return state, steps, actions
         shown = overview_picture(scene, grounded, actions)
-        answer = await session.ask_whole(
-            ReviewSteps(scene.task, state.subgoals, state.targets, steps, shown, tuple(checked)), stage="act"
+        question = ReviewSteps(
+            scene.task,
+            state.subgoals,
+            state.targets,
+            steps,
+            shown,
+            settled_lines(state.questions),
+            numbers_in_words(actions, grounded, scene.view, scene.limits),
         )
+        answer = await session.ask_whole(question, stage="act")
         review: PlanReview = answer.value
         if review.doubt is None:
             return state, steps, actions
@@ -69,7 +76,6 @@ async def check_steps(
             revised != steps,
             answer.provenance,
         )
-        checked.append(f"asked about step {doubt.about}: {doubt.question} Answer: {doubt.answer}")
         state, steps = replace(state, questions=(*state.questions, doubt)), revised
 
 

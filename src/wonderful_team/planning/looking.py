@@ -23,10 +23,7 @@ def first_part(plan: Plan) -> Plan:
     return replace(plan, steps=plan.steps[:1], actions=plan.actions[:1])
 
 
-def looking_lines(plan: Plan) -> tuple[str, ...]:
-    """What the Supervisor is told for the plan after a look."""
+def done_lines(plan: Plan) -> tuple[str, ...]:
+    """What the Supervisor is told of what ran before a new picture, one line per step."""
     subgoals = {subgoal.id: subgoal.text for subgoal in plan.subgoals}
-    done = "; ".join(f"{step_words(step)} (for '{subgoals.get(step.subgoal, step.subgoal)}')" for step in plan.steps)
-    return (
-        f"This was done, and the picture is new: {done}. Plan only what is left to do now; nothing if all is reached.",
-    )
+    return tuple(f"{step_words(step)} (for '{subgoals.get(step.subgoal, step.subgoal)}')" for step in plan.steps)

@@ -13,11 +13,11 @@ from wonderful_team.contracts import (
     DraftPlan,
     ExtractTargets,
     PlanDraft,
-    PlanReview,
     PlanRevision,
     ReviewPlan,
     RevisePlan,
     TargetList,
+    WalkedReview,
 )
 from wonderful_team.core.text import counted
 from wonderful_team.core.values import Answer, Critique, Subgoal, Target
@@ -38,14 +38,16 @@ class PlanState:
     questions: tuple[Critique, ...] = ()
 
 
-async def draft(session: AgentSession, scene: SceneShown, advice: Sequence[str] = ()) -> PlanState:
+async def draft(
+    session: AgentSession, scene: SceneShown, advice: Sequence[str] = (), done: Sequence[str] = ()
+) -> PlanState:
     """The Supervisor's first draft.
 
     Raises:
         NeedsClarification: Neither picture nor instruction settles what is meant.
     """
     with_targets = session.config.mode == "lean"
-    question = DraftPlan(scene.task, scene.vocabulary.step_kinds, with_targets, tuple(advice))
+    question = DraftPlan(scene.task, scene.vocabulary.step_kinds, with_targets, tuple(advice), tuple(done))
     written: PlanDraft = await session.ask(question, stage="plan")
     if written.clarification is not None:
         raise NeedsClarification(written.clarification.question, written.clarification.choices)
@@ -71,7 +73,7 @@ async def verify(session: AgentSession, scene: SceneShown, state: PlanState) -> 
             ),
             stage="plan",
         )
-        verdict: PlanReview = review.value
+        verdict: WalkedReview = review.value
         if verdict.doubt is None:
             if under_check is not None:
                 passed.add(under_check)
@@ -88,12 +90,20 @@ async def verify(session: AgentSession, scene: SceneShown, state: PlanState) -> 
             break
         doubt = Critique(verdict.doubt.about, verdict.doubt.kind, verdict.doubt.question, provenance=review.provenance)
         state, answered = await _resolve(session, scene, state, doubt)
-        checked.append(f"asked about {doubt.about}: {doubt.question} Answer: {answered.answer}")
+        checked += settled_lines((answered,))
         # A revised plan is a new plan: each of its subgoals may be checked once more.
         overruled = not answered.changed
         passed = set() if answered.changed else passed | ({under_check} if under_check else set())
     session.stage("checked", _told(state))
     return state
+
+
+def settled_lines(questions: Sequence[Critique]) -> tuple[str, ...]:
+    """What was asked before and how it was settled, one line each."""
+    return tuple(
+        f"asked about {one.about}: {one.question} Answer: {one.answer} ({'changed' if one.changed else 'kept'})"
+        for one in questions
+    )
 
 
 async def _resolve(

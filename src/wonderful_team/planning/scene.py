@@ -2,25 +2,34 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
 from wonderful_team.contracts import ShownSlot, ShownTask
 from wonderful_team.core.actions import Vocabulary
-from wonderful_team.core.pictures import Axes, Picture
-from wonderful_team.core.values import Instruction, Limits, Observation, Subgoal, Target, View
+from wonderful_team.core.geometry import Box
+from wonderful_team.core.pictures import Axes, BoxMark, Picture
+from wonderful_team.core.values import Instruction, KeepOut, Limits, Observation, Subgoal, Target, View
 from wonderful_team.images import whole
+from wonderful_team.images.keep_out import region_px, table_height_m
 
 
 @dataclass(frozen=True, eq=False)
 class SceneShown:
-    """One observation and instruction, ready to be shown."""
+    """One observation and instruction, ready to be shown.
+
+    Attributes:
+        facts: What is known of the robot and its place, one fact a line.
+        keep_out: Regions nothing may enter, beside those of the limits; they are drawn on the main view.
+    """
 
     observation: Observation
     instruction: Instruction
     vocabulary: Vocabulary
     limits: Limits
+    facts: str = ""
+    keep_out: tuple[KeepOut, ...] = ()
 
     @property
     def view(self) -> View:
@@ -29,7 +38,9 @@ class SceneShown:
 
     @cached_property
     def views(self) -> tuple[Picture, ...]:
-        return show_views(self.observation)
+        main, *others = show_views(self.observation)
+        regions = dict.fromkeys((*self.limits.keep_out, *self.keep_out))
+        return main.marked(*keep_out_marks(main, self.view, regions, self.limits)), *others
 
     @cached_property
     def labelled(self) -> Picture:
@@ -50,12 +61,31 @@ class SceneShown:
 
     @cached_property
     def task(self) -> ShownTask:
-        return ShownTask(self.instruction.text, self.views, self.slots)
+        facts = tuple(line.strip() for line in self.facts.splitlines() if line.strip())
+        return ShownTask(self.instruction.text, self.views, self.slots, facts)
 
     def examples(self, targets: Sequence[Target]) -> tuple[ShownSlot, ...]:
-        """The instruction's pictures of these targets, in the instruction's order."""
+        """The instruction's pictures of these targets, in the instruction's order.
+
+        A place is found with the scenes that define it. Where nobody says which these are, it gets all of them.
+        """
+        scenes = {slot.name for slot in self.slots if slot.whole_scene}
         wanted = {name for target in targets for name in target.like}
+        for target in targets:
+            if target.kind == "area" and not scenes & set(target.like):
+                wanted |= scenes
         return tuple(slot for slot in self.slots if slot.name in wanted)
+
+
+def keep_out_marks(picture: Picture, view: View, regions: Iterable[KeepOut], limits: Limits) -> tuple[BoxMark, ...]:
+    """Regions that nothing may enter, as boxes on a whole view; what no camera can place in it is left out."""
+    marks = []
+    for region in regions:
+        shape = region_px(region, view.camera, table_height_m(limits))
+        box = None if shape is None else Box(*shape.bounds).intersection(Box(0, 0, *view.size_px))
+        if box is not None:
+            marks.append(BoxMark(picture.frame.box_to_picture(box), "keep_out", region.name))
+    return tuple(marks)
 
 
 def show_views(observation: Observation) -> tuple[Picture, ...]:

@@ -38,7 +38,7 @@ from wonderful_team.models.client import DEADLINE_S, ModelClient
 from wonderful_team.planning import acting, grounding, judging, plan_loop
 from wonderful_team.planning.config import TeamConfig
 from wonderful_team.planning.functions import write_functions
-from wonderful_team.planning.looking import first_part, is_uncertain, looking_lines
+from wonderful_team.planning.looking import done_lines, first_part, is_uncertain
 from wonderful_team.planning.plan_loop import PlanState
 from wonderful_team.planning.scene import SceneShown
 from wonderful_team.planning.session import AgentSession, settle
@@ -127,9 +127,14 @@ class TeamPolicy:
         until: Until = "actions",
         keep_out: Sequence[KeepOut] = (),
         advice: Sequence[str] = (),
+        done: Sequence[str] = (),
+        facts: str = "",
         parent: str | None = None,
     ) -> Plan:
         """A plan for what is seen now. Failures of the method come back as the plan's status, with the best so far.
+
+        `advice` is what went wrong before, or was said against the last plan; `done` what was carried out since the
+        instruction was given, as planned; `facts` what is known of the robot and its place, one fact a line.
 
         Raises:
             ModelUnavailableError: The provider did not answer.
@@ -137,13 +142,13 @@ class TeamPolicy:
         """
         if until not in UNTIL:
             raise ConfigError(f"until {until!r}: valid are {', '.join(UNTIL)}")
-        scene = SceneShown(observation, instruction, vocabulary, limits)
+        scene = SceneShown(observation, instruction, vocabulary, limits, facts, tuple(keep_out))
         session = self._session or AgentSession(self._client, self.config, instruction.text)
         self._session = session
         start = Plan(instruction, "failed", keep_out=tuple(keep_out), scene_hash=observation.hash, parent=parent)
         progress = _Progress(start)
         try:
-            plan = await self._plan(session, scene, progress, until, tuple(advice))
+            plan = await self._plan(session, scene, progress, until, tuple(advice), tuple(done))
             # What Memory is still writing belongs to this plan: whether it is kept must not be a matter of luck.
             await session.memory.barrier()
         except (
@@ -163,11 +168,17 @@ class TeamPolicy:
         return plan
 
     async def _plan(
-        self, session: AgentSession, scene: SceneShown, progress: _Progress, until: Until, advice: tuple[str, ...]
+        self,
+        session: AgentSession,
+        scene: SceneShown,
+        progress: _Progress,
+        until: Until,
+        advice: tuple[str, ...],
+        done: tuple[str, ...],
     ) -> Plan:
         absent: list[GroundedTarget] = []
         for _ in range(1 + self.config.bounds.returns):
-            state = await plan_loop.draft(session, scene, advice)
+            state = await plan_loop.draft(session, scene, advice, done)
             progress.plan = _with_state(progress.plan, state, "draft")
             if until == "draft":
                 return progress.plan
@@ -252,7 +263,7 @@ class TeamPolicy:
         assert self._session is not None
         if looking and all(report.executed for run in situation.executed for report in run.reports):
             # Not judged first: the new plan holds what is left to do in the new picture.
-            return await self._next_plan(situation, looking_lines(plan), plan)
+            return await self._next_plan(situation, (), plan, done=done_lines(plan))
         verdicts = await judging.judge_outcome(self._session, scene, plan, situation.observation, situation.executed)
         if all(verdict.status == "done" for verdict in verdicts):
             return Done("every subgoal is done", verdicts)
@@ -261,7 +272,7 @@ class TeamPolicy:
         )
         if situation.replans_left <= 0:
             return GaveUp(f"no replans left; {causes}", "execution", plan, verdicts)
-        now = SceneShown(situation.observation, situation.instruction, situation.vocabulary, situation.limits)
+        now = _scene_of(situation)
         advice = await judging.advise(self._session, now, plan, verdicts, situation.executed, situation.replans_left)
         if advice.decision == "done":
             return Done(advice.reasoning, verdicts)
@@ -280,8 +291,7 @@ class TeamPolicy:
 
     def _take_over(self, situation: Situation, plan: Plan) -> Decision:
         self._session = AgentSession(self._client, self.config, situation.instruction.text, attempt=1)
-        scene = SceneShown(situation.observation, situation.instruction, situation.vocabulary, situation.limits)
-        self._last = (scene, plan)
+        self._last = (_scene_of(situation), plan)
         return Act(plan.actions, plan)
 
     async def _next_plan(
@@ -290,6 +300,7 @@ class TeamPolicy:
         advice: tuple[str, ...],
         before: Plan | None,
         verdicts: tuple[Verdict, ...] = (),
+        done: tuple[str, ...] = (),
     ) -> Decision:
         plan = await self.make_plan(
             situation.observation,
@@ -298,6 +309,8 @@ class TeamPolicy:
             situation.limits,
             keep_out=situation.limits.keep_out,
             advice=advice,
+            done=done,
+            facts=situation.facts,
             parent=before.id if before is not None else None,
         )
         if plan.status != "planned":
@@ -310,6 +323,12 @@ class TeamPolicy:
             self._last = None if self._last is None else (self._last[0], first)
             return Act(first.actions, first, verdicts, reobserve=True)
         return Act(plan.actions, plan, verdicts)
+
+
+def _scene_of(situation: Situation) -> SceneShown:
+    return SceneShown(
+        situation.observation, situation.instruction, situation.vocabulary, situation.limits, situation.facts
+    )
 
 
 def _with_state(plan: Plan, state: PlanState, status: str) -> Plan:

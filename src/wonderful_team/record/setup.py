@@ -13,7 +13,7 @@ from wonderful_team.record.values_file import decode, encode
 
 RENAMED = {"looks": "reobserve"}
 """Fields that records of earlier releases call otherwise."""
-LATER: Mapping[str, Any] = {"reobserve": 0}
+LATER: Mapping[str, Any] = {"reobserve": 0, "facts": ""}
 """Fields that records of earlier releases lack, and what those runs did."""
 
 
@@ -26,6 +26,7 @@ class Setup:
         until: Where planning was to stop; of `plan`.
         targets: What was to be found; of `ground`.
         plan: Id of the plan that was handed in; of `run`.
+        facts: What planners were told of the robot and its place.
     """
 
     entry: Literal["plan", "ground", "run"]
@@ -40,6 +41,7 @@ class Setup:
     reobserve: int = 0
     plan: str | None = None
     scored: bool = True
+    facts: str = ""
 
 
 def setup_entry(

@@ -42,6 +42,7 @@ def situations(folder: Path, record: Record, setup: Setup) -> Iterator[Situation
             plan=recorded_plan(folder, record, setup.plan) if number == 0 and setup.plan is not None else None,
             reobserve_left=asked["looks_left"],
             advice=asked.get("advice", ""),
+            facts=setup.facts,
         )
         before = now
 

@@ -14,6 +14,7 @@ from typing import Any, Literal, Union, get_args, get_origin, get_type_hints
 import numpy as np
 from PIL import Image
 
+from wonderful_team.core.later import is_later
 from wonderful_team.core.values import View
 from wonderful_team.images import OWN_FORMATS, open_picture
 
@@ -143,11 +144,11 @@ def _decode_dataclass(value: Any, kind: Any, place: str) -> Any:
     _require(isinstance(value, Mapping) and value.get("type") == name, value, place, f"an object of type {name!r}")
     hints = _hints(kind)
     names = [item.name for item in fields(kind)]
-    missing = [key for key in names if key not in value]
+    missing = [item.name for item in fields(kind) if item.name not in value and not is_later(item)]
     foreign = [key for key in value if key not in (*names, "type")]
     if missing or foreign:
         raise ValueError(f"{place}: {name} lacks {missing or 'nothing'} and has unknown {foreign or 'nothing'}")
-    return kind(**{key: decode(value[key], hints[key], f"{place}.{key}") for key in names})
+    return kind(**{key: decode(value[key], hints[key], f"{place}.{key}") for key in names if key in value})
 
 
 def _decode_view(value: Any, place: str) -> View:

@@ -8,7 +8,7 @@ from typing import Any, cast
 
 from wonderful_team.core.actions import Action, Vocabulary
 from wonderful_team.core.geometry.arrays import Array
-from wonderful_team.core.protocols import Filmed, offers
+from wonderful_team.core.protocols import Filmed, facts_of, offers
 from wonderful_team.core.values import Instruction, KeepOut, Limits, Observation, StepReport
 
 
@@ -31,6 +31,10 @@ class OwnWorld:
     def limits(self) -> Limits:
         limits = cast(Limits, self.inner.limits)
         return replace(limits, keep_out=(*limits.keep_out, *self.keep_out))
+
+    @property
+    def facts(self) -> str:
+        return facts_of(self.inner)
 
     @property
     def horizon(self) -> int | None:

@@ -6,7 +6,18 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, cast
 
-from wonderful_team.core.protocols import Act, Done, GaveUp, Policy, Privileged, Situation, Subscriber, World, offers
+from wonderful_team.core.protocols import (
+    Act,
+    Done,
+    GaveUp,
+    Policy,
+    Privileged,
+    Situation,
+    Subscriber,
+    World,
+    facts_of,
+    offers,
+)
 from wonderful_team.core.values import Observation, Plan, ReadPlan, Trial
 from wonderful_team.errors import (
     BudgetReached,
@@ -142,6 +153,7 @@ def _attempts(
             plan=read.plan if read is not None else None,
             reobserve_left=reobserve,
             advice=advice,
+            facts=facts_of(world),
         )
         progress.asking(situation)
         decision = decision_of(policy, situation, caller)

@@ -11,7 +11,18 @@ from typing import Any, TypeVar, cast
 
 from wonderful_team.core import deadline
 from wonderful_team.core.actions import Action, Vocabulary
-from wonderful_team.core.protocols import Act, Decision, Done, GaveUp, Policy, Privileged, Score, Situation, World
+from wonderful_team.core.protocols import (
+    Act,
+    Decision,
+    Done,
+    GaveUp,
+    Policy,
+    Privileged,
+    Score,
+    Situation,
+    World,
+    facts_of,
+)
 from wonderful_team.core.values import Instruction, Limits, Observation, Plan, PlannedAction, StepReport, size_problem
 from wonderful_team.errors import (
     MethodCodeError,
@@ -56,6 +67,12 @@ class GuardedWorld:
     @property
     def limits(self) -> Limits:
         return self._own("limits", Limits)
+
+    @property
+    def facts(self) -> str:
+        with code_of(f"facts of world {self._name}", WorldUnavailableError):
+            told = deadline.bounded(f"reading facts of world {self._name}", facts_of, self.inner)
+        return _checked(told, str, f"facts of world {self._name}", WorldUnavailableError)
 
     @property
     def instruction(self) -> Instruction:

@@ -74,7 +74,7 @@ class Written:
         else:
             draft = TargetDraft.model_validate(
                 {"id": f"T{len(self.targets) + 1}", "kind": kind, "words": words, "part": None, "where": where,
-                 "like": list(like), "use": []}
+                 "like": list(like), "alike": "both", "use": []}
             )  # fmt: skip
             self.targets.append(draft)
             self.meanings[draft.id] = meaning

@@ -19,6 +19,7 @@ from wonderful_team.contracts import (
     StepList,
     SubgoalTargets,
     TargetList,
+    WalkedReview,
     WriteSteps,
     step_list_type,
 )
@@ -131,8 +132,12 @@ def _steps(plan: Written, subgoals: Sequence[Subgoal], targets: Sequence[Target]
     return steps
 
 
-def answer_review(context: Context, question: ReviewPlan) -> PlanReview:
+def answer_review(context: Context, question: ReviewPlan) -> WalkedReview:
     """Approve its own plan, and another's that names everything that has to be moved and where to."""
+    return question.walked(_review(context, question))
+
+
+def _review(context: Context, question: ReviewPlan) -> PlanReview:
     task = context.task(question.task)
     about = question.under_check or (question.subgoals[0].id if question.subgoals else "plan")
     if task is None:
@@ -155,7 +160,7 @@ def answer_review(context: Context, question: ReviewPlan) -> PlanReview:
         if "pick" in draft.use and thing not in things:
             text = f"Must the {draft.words} not be moved?"
             if not any(text in line for line in question.checked):
-                return doubt(about, "missing_prerequisite", text)
+                return doubt(about, "missing_subgoal", text)
     return approved("Everything that has to be moved is named.")
 
 

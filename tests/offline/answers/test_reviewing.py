@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 
 from tests.offline.answers.tables import KINDS, ask, draft, slot, table, task
-from wonderful_team.contracts import PlanReview, ReviewPlan, ShownTask
+from wonderful_team.contracts import ReviewPlan, ShownTask, WalkedReview
 from wonderful_team.core.values import Subgoal, Target
 
 SCENE = table(
@@ -29,9 +29,9 @@ def review(
     under: str | None = None,
     checked: tuple[str, ...] = (),
     kinds: tuple[str, ...] = KINDS,
-) -> PlanReview:
+) -> WalkedReview:
     answer = ask(ReviewPlan(shown, kinds, goals, targets, under, checked))
-    assert isinstance(answer, PlanReview)
+    assert isinstance(answer, WalkedReview)
     return answer
 
 
@@ -59,7 +59,7 @@ def test_the_same_plan_in_other_words_passes() -> None:
 def test_missing_step() -> None:
     doubt = review(TASK, GOALS[:1]).doubt
     assert doubt is not None
-    assert doubt.kind == "missing_prerequisite"
+    assert doubt.kind == "missing_subgoal"
     assert "yellow ball" in doubt.question
 
 

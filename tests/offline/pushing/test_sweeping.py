@@ -19,6 +19,7 @@ from wonderful_team.contracts import (
     SceneReading,
     ShownTask,
     StepList,
+    WalkedReview,
     WriteSteps,
 )
 from wonderful_team.core.actions import At, PushStep
@@ -162,7 +163,7 @@ def test_plan_and_steps_are_written_and_pass_their_own_checks() -> None:
     plan = plan_of(text, view)
     task, subgoals, targets = shown(text, view), plan.to_subgoals(), plan_targets(plan)
     review = ask(ReviewPlan(task, PUSH, subgoals, targets))
-    assert isinstance(review, PlanReview)
+    assert isinstance(review, WalkedReview)
     assert review.approved, review.doubt
     question = WriteSteps(task, PUSH, subgoals, targets)
     steps = ask(question)
@@ -189,7 +190,7 @@ def test_another_block_that_would_do_as_well_is_no_mistake() -> None:
             subgoal.model_copy(update={"text": told, "targets": []}).to_subgoal() for subgoal in plan.subgoals
         )
         review = ask(ReviewPlan(shown(text, view), PUSH, subgoals, ()))
-        assert isinstance(review, PlanReview)
+        assert isinstance(review, WalkedReview)
         assert review.approved, review.doubt
 
 

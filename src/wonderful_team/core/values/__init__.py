@@ -5,6 +5,7 @@ from wonderful_team.core.values.ground_truth import GroundTruthView, TrueThing
 from wonderful_team.core.values.limits import NO_WORKSPACE, KeepOut, Limits
 from wonderful_team.core.values.observation import Instruction, Observation, RobotState, Slot, SlotKind, View
 from wonderful_team.core.values.plan import (
+    Alike,
     Critique,
     GroundedTarget,
     GroundingEvent,
@@ -30,6 +31,7 @@ from wonderful_team.core.values.result import (
 )
 
 __all__ = [
+    "Alike",
     "Answer",
     "Critique",
     "GateCheck",

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from wonderful_team.core.later import is_later
 from wonderful_team.core.pictures import pixels_hash
 from wonderful_team.core.values.observation import View
 
@@ -59,6 +60,10 @@ def _canonical(value: Any, without: frozenset[str]) -> Any:
         case tuple() | list():
             return [_canonical(item, without) for item in value]
     if is_dataclass(value) and not isinstance(value, type):
-        named = {item.name: getattr(value, item.name) for item in fields(value) if item.name not in without}
+        named = {
+            item.name: getattr(value, item.name)
+            for item in fields(value)
+            if item.name not in without and not (is_later(item) and getattr(value, item.name) == item.default)
+        }
         return {"type": type(value).__name__, **{key: _canonical(item, without) for key, item in named.items()}}
     raise TypeError(f"no canonical form for {type(value).__name__}")

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from wonderful_team.core.geometry import Box
+from wonderful_team.core.later import later
 
 
 @dataclass(frozen=True)
@@ -26,18 +27,22 @@ class Limits:
         low_m, high_m: Corners of the workspace, shape (3,) [m], base frame.
         keep_out: Regions nothing may enter.
         clearance_m: Height at which things are carried over the table [m].
+        blade_m: Width of what pushes, across the way of a push [m]; None where nobody says.
     """
 
     low_m: tuple[float, float, float]
     high_m: tuple[float, float, float]
     keep_out: tuple[KeepOut, ...] = ()
     clearance_m: float = 0.2
+    blade_m: float | None = later(None)
 
     def __post_init__(self) -> None:
         if not all(math.isfinite(value) for value in (*self.low_m, *self.high_m, self.clearance_m)):
             raise ValueError(
                 f"workspace: every number must be finite, got {self.low_m}, {self.high_m} m, clearance {self.clearance_m} m"
             )
+        if self.blade_m is not None and not 0 < self.blade_m < math.inf:
+            raise ValueError(f"blade: its width must be more than 0 m, got {self.blade_m} m")
         if any(low >= high for low, high in zip(self.low_m, self.high_m, strict=True)):
             raise ValueError(f"workspace: every low must be below its high, got {self.low_m} and {self.high_m} m")
 

@@ -13,6 +13,7 @@ from typing import Literal, TypeAlias
 from wonderful_team.core.actions import Action, Step
 from wonderful_team.core.geometry import Box
 from wonderful_team.core.jsonable import to_jsonable
+from wonderful_team.core.later import later
 from wonderful_team.core.pictures import Point
 from wonderful_team.core.values.content import content_hash
 from wonderful_team.core.values.limits import KeepOut
@@ -20,6 +21,8 @@ from wonderful_team.core.values.observation import Instruction
 
 Provenance: TypeAlias = Literal["model", "offline", "simulated", "scripted", "cached", "injected", "replayed", "user"]
 PointRole: TypeAlias = Literal["pick", "place", "push_start", "push_end", "grasp"]
+Alike: TypeAlias = Literal["both", "shape", "surface"]
+"""What a thing has in common with the pictures that it is like: shape and surface, or one of the two."""
 
 
 @dataclass(frozen=True)
@@ -33,8 +36,9 @@ class Target:
         part: Which part of it matters ("handle"), or None.
         where: How it stands to other things ("left of the blue bowl"), or "".
         source: scene, or slot when it is described by the instruction's pictures.
-        like: Names of the instruction's slots that show what it looks like.
+        like: Names of the instruction's slots that show what it looks like; for an area, those that define it.
         use: What its points are for; an object is picked and an area placed on unless the plan says otherwise.
+        alike: What it has in common with those pictures; surface is colour and pattern.
     """
 
     id: str
@@ -45,6 +49,7 @@ class Target:
     source: Literal["scene", "slot"] = "scene"
     like: tuple[str, ...] = ()
     use: tuple[PointRole, ...] = ()
+    alike: Alike = later("both")
 
     @property
     def roles(self) -> tuple[PointRole, ...]:

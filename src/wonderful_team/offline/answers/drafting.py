@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from wonderful_team.contracts import (
@@ -17,7 +17,7 @@ from wonderful_team.contracts import (
     TargetList,
 )
 from wonderful_team.contracts.shown import ShownTask
-from wonderful_team.core.values import PointRole
+from wonderful_team.core.values import Alike, PointRole
 from wonderful_team.errors import NotUnderstoodError
 from wonderful_team.offline.description import Description
 from wonderful_team.offline.eyes import Eyes, eyes_of_task, is_shown_alone, side_words, told_apart
@@ -32,6 +32,7 @@ from wonderful_team.offline.pushing.sweeping import place_words
 
 _SIDE_WORDS = {"left": "to the left of", "right": "to the right of", "above": "above", "below": "below",
                "near": "next to", "in": "into", "on": "onto"}  # fmt: skip
+_ALIKE: Mapping[str | None, Alike] = {None: "both", "texture": "surface", "shape": "shape"}
 MOST_NAMED = 8
 """Things of a picture that are named when the words fit none."""
 
@@ -54,16 +55,19 @@ class _Writer:
         if description.placed is not None:
             words = render(replace(description, like=None))
         where = "; ".join(relation_words(related) for related in description.related)
-        return self._known(words, where, like, use, kind or ("area" if description.noun == "area" else "object"))
+        what = kind or ("area" if description.noun == "area" else "object")
+        return self._known(words, where, like, use, what, _ALIKE[description.like_only])
 
-    def _known(self, words: str, where: str, like: list[str], use: PointRole, what: str) -> str:
+    def _known(self, words: str, where: str, like: list[str], use: PointRole, what: str, alike: Alike = "both") -> str:
         for position, known in enumerate(self.targets):
             if (known.words, known.where, known.like) == (words, where, like):
                 if use not in known.use:
                     self.targets[position] = known.model_copy(update={"use": [*known.use, use]})
                 return known.id
         name = f"T{len(self.targets) + 1}"
-        self.targets.append(TargetDraft(id=name, kind=what, words=words, part=None, where=where, like=like, use=[use]))
+        self.targets.append(
+            TargetDraft(id=name, kind=what, words=words, part=None, where=where, like=like, alike=alike, use=[use])
+        )
         return name
 
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from wonderful_team.contracts import CritiqueDraft, PlanReview, ReviewPlan
+from wonderful_team.contracts import CritiqueDraft, PlanReview, ReviewPlan, WalkedReview
 from wonderful_team.contracts.shown import ShownTask
 from wonderful_team.core.values import Subgoal, Target
 from wonderful_team.errors import NotUnderstoodError
@@ -197,7 +197,7 @@ def _missing(aim: Aim, index: int, wanted: Aims, read: Sequence[ReadSubgoal]) ->
             about = item.subgoal.id
             break
     why = f" ({aim.why})" if aim.why else ""
-    return Finding(about, "missing_prerequisite", f"Where is '{aim_text(aim)}'{why}? No subgoal brings it about.")
+    return Finding(about, "missing_subgoal", f"Where is '{aim_text(aim)}'{why}? No subgoal brings it about.")
 
 
 def _wrong_targets(item: ReadSubgoal) -> list[Finding]:
@@ -274,8 +274,12 @@ def _order(wanted: Sequence[Aim], read: Sequence[ReadSubgoal]) -> list[Finding]:
     return []
 
 
-def answer_review(question: ReviewPlan) -> PlanReview:
+def answer_review(question: ReviewPlan) -> WalkedReview:
     """One doubt about one subgoal, or approval."""
+    return question.walked(_review(question))
+
+
+def _review(question: ReviewPlan) -> PlanReview:
     found = findings(question.task, question.subgoals, question.targets, question.step_kinds)
     if question.under_check is not None:
         found = [item for item in found if item.about in (question.under_check, "plan")]

@@ -10,11 +10,14 @@ from wonderful_team.core.actions import Action, PickPlace, Push, Vocabulary
 from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.values import Instruction, Limits, Observation, RobotState, StepReport, View
 from wonderful_team.errors import ConfigError
+from wonderful_team.sims.facts import blade_facts, suction_facts
 from wonderful_team.sims.tabletop.cameras import CAMERA_NAMES, TABLE_HIGH_M, TABLE_LOW_M
+from wonderful_team.sims.tabletop.model import BLADE_HALF_M
 from wonderful_team.sims.tabletop.options import Tiers, asked
 from wonderful_team.sims.tabletop.privileged import TabletopTruth
 from wonderful_team.sims.tabletop.registering import find_task
 from wonderful_team.sims.tabletop.spatula import SHORTEST_M
+from wonderful_team.sims.tabletop.suction import CUP_RADIUS_M
 from wonderful_team.sims.tabletop.table import Snapshot, Table
 
 MOST_TURN_RAD = 2 * math.pi + 1e-6
@@ -53,7 +56,9 @@ class TabletopWorld:
         self.task, self.seed, self.horizon = found.name, seed, found.horizon
         self.partition, self.tiers = partition, wanted.tiers
         self.vocabulary: Vocabulary = found.vocabulary
-        self.limits = Limits(TABLE_LOW_M, TABLE_HIGH_M)
+        blade_m = 2 * BLADE_HALF_M[1] if "push" in self.vocabulary.kinds else None
+        self.limits = Limits(TABLE_LOW_M, TABLE_HIGH_M, blade_m=blade_m)
+        self.facts = suction_facts(2 * CUP_RADIUS_M) if blade_m is None else blade_facts(blade_m)
         self._table = Table(
             found, seed, wanted.size_px, recolour=recolour, renderer=renderer, partition=partition, tiers=wanted.tiers
         )

@@ -21,6 +21,8 @@ LOW_XY_M, HIGH_XY_M = (0.25, -0.5), (0.75, 0.5)
 TOP_M = 0.3
 STARTS_BEHIND_M = 0.02
 STOPS_BEFORE_M = 0.05
+BLADE_M = 0.05
+"""Width of its spatula: as the file of Ravens has it, whose arm and tools the benchmark uses; not measured."""
 SHORTEST_M = 0.005
 """The shortest push; one without length keeps the benchmark's arm busy for 20 s."""
 ROUNDING_M = 1e-4
@@ -30,6 +32,7 @@ PICK_LIMITS = Limits((*LOW_XY_M, 0.0), (*HIGH_XY_M, TOP_M))
 PUSH_LIMITS = Limits(
     (LOW_XY_M[0] - STARTS_BEHIND_M, LOW_XY_M[1] - STARTS_BEHIND_M, 0.0),
     (HIGH_XY_M[0] + STARTS_BEHIND_M, HIGH_XY_M[1] + STARTS_BEHIND_M, TOP_M),
+    blade_m=BLADE_M,
 )
 """Of a push: the blade can come down 2 cm behind the table's edge to push a block that lies close to it."""
 

@@ -9,9 +9,10 @@ from wonderful_team.core.actions import PICK_PLACE, Action, PickPlace, Push, Voc
 from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.values import Instruction, Limits, Observation, RobotState, Slot, SlotKind, StepReport, View
 from wonderful_team.errors import ConfigError, UnknownNameError, WorldUnavailableError
+from wonderful_team.sims.facts import blade_facts, suction_facts
 from wonderful_team.sims.vimabench.cameras import CAMERA_NAMES, camera
 from wonderful_team.sims.vimabench.client import OPEN_TIMEOUT_S, STEP_TIMEOUT_S, Simulator
-from wonderful_team.sims.vimabench.converting import PICK_LIMITS, PUSH_LIMITS, Converted, converted
+from wonderful_team.sims.vimabench.converting import BLADE_M, PICK_LIMITS, PUSH_LIMITS, Converted, converted
 from wonderful_team.sims.vimabench.finding import find_installation
 from wonderful_team.sims.vimabench.privileged import Episode, VimaTruth
 from wonderful_team.sims.vimabench.tasks import TASKS, partitions
@@ -61,6 +62,7 @@ class VimaWorld:
             raise
         self.vocabulary: Vocabulary = PUSH if said["tool"] == "spatula" else PICK_PLACE
         self.limits: Limits = PUSH_LIMITS if said["tool"] == "spatula" else PICK_LIMITS
+        self.facts = blade_facts(BLADE_M) if said["tool"] == "spatula" else suction_facts()
         self.horizon = int(said["horizon"])
         self.versions = {str(name): str(version) for name, version in said["versions"].items()}
         self.instruction = _instruction(str(said["instruction"]), said["slots"], pictures)

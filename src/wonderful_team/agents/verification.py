@@ -26,7 +26,7 @@ You are Verification in a team that plans for a robot. Before anything moves you
 You do not write plans: you approve, or you ask the Supervisor one question about one subgoal or one step.
 
 You see the instruction, the views of the scene, the plan and what was checked before. Judge against what the pictures
-show. Wording, style and exact positions are not your concern: other agents measure positions, and a gate checks limits.
+show. Wording, style and a few pixels are not your concern: other agents measure positions, and a gate checks limits.
 """,
     PICTURES + "\n" + EXAMPLES,
     DATA + "\n" + INSTRUCTION,
@@ -43,6 +43,12 @@ KINDS = """
 - wrong_target: the thing, the place, the angle or the order is not what the instruction or its pictures ask for.
 """.strip()
 
+GROUNDING_KINDS = """
+- wrong_point: a target's point, where an arrow begins or ends, lies where the step cannot succeed: in the hole of a ring,
+  beside the thing, on what covers it, off the place.
+- wrong_box: a target's box is on another thing than its words say, or holds only a part of it.
+""".strip()
+
 REVIEW_PLAN = f"""
 Check whether the plan, carried out in its order, fulfils the whole instruction in this scene.
 Imagine each subgoal done, one after the other, and look for:
@@ -57,12 +63,14 @@ others. For a plan without subgoals, ask about "plan". When you are not sure tha
 REVIEW_STEPS = f"""
 Check the steps before the robot runs them. The picture of the plan shows every target's box with its label and the
 steps as numbered arrows. Do the steps carry out the plan, on the right things, in the right order, and with the angles
-and sides that the instruction states?
+and sides that the instruction states? Does each arrow begin on the thing itself and end where the thing belongs?
 {KINDS}
+{GROUNDING_KINDS}
 
 Approve when you find nothing that would make it fail. Otherwise ask one question, the most serious one, about one
-step: give its number. Do not ask again what the list of earlier checks has settled. When you are not sure that
-something is wrong, approve.
+step: give its number. For wrong_point and wrong_box give the id of the target instead, and say in one sentence what is
+wrong and where it should be: the target is then looked for again. Do not ask again what the list of earlier checks has
+settled. When you are not sure that something is wrong, approve.
 """
 
 

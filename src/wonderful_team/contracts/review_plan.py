@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
 
@@ -10,14 +11,20 @@ from pydantic import Field
 from wonderful_team.contracts.shown import AnswerModel, Question, Reasoning, ShownTask, known
 from wonderful_team.core.values import Subgoal, Target
 
+GROUNDING_KINDS = ("wrong_point", "wrong_box")
+"""Kinds of doubt about where a target was found; they name the target, which is then looked for again."""
+
 
 class CritiqueDraft(AnswerModel):
-    """One question about one subgoal or step."""
+    """One question about one subgoal or step, or about where a target was found."""
 
-    about: str = Field(description="Id of the subgoal (or number of the step) in doubt.")
+    about: str = Field(
+        description="Id of the subgoal (or number of the step) in doubt; of the target for wrong_point and wrong_box."
+    )
     kind: Literal[
-        "collision", "physical_constraint", "missing_prerequisite", "ambiguity", "needless_step", "wrong_target"
-    ]
+        "collision", "physical_constraint", "missing_prerequisite", "ambiguity", "needless_step", "wrong_target",
+        "wrong_point", "wrong_box",
+    ]  # fmt: skip
     question: str = Field(min_length=1)
 
 
@@ -53,9 +60,22 @@ class ReviewPlan(Question):
         return answer, ()
 
 
-def check_review(answer: PlanReview, ids: list[str], what: str) -> None:
-    """Raise ValueError when approval and doubt contradict each other, or the doubt is about nothing."""
+def check_review(answer: PlanReview, ids: list[str], what: str, drawn: Sequence[str] = ()) -> None:
+    """Raise ValueError when approval and doubt contradict each other, or the doubt is about nothing.
+
+    Args:
+        answer: What Verification said.
+        ids: What a doubt may be about.
+        what: What these are.
+        drawn: Targets whose boxes and points are drawn: what a doubt about a point or box may be about.
+    """
     if answer.approved == (answer.doubt is not None):
         raise ValueError("doubt must be null exactly when approved is true")
-    if answer.doubt is not None:
+    if answer.doubt is None:
+        return
+    if answer.doubt.kind not in GROUNDING_KINDS:
         known([answer.doubt.about], ids, what)
+    elif drawn:
+        known([answer.doubt.about], drawn, f"target for a doubt of kind {answer.doubt.kind}")
+    else:
+        raise ValueError(f"{answer.doubt.kind} is for drawn points and boxes; none are drawn yet: use wrong_target")

@@ -26,7 +26,6 @@ import numpy as np
 from benchmarks.offline_success import VIMA
 from wonderful_team.contracts import (
     DraftPlan,
-    JudgeBox,
     PlanDraft,
     PlanReview,
     Question,
@@ -44,7 +43,8 @@ from wonderful_team.models.client import ModelClient
 from wonderful_team.models.wrappers import Injecting, Injection
 from wonderful_team.offline import OfflineModel
 from wonderful_team.planning import TeamConfig, TeamPolicy
-from wonderful_team.planning.boxes import Job
+from wonderful_team.planning.jobs import Job
+from wonderful_team.planning.judged import judge_box
 from wonderful_team.planning.scene import SceneShown
 from wonderful_team.planning.session import AgentSession
 from wonderful_team.sims.tabletop import TabletopWorld, make_world
@@ -280,8 +280,7 @@ async def check_boxes(n: int, first: int) -> dict[str, Confusion]:
             if box is None:
                 continue
             job = Job(session, where.shown, target, 0, (), where.shown.examples([target]))
-            crop_shown = job.crop_with("crop", box, box, "target")
-            said = await objection(session, JudgeBox(target, crop_shown, job.examples), "ground")
+            said = await objection(session, judge_box(job, box, {}), "ground")
             bad = kind != "none"
             by_kind[kind] = by_kind.get(kind, Confusion()).add(bad=bad, objected=said is not None)
             done += 1

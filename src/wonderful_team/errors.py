@@ -279,6 +279,10 @@ class PlanError(WonderfulTeamError):
     stage = "plan"
 
 
+class GeometryError(PlanError):
+    """The numbers of a step cannot be computed: no room, no point, a place outside of the view; says what was measured."""
+
+
 class NotFoundError(WonderfulTeamError):
     """A target is not in the picture, or could not be grounded within the bounds."""
 

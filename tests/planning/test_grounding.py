@@ -9,9 +9,9 @@ import pytest
 from tests.planning.helpers import Tape, asked, draft, plan_with, scripted, subgoal
 from wonderful_team.planning import Bounds, TeamConfig
 
-REVISE = {"reasoning": "", "decision": "revise", "problem": "too far right"}
-REJECT = {"reasoning": "", "decision": "reject", "problem": "another thing"}
-ACCEPT = {"reasoning": "", "decision": "accept", "problem": ""}
+REVISE = {"reasoning": "", "decision": "revise", "problem": "too far right", "wrong_points": []}
+REJECT = {"reasoning": "", "decision": "reject", "problem": "another thing", "wrong_points": []}
+ACCEPT = {"reasoning": "", "decision": "accept", "problem": "", "wrong_points": []}
 NOT_HERE = {"reasoning": "", "found": False, "points": []}
 
 

@@ -120,7 +120,7 @@ class TalkingPolicy:
         again = replace(first, attempt=1, feedback="decision: should be accept, revise or reject")
         self._tell("request", again.id, again)
         self._wait()
-        verdict = BoxVerdict(reasoning="tight", decision="accept", problem="")
+        verdict = BoxVerdict(reasoning="tight", decision="accept", problem="", wrong_points=[])
         for request in (sent[1], again):
             answer = Answer(
                 verdict, Usage(1, 400, 0, 0, 30, 1, usd=None), "offline", provenance="offline", repairs=("box clamped",)

@@ -8,17 +8,20 @@ from __future__ import annotations
 from wonderful_team.agents.common import ANSWER, DATA, EXAMPLES, PICTURES, system_words
 from wonderful_team.agents.rendering import example_parts, picture_parts, target_words, words
 from wonderful_team.agents.role import Ask, role
-from wonderful_team.contracts import JudgeBox, JudgeRevision
+from wonderful_team.contracts import JudgeBox, JudgeRevision, Tolerance
+from wonderful_team.core.pictures import Picture
 from wonderful_team.core.values import Part
+from wonderful_team.images import line_width_px
 
 SYSTEM = system_words(
     """
-You are the Checker of a team that finds things for a robot. You judge boxes on enlarged crops: is the box tight on the
-right thing? A Mover proposes changes; you decide whether they are kept and when the work is done.
+You are the Checker of a team that finds things for a robot. You judge boxes on enlarged crops, and the points at which
+the robot would act: is the box tight on the right thing, and would it work at these points? A Mover proposes changes of
+boxes; you decide whether they are kept and when the work is done.
 
-You see only a crop and the target, on purpose. Judge the box and nothing else: neither the plan nor whether the target
-was a good choice. Propose no coordinates. A good box encloses the whole visible target, or the named part of it, and
-each edge lies close to the target's outermost pixel. Shadows do not belong to it.
+You see only a crop and the target, on purpose. Judge the box and its points and nothing else: neither the plan nor
+whether the target was a good choice. Propose no coordinates. A good box encloses the whole visible target, or the named
+part of it, and each edge lies close to the target's outermost pixel. Shadows do not belong to it.
 """,
     PICTURES + "\n" + EXAMPLES,
     DATA,
@@ -26,30 +29,57 @@ each edge lies close to the target's outermost pixel. Shadows do not belong to i
 )
 
 JUDGE_BOX = """
-Judge the box that is drawn on the crop.
-- accept: it is on the target, nothing of the target is cut off, and no edge is further away from it than about a tenth
-  of the target's size. Do not send back what is good enough. problem is empty.
-- revise: it is on the target, but an edge cuts into it or stands too far away. Say in problem which edge, and whether it
-  should go outward or inward, or in which direction the whole box should shift.
+Judge the box that is drawn on the crop. An edge of the box is the middle of the drawn line; how far it may lie off,
+inwards and outwards, is stated with the target.
+- accept: it is on the target, and every edge is within these limits. Do not send back what is good enough. problem is
+  empty.
+- revise: it is on the target, but an edge cuts into it or stands away from it by more. Say in problem which edge, and
+  whether it should go outward or inward, or in which direction the whole box should shift.
 - reject: it is on another thing or on nothing, or holds less than about a third of the target. Say in problem what is
-  in the box instead. For an area: reject when the region is not what is described.
+  in the box instead. For an area: reject when the region is not what is described, or, where the same part of the
+  instruction's scene is shown, not where that scene has it.
+- Where the whole view is shown, look there whether this is the one of several that the target's "where" means.
+
+Judge every point that is drawn, by the use that stands at it. List in wrong_points those that would not work:
+- pick, grasp: it has to lie on the solid surface of the target itself, not in a hole, not beside it, not on something
+  that covers it. It need not be exactly in the middle.
+- place: it has to lie inside the container, on the surface or in the free space that is described.
+- push_start: beside the target, clear of it. push_end: where something can be pushed to.
 """
 
 JUDGE_REVISION = """
 Both crops show the same piece of the scene, each with its own box: before and after one revision. Compare the boxes.
+An edge of a box is the middle of the drawn line; how far it may lie off, inwards and outwards, is stated with the target.
 - keep_before: the revision is worse, or no better.
-- take_after_go_on: it is better, but an edge still cuts the target or stands clearly too far away.
-- take_after_stop: it is at least as good, cuts nothing off, and no edge is further away than about a tenth of the
-  target's size.
+- take_after_go_on: it is better, but an edge still lies off by more than the limits.
+- take_after_stop: it is at least as good, and every edge is within the limits.
 """
 
 
+def _tolerance_parts(picture: Picture) -> list[Part]:
+    tolerance = Tolerance.on(picture)
+    return words(
+        f"Good enough on this crop, on which the box's line is {line_width_px(picture)} px wide: an edge cuts off at most "
+        f"{tolerance.inward_px} px of the target, and stands at most {tolerance.outward_px} px away from it."
+    )
+
+
 def _render_judge_box(question: JudgeBox) -> list[Part]:
+    uses = ", ".join(question.uses) or "none; they are chosen later"
     return [
         *example_parts(question.examples),
+        *_optional(question.alike, "another thing of the same description, whose box was accepted"),
+        *_optional(question.whole, "the whole main view, to see which one it is"),
+        *_optional(question.goal, "the same part of the instruction's scene, with the same box"),
         *picture_parts(question.crop, "the neighbourhood of the box"),
         *words(f"Target {target_words(question.target)}"),
+        *_tolerance_parts(question.crop),
+        *words(f"Points drawn, by their use: {uses}."),
     ]
+
+
+def _optional(picture: Picture | None, about: str) -> list[Part]:
+    return [] if picture is None else picture_parts(picture, about)
 
 
 def _render_judge_revision(question: JudgeRevision) -> list[Part]:
@@ -58,6 +88,7 @@ def _render_judge_revision(question: JudgeRevision) -> list[Part]:
         *picture_parts(question.before, "before the revision"),
         *picture_parts(question.after, "after the revision"),
         *words(f"Target {target_words(question.target)}"),
+        *_tolerance_parts(question.after),
     ]
 
 

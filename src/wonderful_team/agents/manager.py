@@ -42,7 +42,8 @@ Point at the target in the picture that is named for the answer.
   several places where this one target could be, the most likely first.
 - Wanted a place: give points at which something can be put down so that it lies in the middle of free, suitable
   space, clear of other things and of the edges.
-- Points that are labelled on the picture as tried or rejected were wrong: choose elsewhere.
+- Points that are labelled on the picture as rejected were wrong: choose elsewhere, and not on the thing that was
+  rejected there. What was said of them tells why.
 - found is false, without points, when you cannot see the target or no such space exists. Do not guess.
 """
 
@@ -88,7 +89,9 @@ Choose the numbered point at which the robot should act on the target. The final
 - pick or grasp: on the solid surface of the target, near its middle, where nothing else covers it. Never a hole, never
   the background inside the box.
 - place: the middle of the container's inside, of the surface, or of the free space.
-- push_start: just beside the thing, on the side away from where it should go. push_end: where the push should stop.
+- push_start: just beside the thing, on the side away from where it should go: an arrow from the box points there, and
+  the whole view shows it. push_end: where the push should stop.
+- A point that is labelled as rejected was wrong; what was said of it tells why. Choose one that is free of this fault.
 - Second round: the points lie close together; choose the one that is most precisely right.
 """
 
@@ -106,6 +109,10 @@ def _plan_parts(plan: tuple[str, ...]) -> list[Part]:
     return listed("The plan", plan, "not stated")
 
 
+def _rejected_parts(lines: tuple[str, ...]) -> list[Part]:
+    return listed("What was said of the points marked as rejected", lines)
+
+
 def render_locate_points(question: LocatePoints) -> list[Part]:
     count = "exactly one point" if question.count == 1 else f"at most {question.count} points"
     return [
@@ -114,6 +121,7 @@ def render_locate_points(question: LocatePoints) -> list[Part]:
         *_plan_parts(question.plan),
         *example_parts(question.examples),
         *_target_parts(question.target),
+        *_rejected_parts(question.rejected),
         *words(f"Wanted: {_WANTED[question.purpose]}; {count} if it is there."),
         *answer_in(question.view),
     ]
@@ -135,6 +143,7 @@ def _render_give_box(question: GiveBox) -> list[Part]:
         *_plan_parts(question.plan),
         *example_parts(question.examples),
         *_target_parts(question.target),
+        *_rejected_parts(question.rejected),
         *answer_in(question.view),
     ]
 
@@ -156,11 +165,14 @@ def _render_presence(question: Presence) -> list[Part]:
 
 def _render_choose_point(question: ChoosePoint) -> list[Part]:
     turn = "second round, fine" if question.fine else "first round, coarse"
+    whole = [] if question.whole is None else picture_parts(question.whole, "the whole main view, to see where it goes")
     return [
+        *whole,
         *picture_parts(question.crop, "the neighbourhood of the target"),
         *_plan_parts(question.plan),
         *example_parts(question.examples),
         *_target_parts(question.target),
+        *_rejected_parts(question.rejected),
         *words(f"Wanted: the point for {question.role} ({turn})."),
     ]
 

@@ -26,7 +26,7 @@ You are Verification in a team that plans for a robot. Before anything moves you
 You do not write plans: you approve, or you ask the Supervisor one question about one subgoal or one step.
 
 You see the instruction, the views of the scene, what is known of the robot, the plan and what was checked before. Judge
-against what the pictures show, not against how well the plan reads. Wording and style are not your concern.
+against what the pictures show, not against how well the plan reads. Wording, style and a few pixels are not your concern.
 """,
     PICTURES + "\n" + EXAMPLES,
     DATA + "\n" + INSTRUCTION,
@@ -44,6 +44,12 @@ KINDS = """
 - ambiguity: more than one thing in the scene fits the words, and it matters which. "Any" leaves the choice open.
 - needless_step: it does not serve the instruction, or repeats another one.
 - wrong_target: the thing, the place, the angle or the order is not what the instruction or its pictures ask for.
+""".strip()
+
+GROUNDING_KINDS = """
+- wrong_point: a target's point, where an arrow begins or ends, lies where the step cannot succeed: in the hole of a ring,
+  beside the thing, on what covers it, off the place.
+- wrong_box: a target's box is on another thing than its words say, or holds only a part of it.
 """.strip()
 
 REVIEW_PLAN = f"""
@@ -73,13 +79,17 @@ steps as numbered arrows; a push is drawn as the strip that its tool sweeps. The
 from what the camera sees. Go through the steps in order and ask of each:
 - Does it carry out its subgoal, on the right thing, to the right place, in the right order, with the angle and side that
   were asked for?
-- Where does its arrow begin and end? The thing's middle lands at the place, wherever it is picked.
+- Does its arrow begin on the thing itself and end where the thing belongs? The thing's middle lands at the place, wherever
+  it is picked.
 - Can it be done with this robot, and what does it hit, sweep along or cover? What the robot lifts over other things
   does not hit them; what it pushes does.
 
 Approve when no answer speaks against a step. Otherwise ask one question, the most serious one, about one step: give its
 number. The kinds:
 {KINDS}
+For these two give the id of the target instead, and say in one sentence what is wrong and where it should be: the target
+is then looked for again.
+{GROUNDING_KINDS}
 What the list of earlier checks has settled is settled: do not ask it again.
 """
 

@@ -5,7 +5,7 @@ from wonderful_team.contracts.choose_point import ChoosePoint, PointChoice
 from wonderful_team.contracts.draft_plan import DraftPlan
 from wonderful_team.contracts.extract_targets import ExtractTargets, SubgoalTargets, TargetList
 from wonderful_team.contracts.give_box import BoxAnswer, GiveBox
-from wonderful_team.contracts.judge_box import BoxVerdict, JudgeBox
+from wonderful_team.contracts.judge_box import BoxVerdict, JudgeBox, WrongPoint
 from wonderful_team.contracts.judge_outcome import JudgeOutcome, Outcome, VerdictDraft
 from wonderful_team.contracts.judge_revision import JudgeRevision, RevisionVerdict
 from wonderful_team.contracts.locate_points import LocatePoints, Points
@@ -16,7 +16,14 @@ from wonderful_team.contracts.read_scene import ReadScene, RolePoint, SceneReadi
 from wonderful_team.contracts.remember import MemoryEntry, Remember
 from wonderful_team.contracts.replan import Advice, Replan
 from wonderful_team.contracts.review_path import PathReview, ReviewPath
-from wonderful_team.contracts.review_plan import CritiqueDraft, PlanReview, ReviewPlan, SubgoalCheck, WalkedReview
+from wonderful_team.contracts.review_plan import (
+    GROUNDING_KINDS,
+    CritiqueDraft,
+    PlanReview,
+    ReviewPlan,
+    SubgoalCheck,
+    WalkedReview,
+)
 from wonderful_team.contracts.review_steps import ReviewSteps
 from wonderful_team.contracts.revise_plan import PlanRevision, RevisePlan
 from wonderful_team.contracts.shown import (
@@ -28,6 +35,7 @@ from wonderful_team.contracts.shown import (
     Question,
     ShownSlot,
     ShownTask,
+    Tolerance,
 )
 from wonderful_team.contracts.steps import PlaceDraft, StepList, step_list_type
 from wonderful_team.contracts.write_function import FunctionCode, WriteFunction
@@ -73,6 +81,7 @@ __all__ = [
     "EdgePresence",
     "ExtractTargets",
     "FunctionCode",
+    "GROUNDING_KINDS",
     "GiveBox",
     "JudgeBox",
     "JudgeOutcome",
@@ -114,9 +123,11 @@ __all__ = [
     "SubgoalTargets",
     "TargetDraft",
     "TargetList",
+    "Tolerance",
     "VerdictDraft",
     "WalkedReview",
     "WriteFunction",
     "WriteSteps",
+    "WrongPoint",
     "step_list_type",
 ]

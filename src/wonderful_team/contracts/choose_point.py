@@ -25,8 +25,11 @@ class ChoosePoint(Question):
     """Asked of the Grounding Manager, once coarse and once fine.
 
     Attributes:
-        crop: The neighbourhood with the final box as a BoxMark and exactly one Candidates mark.
+        crop: The neighbourhood with the final box as a BoxMark and exactly one Candidates mark; for the start of a push
+            with an arrow towards where the thing goes, where that is known.
         fine: Second round: the candidates lie close round the first choice.
+        rejected: What was said of the points that are marked as rejected, one line each.
+        whole: The whole main view with the box, for a push, and an arrow to where the thing goes, where that is known.
     """
 
     target: Target
@@ -35,6 +38,8 @@ class ChoosePoint(Question):
     crop: Picture
     fine: bool = False
     examples: tuple[ShownSlot, ...] = ()
+    rejected: tuple[str, ...] = ()
+    whole: Picture | None = None
 
     @property
     def candidates(self) -> Candidates:

@@ -25,12 +25,14 @@ class GiveBox(Question):
 
     Attributes:
         view: The whole main view with labelled axes and the chosen centre as a PointMark.
+        rejected: What was said of the points that are marked as rejected, one line each.
     """
 
     target: Target
     plan: tuple[str, ...]
     view: Picture
     examples: tuple[ShownSlot, ...] = ()
+    rejected: tuple[str, ...] = ()
 
     def output(self) -> type[AnswerModel]:
         return BoxAnswer

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
 
@@ -11,11 +12,16 @@ from pydantic.json_schema import SkipJsonSchema
 from wonderful_team.contracts.shown import AnswerModel, Question, Reasoning, ShownTask, known, unique
 from wonderful_team.core.values import Subgoal, Target
 
+GROUNDING_KINDS = ("wrong_point", "wrong_box")
+"""Kinds of doubt about where a target was found; they name the target, which is then looked for again."""
+
 
 class CritiqueDraft(AnswerModel):
-    """One question about one subgoal or step."""
+    """One question about one subgoal or step, or about where a target was found."""
 
-    about: str = Field(description="Id of the subgoal (or number of the step) in doubt.")
+    about: str = Field(
+        description="Id of the subgoal (or number of the step) in doubt; of the target for wrong_point and wrong_box."
+    )
     kind: Literal[
         "collision",
         "physical_constraint",
@@ -24,6 +30,8 @@ class CritiqueDraft(AnswerModel):
         "ambiguity",
         "needless_step",
         "wrong_target",
+        "wrong_point",
+        "wrong_box",
     ]
     question: str = Field(min_length=1)
 
@@ -143,9 +151,22 @@ def _said(subgoal: Subgoal, doubt: CritiqueDraft | None) -> SubgoalCheck:
     return SubgoalCheck(subgoal=subgoal.id, **said, verdict="wrong")
 
 
-def check_review(answer: PlanReview | WalkedReview, ids: list[str], what: str) -> None:
-    """Raise ValueError when approval and doubt contradict each other, or the doubt is about nothing."""
+def check_review(answer: PlanReview | WalkedReview, ids: list[str], what: str, drawn: Sequence[str] = ()) -> None:
+    """Raise ValueError when approval and doubt contradict each other, or the doubt is about nothing.
+
+    Args:
+        answer: What Verification said.
+        ids: What a doubt may be about.
+        what: What these are.
+        drawn: Targets whose boxes and points are drawn: what a doubt about a point or box may be about.
+    """
     if answer.approved == (answer.doubt is not None):
         raise ValueError("doubt must be null exactly when approved is true")
-    if answer.doubt is not None:
+    if answer.doubt is None:
+        return
+    if answer.doubt.kind not in GROUNDING_KINDS:
         known([answer.doubt.about], ids, what)
+    elif drawn:
+        known([answer.doubt.about], drawn, f"target for a doubt of kind {answer.doubt.kind}")
+    else:
+        raise ValueError(f"{answer.doubt.kind} is for drawn points and boxes; none are drawn yet: use wrong_target")

@@ -14,7 +14,7 @@ from wonderful_team.core.values import Subgoal, Target
 
 @dataclass(frozen=True, eq=False)
 class ReviewSteps(Question):
-    """Asked of Verification. A doubt's `about` is the number of the step, from 1.
+    """Asked of Verification. A doubt's `about` is the number of the step, from 1; a target's id for its point or box.
 
     Attributes:
         overview: The main view with every target's box and label, and the steps as numbered arrows.
@@ -34,5 +34,6 @@ class ReviewSteps(Question):
         return PlanReview
 
     def validate(self, answer: Any) -> tuple[Any, tuple[str, ...]]:
-        check_review(answer, [str(number) for number in range(1, len(self.steps) + 1)], "step")
+        numbers = [str(number) for number in range(1, len(self.steps) + 1)]
+        check_review(answer, numbers, "step", [target.id for target in self.targets])
         return answer, ()

@@ -5,7 +5,7 @@ from wonderful_team.images.calibration import load_depth
 from wonderful_team.images.candidates import beside_points, inside_points
 from wonderful_team.images.compare import CHANGED, region_change
 from wonderful_team.images.cut import Edge, StripSide, crop, crop_pair, edge_strips, whole
-from wonderful_team.images.draw import draw
+from wonderful_team.images.draw import draw, line_width_px
 from wonderful_team.images.encode import to_png
 from wonderful_team.images.load import OWN_FORMATS, load_picture, open_picture
 from wonderful_team.images.overview import action_arrows, overview
@@ -23,6 +23,7 @@ __all__ = [
     "draw",
     "edge_strips",
     "inside_points",
+    "line_width_px",
     "load_depth",
     "load_picture",
     "open_picture",

@@ -96,6 +96,11 @@ def draw(picture: Picture, ticks: Ticks = Ticks.PIXELS) -> Array:
     return canvas.rgb
 
 
+def line_width_px(picture: Picture) -> int:
+    """How wide a box's line is drawn on a picture [px of it]."""
+    return Canvas.over(picture.rgb).stroke_px
+
+
 def draw_box(canvas: Canvas, corners: Sequence[Point], style: BoxStyle, colour: Colour | None = None) -> None:
     """The outline of a box or quadrangle in its style; keep-out regions are tinted."""
     stroke = colour or BOX_COLOURS[style]

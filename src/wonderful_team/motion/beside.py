@@ -51,13 +51,16 @@ def beside_px(box: Box, side: Side, half: tuple[float, float], view_size_px: tup
     free = abs(x - box.centre[0]) - box.width / 2 - half[0] if dx else abs(y - box.centre[1]) - box.height / 2 - half[1]
     if free < 0:
         needed = 2 * (half[0] if dx else half[1])
-        room = {
+        rooms = {
             "left": box.x0,
             "right": view_size_px[0] - box.x1,
             "above": box.y0,
             "below": view_size_px[1] - box.y1,
-        }[side]
-        raise ValueError(f"{room:.0f} px of the picture lie there, {needed:.0f} px are needed; choose another side")
+        }
+        others = ", ".join(f"{room:.0f} px {other}" for other, room in rooms.items() if other != side)
+        raise ValueError(
+            f"{rooms[side]:.0f} px of the picture lie there, {needed:.0f} px are needed; on the other sides lie {others}"
+        )
     return x, y
 
 

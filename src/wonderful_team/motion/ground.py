@@ -53,7 +53,7 @@ def ground_actions(
         their sources hold the pixels.
 
     Raises:
-        PlanError: A step needs a target, point, box or path that is not there, or a place with no room; names the
+        GeometryError: A step needs a target, point, box or path that is not there, or a place with no room; names the
             step.
     """
     places = Places(grounded, Deprojector(view), limits, {} if paths is None else paths, shares=shared_places(steps))

@@ -12,7 +12,7 @@ from wonderful_team.core.actions import At, Beside, OriginOf, Place
 from wonderful_team.core.geometry import Box
 from wonderful_team.core.pictures import Point
 from wonderful_team.core.values import GroundedTarget, Limits, PointRole
-from wonderful_team.errors import PlanError
+from wonderful_team.errors import GeometryError
 from wonderful_team.motion.beside import beside_px, half_extents
 from wonderful_team.motion.deprojector import Deprojector, ResolvedPoint
 from wonderful_team.motion.sharing import Share, share_px
@@ -44,15 +44,15 @@ class Places:
     step: int = 1
     shares: Mapping[int, Share] = field(default_factory=dict)
 
-    def fail(self, message: str) -> PlanError:
+    def fail(self, message: str) -> GeometryError:
         """The error to raise, naming the step."""
-        return PlanError(f"step {self.step}: {message}")
+        return GeometryError(f"step {self.step}: {message}")
 
     def target(self, name: str) -> GroundedTarget:
         """A grounded target that was found, in this view.
 
         Raises:
-            PlanError: It was not grounded, is not in the picture, or was found in another view.
+            GeometryError: It was not grounded, is not in the picture, or was found in another view.
         """
         if name not in self.grounded:
             known = ", ".join(self.grounded) or "none"
@@ -68,7 +68,7 @@ class Places:
         """The target's chosen point for the first of these roles that it has.
 
         Raises:
-            PlanError: It has none of them, or the point lies outside the view.
+            GeometryError: It has none of them, or the point lies outside the view.
         """
         found = self.target(name)
         for role in roles:
@@ -88,7 +88,7 @@ class Places:
         """The target's box in view pixels.
 
         Raises:
-            PlanError: It has none.
+            GeometryError: It has none.
         """
         box = self.target(name).box
         if box is None:

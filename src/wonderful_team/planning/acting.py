@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
-from wonderful_team.contracts import PlanReview, ReviewSteps, StepList, WriteSteps
+from wonderful_team.contracts import GROUNDING_KINDS, PlanReview, ReviewSteps, StepList, WriteSteps
 from wonderful_team.core.actions import Step
 from wonderful_team.core.pictures import BoxMark, PathMark, Picture, Point, PointMark
+from wonderful_team.core.text import counted
 from wonderful_team.core.values import Critique, GroundedTarget, PlannedAction, View
 from wonderful_team.motion import ground_actions
 from wonderful_team.motion.in_words import numbers_in_words
+from wonderful_team.planning.functions import write_functions
+from wonderful_team.planning.grounding import ENDS, ground_again
+from wonderful_team.planning.jobs import Job
 from wonderful_team.planning.plan_loop import PlanState, settled_lines
 from wonderful_team.planning.scene import SceneShown
 from wonderful_team.planning.session import AgentSession
@@ -37,6 +41,21 @@ def compute(
     return ground_actions(steps, grounded, scene.view, scene.limits, paths=paths)
 
 
+@dataclass(frozen=True, eq=False)
+class Acted:
+    """Steps with their numbers as they stand after Verification's look at them.
+
+    Attributes:
+        grounded: Targets as they are used; one that was doubted may have been found elsewhere, or not at all.
+        actions: None when a doubted target was not found again.
+    """
+
+    state: PlanState
+    steps: tuple[Step, ...]
+    grounded: Mapping[str, GroundedTarget]
+    actions: tuple[PlannedAction, ...] | None
+
+
 async def check_steps(
     session: AgentSession,
     scene: SceneShown,
@@ -44,12 +63,21 @@ async def check_steps(
     steps: tuple[Step, ...],
     grounded: Mapping[str, GroundedTarget],
     paths: Mapping[str, tuple[Point, ...]],
-) -> tuple[PlanState, tuple[Step, ...], tuple[PlannedAction, ...]]:
-    """Verification's look at the steps, drawn over the view; doubts send them back within the bound."""
+    jobs: Sequence[Job],
+) -> Acted:
+    """Verification's look at the steps, drawn over the view.
+
+    A doubt about a step sends the steps back to the Supervisor, one about a point or a box sends its target back to
+    grounding, both within their bounds.
+
+    Raises:
+        GeometryError: The numbers of a step cannot be computed.
+    """
+    looks = session.config.bounds.regrounds
     while True:
         actions = compute(scene, steps, grounded, paths)
         if not session.members.verification:
-            return state, steps, actions
+            return Acted(state, steps, grounded, actions)
         shown = overview_picture(scene, grounded, actions)
         question = ReviewSteps(
             scene.task,
@@ -63,20 +91,49 @@ async def check_steps(
         answer = await session.ask_whole(question, stage="act")
         review: PlanReview = answer.value
         if review.doubt is None:
-            return state, steps, actions
-        if len(state.questions) >= session.config.bounds.questions:
-            session.warn(f"Verification still doubts the steps: {review.doubt.question}")
-            return replace(state, verified=False), steps, actions
-        revised = await write_steps(session, scene, state, tuple(paths), review.doubt.question)
-        doubt = Critique(
-            f"step {review.doubt.about}",
-            review.doubt.kind,
-            review.doubt.question,
-            "steps rewritten" if revised != steps else "steps kept",
-            revised != steps,
-            answer.provenance,
-        )
-        state, steps = replace(state, questions=(*state.questions, doubt)), revised
+            return Acted(state, steps, grounded, actions)
+        about, kind, question = review.doubt.about, review.doubt.kind, review.doubt.question
+        of_target = kind in GROUNDING_KINDS
+        if len(state.questions) >= session.config.bounds.questions or (of_target and looks == 0):
+            bound = (
+                f" after it was looked for {counted(session.config.bounds.regrounds, 'time')} more" if of_target else ""
+            )
+            session.warn(f"Verification still doubts {about if of_target else 'the steps'}{bound}: {question}")
+            return Acted(replace(state, verified=False), steps, grounded, actions)
+        doubt = Critique(about if of_target else f"step {about}", kind, question, provenance=answer.provenance)
+        if of_target:
+            looks -= 1
+            grounded, doubt = await _look_again(jobs, grounded, doubt)
+            if grounded[about].status != "found":
+                return Acted(replace(state, questions=(*state.questions, doubt)), steps, grounded, None)
+            if paths:
+                paths = await write_functions(session, scene, state.subgoals, grounded)
+        else:
+            revised = await write_steps(session, scene, state, tuple(paths), question)
+            done = "steps rewritten" if revised != steps else "steps kept"
+            steps, doubt = revised, replace(doubt, answer=done, changed=revised != steps)
+        state = replace(state, questions=(*state.questions, doubt))
+
+
+async def _look_again(
+    jobs: Sequence[Job], grounded: Mapping[str, GroundedTarget], doubt: Critique
+) -> tuple[dict[str, GroundedTarget], Critique]:
+    """A doubted target, grounded once more; and the doubt with what came of it."""
+    job = next(job for job in jobs if job.target.id == doubt.about)
+    before = grounded[doubt.about]
+    goal = None if job.goal is None else grounded.get(job.goal)
+    job.towards = None if goal is None else next((goal.points[role] for role in ENDS if role in goal.points), None)
+    after = await ground_again(job, before, doubt)
+    moved = (after.box, dict(after.points)) != (before.box, dict(before.points))
+    what = "the point" if doubt.kind == "wrong_point" else "the box"
+    if after.status != "found":
+        answer = f"{doubt.about} was looked for again and not found"
+    elif moved:
+        answer = f"{what} was chosen anew; judge it as it is drawn now"
+    else:
+        answer = f"{doubt.about} was looked for again and {what} is the same"
+    job.session.stage("grounded", f"{doubt.about} doubted by Verification: {answer.partition(';')[0]}")
+    return {**grounded, doubt.about: after}, replace(doubt, answer=answer, changed=moved)
 
 
 def overview_picture(

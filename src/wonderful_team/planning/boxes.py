@@ -5,88 +5,34 @@ Source: Wang, Shen & Stadie 2024, arXiv:2407.19094, Algorithm 2 (inner loop).
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from collections.abc import Mapping
 from typing import Literal, TypeAlias
 
 from wonderful_team.contracts import (
     BoxMove,
     BoxVerdict,
-    JudgeBox,
     JudgeRevision,
     MoveBox,
     Presence,
     PresenceAnswer,
     RevisionVerdict,
-    ShownSlot,
-    Strip,
 )
 from wonderful_team.core.geometry import Box
-from wonderful_team.core.pictures import Axes, BoxMark, Picture, Point
-from wonderful_team.core.values import Answer, GroundingEvent, Provenance, Target
-from wonderful_team.images import crop, edge_strips
-from wonderful_team.planning.scene import SceneShown
-from wonderful_team.planning.session import AgentSession
+from wonderful_team.core.pictures import Axes, BoxMark, Point
+from wonderful_team.core.values import Answer, PointRole
+from wonderful_team.images import crop
+from wonderful_team.planning.jobs import Job
+from wonderful_team.planning.judged import judge_box, said_of
 from wonderful_team.planning.together import together
 
 BoxFate: TypeAlias = Literal["accepted", "rejected", "exhausted"]
 
 
-@dataclass
-class Job:
-    """The grounding of one target: what is known, and its story so far.
-
-    Attributes:
-        number: Place of the target among all, which orders what Memory keeps.
-        avoid: Centres that were tried and rejected, in view pixels.
-    """
-
-    session: AgentSession
-    scene: SceneShown
-    target: Target
-    number: int
-    plan: tuple[str, ...]
-    examples: tuple[ShownSlot, ...]
-    history: list[GroundingEvent] = field(default_factory=list)
-    avoid: list[Point] = field(default_factory=list)
-
-    @property
-    def view_box(self) -> Box:
-        return Box(0, 0, *self.scene.view.size_px)
-
-    def tell(
-        self,
-        what: str,
-        text: str,
-        box: Box | None = None,
-        points: tuple[Point, ...] = (),
-        provenance: Provenance = "model",
-    ) -> None:
-        """Add a line to the target's story; coordinates are view pixels."""
-        self.history.append(GroundingEvent(what, text, box, points, provenance))
-
-    def crop_with(self, name: str, window: Box, box: Box, style: Literal["target", "before", "after"]) -> Picture:
-        """A crop round `window` with `box` marked on it (both view pixels).
-
-        Its axes are labelled in the whole view's pixels, so that it can be found there.
-        """
-        picture = crop(self.scene.view, window, name)
-        return picture.marked(self.view_axes, BoxMark(picture.frame.box_to_picture(box), style))
-
-    @property
-    def view_axes(self) -> Axes:
-        """Axes of a crop, labelled in pixels of the whole view as it is shown."""
-        return Axes(self.scene.views[0].frame)
-
-    def strips(self, box: Box) -> tuple[Strip, ...]:
-        return tuple(Strip(edge, side, cut) for (edge, side), cut in edge_strips(self.scene.view, box).items())
-
-
-async def first_judgement(job: Job, box: Box) -> tuple[BoxVerdict, PresenceAnswer | None]:
-    """The Checker's first word; in `paper` the edge strips are read at the same time."""
-    crop_shown = job.crop_with("crop", box, box, "target")
-    ask_judge = job.session.ask_whole(
-        JudgeBox(job.target, crop_shown, job.examples), stage="ground", branch=job.target.id
-    )
+async def first_judgement(
+    job: Job, box: Box, points: Mapping[PointRole, Point]
+) -> tuple[BoxVerdict, PresenceAnswer | None]:
+    """The Checker's first word on a box and its points; in `paper` the edge strips are read at the same time."""
+    ask_judge = job.session.ask_whole(judge_box(job, box, points), stage="ground", branch=job.target.id)
     presence: PresenceAnswer | None = None
     if job.session.config.mode == "paper":
         ask_strips = job.session.ask_whole(
@@ -97,17 +43,34 @@ async def first_judgement(job: Job, box: Box) -> tuple[BoxVerdict, PresenceAnswe
     else:
         judged = await ask_judge
     verdict: BoxVerdict = judged.value
+    job.problem, job.wrong_points = verdict.problem, tuple(verdict.wrong_points)
     text = f"Checker: {verdict.decision}" + (f" - {verdict.problem}" if verdict.problem else "")
     job.tell("verdict", text, box, provenance=judged.provenance)
+    for wrong in verdict.wrong_points:
+        said = f"Checker: reject the {said_of(wrong.use)} point - {wrong.why}"
+        job.tell("verdict", said, box, (points[wrong.use],), judged.provenance)
     return verdict, presence
 
 
-async def refine(job: Job, box: Box) -> tuple[BoxFate, Box]:
-    """Judge a first box and improve it. Returns its fate and the best box so far, in view pixels."""
+async def refine(job: Job, box: Box, points: Mapping[PointRole, Point] | None = None) -> tuple[BoxFate, Box]:
+    """Judge a first box and improve it. Returns its fate and the best box so far, in view pixels.
+
+    Args:
+        job: The target.
+        box: Its first box [view px].
+        points: Those that were chosen together with the box [view px]; which of them are wrong stands in the job then.
+    """
+    fate, box = await _refine(job, box, points or {})
+    if fate == "accepted" and job.session.members.checker:
+        job.accepted[job.target.id] = (job.target, box)
+    return fate, box
+
+
+async def _refine(job: Job, box: Box, points: Mapping[PointRole, Point]) -> tuple[BoxFate, Box]:
     members = job.session.members
     problem, presence = "", None
     if members.checker:
-        verdict, presence = await first_judgement(job, box)
+        verdict, presence = await first_judgement(job, box, points)
         if verdict.decision != "revise":
             return ("accepted" if verdict.decision == "accept" else "rejected"), box
         problem = verdict.problem
@@ -161,10 +124,11 @@ async def _propose(job: Job, box: Box, problem: str, lines: tuple[str, ...]) -> 
 
 async def _judge_revision(job: Job, before: Box, after: Box) -> str:
     both = Box.bounding([*before.corners, *after.corners])
+    shown = job.crop_with("after", both, after, "after")
     question = JudgeRevision(
         job.target,
         job.crop_with("before", both, before, "before"),
-        job.crop_with("after", both, after, "after"),
+        shown,
         job.examples,
     )
     answer = await job.session.ask_whole(question, stage="ground", branch=job.target.id)

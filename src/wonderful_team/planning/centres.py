@@ -6,15 +6,15 @@ from typing import Literal
 
 from wonderful_team.contracts import BoxAnswer, ChooseMark, GiveBox, LocatePoints, MarkChoice, Points
 from wonderful_team.core.geometry import Box
-from wonderful_team.core.pictures import Candidates, Picture, Point, PointMark
-from wonderful_team.planning.boxes import Job
+from wonderful_team.core.pictures import Candidates, Point, PointMark
+from wonderful_team.planning.jobs import Job
 from wonderful_team.planning.together import together
 
 
 async def propose(job: Job, purpose: Literal["centre", "place"]) -> list[Point]:
     """Independent proposals in view pixels; empty when most samples say that the target is not there."""
-    view = with_avoided(job)
-    question = LocatePoints(job.target, purpose, job.plan, view, job.scene.views[1:], job.examples, count=1)
+    view, said = job.with_rejected(job.scene.labelled)
+    question = LocatePoints(job.target, purpose, job.plan, view, job.scene.views[1:], job.examples, 1, said)
     samples: list[Points] = await together(
         [
             job.session.ask(question, stage="ground", branch=job.target.id, sample=number)
@@ -45,10 +45,10 @@ async def choose(job: Job, proposals: list[Point], purpose: Literal["centre", "p
 
 async def give_box(job: Job, centre: Point) -> Box | None:
     """A first box round a centre, in view pixels; None when the Manager finds nothing there."""
-    view = with_avoided(job)
+    view, said = job.with_rejected(job.scene.labelled)
     marked = view.marked(PointMark(view.frame.point_to_picture(centre), "centre"))
     answer = await job.session.ask_whole(
-        GiveBox(job.target, job.plan, marked, job.examples), stage="ground", branch=job.target.id
+        GiveBox(job.target, job.plan, marked, job.examples, said), stage="ground", branch=job.target.id
     )
     given: BoxAnswer = answer.value
     if given.box is None:
@@ -57,9 +57,3 @@ async def give_box(job: Job, centre: Point) -> Box | None:
     box = view.frame.box_to_view(given.box.as_box)
     job.tell("box", "Manager's first box", box, (centre,), provenance=answer.provenance)
     return box
-
-
-def with_avoided(job: Job) -> Picture:
-    """The labelled view with rejected centres marked."""
-    view = job.scene.labelled
-    return view.marked(*(PointMark(view.frame.point_to_picture(point), "rejected") for point in job.avoid))

@@ -14,14 +14,18 @@ from typing import Literal, TypeAlias
 from wonderful_team.contracts import LocatePoints, Points, ReadScene, SceneReading
 from wonderful_team.core.geometry import Box
 from wonderful_team.core.pictures import Point
-from wonderful_team.core.values import GroundedTarget, Provenance, Subgoal, Target
-from wonderful_team.planning.boxes import Job, refine
+from wonderful_team.core.values import Critique, GroundedTarget, PointRole, Provenance, Subgoal, Target
+from wonderful_team.planning.boxes import BoxFate, refine
 from wonderful_team.planning.centres import choose, give_box, propose
+from wonderful_team.planning.jobs import Job
+from wonderful_team.planning.judged import said_of
 from wonderful_team.planning.points import choose_points
 from wonderful_team.planning.scene import SceneShown, plan_lines
 from wonderful_team.planning.session import AgentSession
 from wonderful_team.planning.together import together
 
+ENDS: tuple[PointRole, ...] = ("push_end", "place")
+"""Uses of what something is brought to."""
 Fate: TypeAlias = Literal["found", "absent", "gave_up"]
 MOVED_SHARE = 0.15
 """When refining moved a box's centre by more than this share of its size, a point read with the old box is stale."""
@@ -31,10 +35,28 @@ def make_jobs(
     session: AgentSession, scene: SceneShown, targets: Sequence[Target], subgoals: Sequence[Subgoal]
 ) -> list[Job]:
     """One job per target."""
-    lines = plan_lines(subgoals)
+    lines, accepted = plan_lines(subgoals), dict[str, tuple[Target, Box]]()
     return [
-        Job(session, scene, target, number, lines, scene.examples([target])) for number, target in enumerate(targets)
+        Job(
+            session,
+            scene,
+            target,
+            number,
+            lines,
+            scene.examples([target]),
+            _goal_of(target, targets, subgoals),
+            accepted,
+        )
+        for number, target in enumerate(targets)
     ]
+
+
+def _goal_of(target: Target, targets: Sequence[Target], subgoals: Sequence[Subgoal]) -> str | None:
+    """Where a target is pushed to: what the same subgoal ends at."""
+    if "push_start" not in target.roles:
+        return None
+    beside = {name for subgoal in subgoals if target.id in subgoal.targets for name in subgoal.targets} - {target.id}
+    return next((one.id for one in targets if one.id in beside and set(one.roles) & set(ENDS)), None)
 
 
 async def ground_paper(jobs: Sequence[Job]) -> dict[str, GroundedTarget]:
@@ -58,18 +80,18 @@ async def ground_object(job: Job) -> GroundedTarget:
             return _end(job, "absent" if best is None else "gave_up", best)
         centre = await choose(job, proposals, "centre")
         if centre is None:
-            job.avoid += proposals
+            job.reject(proposals, "it is not on the target")
             continue
         box = await give_box(job, centre)
         if box is None:
-            job.avoid.append(centre)
+            job.reject([centre], "nothing was found at it")
             continue
         fate, box = await refine(job, box)
         if fate == "accepted":
             return _end(job, "found", box, await choose_points(job, box))
         if fate == "exhausted":
             best = box
-        job.avoid.append(centre)
+        job.reject([centre], rejection(job, fate))
     return _end(job, "gave_up", best)
 
 
@@ -82,8 +104,14 @@ async def ground_area(job: Job) -> GroundedTarget:
         point = await choose(job, proposals, "place")
         if point is not None:
             return _end(job, "found", None, {role: point for role in job.target.roles})
-        job.avoid += proposals
+        job.reject(proposals, "it is not a suitable place")
     return _end(job, "gave_up", None)
+
+
+def rejection(job: Job, fate: BoxFate) -> str:
+    """Why the box at a centre was given up, as the Manager is told."""
+    said = f": {job.problem}" if job.problem else ""
+    return f"the Checker refused the box there{said}" if fate == "rejected" else f"no box there became right{said}"
 
 
 async def read_scene(jobs: Sequence[Job]) -> tuple[SceneReading, Provenance]:
@@ -100,6 +128,11 @@ async def settle_reading(
     jobs: Sequence[Job], reading: SceneReading, provenance: Provenance
 ) -> dict[str, GroundedTarget]:
     """`lean`, second round: judge every box that was read; those that fail go through the paper's loop."""
+    frame = jobs[0].scene.views[0].frame
+    for job in jobs:
+        goal = next((item for item in reading.targets if item.id == job.goal), None)
+        ends = [entry.point for entry in goal.points if entry.role in ENDS] if goal is not None else []
+        job.towards = frame.point_to_view(ends[0].as_tuple) if ends else None
     grounded = await together([_settle_one(job, reading, provenance) for job in jobs])
     return _by_id(jobs, grounded)
 
@@ -111,14 +144,18 @@ async def _settle_one(job: Job, reading: SceneReading, provenance: Provenance) -
         return _end(job, "absent", None)
     frame = job.scene.views[0].frame
     first = frame.box_to_view(item.box.as_box)
-    points: dict[str, Point] = {entry.role: frame.point_to_view(entry.point.as_tuple) for entry in item.points}
+    points: dict[PointRole, Point] = {entry.role: frame.point_to_view(entry.point.as_tuple) for entry in item.points}
     job.tell("box", "Manager's first box and points", first, tuple(points.values()), provenance)
-    fate, box = await refine(job, first)
+    fate, box = await refine(job, first, points)
     if fate != "accepted":
-        job.avoid.append(first.centre)
+        job.reject([first.centre], rejection(job, fate))
         return await _ground_one(job)
-    if _moved(first, box) or not all(_near(box, point) for point in points.values()):
-        points = await choose_points(job, box)
+    stale = [role for role, point in points.items() if _moved(first, box) or not _near(box, role, point)]
+    for wrong in job.wrong_points:
+        job.reject([points[wrong.use]], f"as the {said_of(wrong.use)} point, by the Checker: {wrong.why}")
+    again = [role for role in points if role in stale or role in {wrong.use for wrong in job.wrong_points}]
+    if again:
+        points |= await choose_points(job, box, again)
     grounded = _end(job, "found", box, points)
     _remember(job, grounded)
     return grounded
@@ -126,23 +163,47 @@ async def _settle_one(job: Job, reading: SceneReading, provenance: Provenance) -
 
 async def ground_by_supervisor(jobs: Sequence[Job]) -> dict[str, GroundedTarget]:
     """Grounding team switched off: the Supervisor gives one point per target on the labelled view."""
-
-    async def one(job: Job) -> GroundedTarget:
-        view = job.scene.labelled
-        question = LocatePoints(job.target, "centre", job.plan, view, job.scene.views[1:], job.examples, count=1)
-        answer: Points = await job.session.ask(question, stage="ground", branch=job.target.id, role="supervisor")
-        if not answer.points:
-            job.tell("absent", "the Supervisor says it is not in the picture")
-            return _end(job, "absent", None)
-        point = view.frame.point_to_view(answer.points[0].as_tuple)
-        job.tell("point", "the Supervisor's point", points=(point,))
-        return _end(job, "found", None, {role: point for role in job.target.roles})
-
-    return _by_id(jobs, await together([one(job) for job in jobs]))
+    return _by_id(jobs, await together([_point_by_supervisor(job) for job in jobs]))
 
 
-def _end(job: Job, status: Fate, box: Box | None, points: Mapping[str, Point] | None = None) -> GroundedTarget:
-    return GroundedTarget(job.target, status, job.scene.view.id, box, points or {}, tuple(job.history))
+async def _point_by_supervisor(job: Job) -> GroundedTarget:
+    view, said = job.with_rejected(job.scene.labelled)
+    question = LocatePoints(job.target, "centre", job.plan, view, job.scene.views[1:], job.examples, 1, said)
+    answer: Points = await job.session.ask(question, stage="ground", branch=job.target.id, role="supervisor")
+    if not answer.points:
+        job.tell("absent", "the Supervisor says it is not in the picture")
+        return _end(job, "absent", None)
+    point = view.frame.point_to_view(answer.points[0].as_tuple)
+    job.tell("point", "the Supervisor's point", points=(point,))
+    return _end(job, "found", None, {role: point for role in job.target.roles})
+
+
+async def ground_again(job: Job, before: GroundedTarget, doubt: Critique) -> GroundedTarget:
+    """A target whose point or box Verification doubts: the point is chosen anew in its box, or the target looked for anew.
+
+    What was doubted is marked as rejected, and the Manager is told what was said of it.
+
+    Args:
+        job: The target's, with its story so far.
+        before: Where it was found.
+        doubt: Of kind wrong_point or wrong_box.
+    """
+    points = tuple(before.points.values())
+    what = "point" if doubt.kind == "wrong_point" else "box"
+    job.tell("verdict", f"Verification: reject the {what} - {doubt.question}", before.box, points, doubt.provenance)
+    in_box = before.box is not None and job.session.members.manager and doubt.kind == "wrong_point"
+    centre = () if before.box is None else (before.box.centre,)
+    job.reject(points if doubt.kind == "wrong_point" else centre or points, f"by Verification: {doubt.question}")
+    if not job.session.members.manager:
+        return await _point_by_supervisor(job)
+    if in_box and before.box is not None:
+        return _end(job, "found", before.box, await choose_points(job, before.box))
+    return await _ground_one(job)
+
+
+def _end(job: Job, status: Fate, box: Box | None, points: Mapping[PointRole, Point] | None = None) -> GroundedTarget:
+    chosen: dict[str, Point] = {role: point for role, point in (points or {}).items()}
+    return GroundedTarget(job.target, status, job.scene.view.id, box, chosen, tuple(job.history))
 
 
 def _remember(job: Job, grounded: GroundedTarget) -> None:
@@ -166,6 +227,7 @@ def _moved(first: Box, box: Box) -> bool:
     return abs(x1 - x0) > MOVED_SHARE * box.width or abs(y1 - y0) > MOVED_SHARE * box.height
 
 
-def _near(box: Box, point: Point) -> bool:
-    """Whether a point lies in the box or close beside it (push points lie beside)."""
-    return box.scaled(2.0).contains(point)
+def _near(box: Box, role: PointRole, point: Point) -> bool:
+    """Whether a point goes with a box: it lies in it or close beside it; a push begins beside it and may end anywhere."""
+    reach = max(box.width, box.height) * (2.0 if role == "push_start" else 0.5)
+    return role == "push_end" or box.grown(reach, reach, reach, reach).contains(point)

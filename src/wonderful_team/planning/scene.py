@@ -36,6 +36,11 @@ class SceneShown:
         """The main view."""
         return self.observation.main
 
+    @property
+    def main_name(self) -> str:
+        """What the main view is called."""
+        return next(iter(self.observation.views))
+
     @cached_property
     def views(self) -> tuple[Picture, ...]:
         main, *others = show_views(self.observation)

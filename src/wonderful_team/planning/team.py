@@ -26,6 +26,7 @@ from wonderful_team.errors import (
     ActionRefusedError,
     BudgetReached,
     ConfigError,
+    GeometryError,
     ModelOutputError,
     NeedsClarification,
     NotFoundError,
@@ -177,7 +178,10 @@ class TeamPolicy:
         done: tuple[str, ...],
     ) -> Plan:
         absent: list[GroundedTarget] = []
-        for _ in range(1 + self.config.bounds.returns):
+        failed: GeometryError | NotFoundError | None = None
+        last: PlanState | None = None
+        asked = advice
+        for turn in range(1 + self.config.bounds.returns):
             state = await plan_loop.draft(session, scene, advice, done)
             progress.plan = _with_state(progress.plan, state, "draft")
             if until == "draft":
@@ -189,7 +193,7 @@ class TeamPolicy:
             if until == "checked":
                 return progress.plan
             state = await plan_loop.extract_targets(session, scene, state)
-            if absent and not _asks_anew(state, absent):
+            if (absent and not _asks_anew(state, absent)) or (last is not None and _same_plan(state, last)):
                 break
             progress.plan = _with_state(progress.plan, state, "checked")
             self._remember_plan(session, state)
@@ -197,12 +201,21 @@ class TeamPolicy:
                 return replace(
                     progress.plan, status="planned", message="nothing to do: the instruction is already fulfilled"
                 )
-            plan, absent = await self._ground_and_act(session, scene, progress, state, until)
-            if not absent:
-                return plan
-            advice = tuple(f"{item.target.id} ({item.target.words}) was not found in the picture." for item in absent)
-            session.warn("; ".join(advice) + " The plan goes back to the Supervisor.")
-        raise NotFoundError("; ".join(f"{item.target.id} not found: {item.target.words}" for item in absent))
+            try:
+                plan, absent = await self._ground_and_act(session, scene, progress, state, until)
+            except GeometryError as error:
+                failed, absent, last = error, [], state
+                told: tuple[str, ...] = (f"The plan could not be carried out as it was written: {error}.",)
+            else:
+                if not absent:
+                    return plan
+                failed, last = NotFoundError(_not_found(absent)), None
+                told = tuple(f"{item.target.id} ({item.target.words}) was not found in the picture." for item in absent)
+            advice = (*asked, *told)
+            if turn < self.config.bounds.returns:
+                session.warn("; ".join(told) + " The plan goes back to the Supervisor.")
+        assert failed is not None
+        raise failed
 
     async def _ground_and_act(
         self, session: AgentSession, scene: SceneShown, progress: _Progress, state: PlanState, until: Until
@@ -235,9 +248,13 @@ class TeamPolicy:
         if steps is None:
             steps = await acting.write_steps(session, scene, state, tuple(paths))
         progress.plan = replace(progress.plan, steps=steps)
-        state, steps, actions = await acting.check_steps(session, scene, state, steps, grounded, paths)
-        plan = replace(_with_state(progress.plan, state, "planned"), steps=steps, actions=actions)
-        if self.config.strict and not state.verified:
+        acted = await acting.check_steps(session, scene, state, steps, grounded, paths, jobs)
+        progress.plan = replace(progress.plan, grounded=acted.grounded, questions=acted.state.questions)
+        if acted.actions is None:
+            return progress.plan, [item for item in acted.grounded.values() if item.status != "found"]
+        actions = acted.actions
+        plan = replace(_with_state(progress.plan, acted.state, "planned"), steps=acted.steps, actions=actions)
+        if self.config.strict and not acted.state.verified:
             plan = _refused(plan, "steps")
         pixels = " (no camera given: pixels only)" if any(item.action is None for item in actions) else ""
         session.stage("actions", counted(len(actions), "action") + pixels)
@@ -366,6 +383,15 @@ def _asks_anew(state: PlanState, absent: Sequence[GroundedTarget]) -> bool:
     """Whether a revised plan looks for something else than what was not found."""
     missing = {(item.target.words, item.target.where, item.target.like) for item in absent}
     return not missing & {(target.words, target.where, target.like) for target in state.targets}
+
+
+def _same_plan(state: PlanState, last: PlanState) -> bool:
+    """Whether a plan that could not be carried out came back unchanged."""
+    return (state.subgoals, state.targets) == (last.subgoals, last.targets)
+
+
+def _not_found(absent: Sequence[GroundedTarget]) -> str:
+    return "; ".join(f"{item.target.id} not found: {item.target.words}" for item in absent)
 
 
 def _named(item: GroundedTarget) -> str:

@@ -17,9 +17,11 @@ from wonderful_team.contracts import (
     Presence,
     PresenceAnswer,
     RevisionVerdict,
+    Tolerance,
+    WrongPoint,
 )
 from wonderful_team.core.geometry import Box
-from wonderful_team.core.pictures import BoxMark, Picture, Point
+from wonderful_team.core.pictures import BoxMark, Picture, Point, PointMark
 from wonderful_team.simulated.context import Context
 from wonderful_team.simulated.grounding import find
 from wonderful_team.simulated.places import Place, point_of
@@ -39,11 +41,14 @@ def box_of(picture: Picture) -> Box | None:
     return next((mark.box for mark in picture.marks if isinstance(mark, BoxMark)), None)
 
 
-def fits(box: Box, place: Place, seen: Seen) -> bool:
-    """Whether a box is tight on a target."""
+def fits(box: Box, place: Place, seen: Seen, tolerance: Tolerance | None = None) -> bool:
+    """Whether a box is tight on a target, by the tolerance that the question states."""
     if not place.whole and place.meaning.thing is not None:
         return False
     right, scale = place.box, seen.picture.frame.scale
+    if tolerance is not None:
+        off = (right.x0 - box.x0, right.y0 - box.y0, box.x1 - right.x1, box.y1 - right.y1)
+        return all(-tolerance.inward_px <= outward <= tolerance.outward_px for outward in off)
     across = max(SLACK * right.width, SLACK_PX * scale)
     down = max(SLACK * right.height, SLACK_PX * scale)
     return (
@@ -58,15 +63,31 @@ def answer_judge_box(context: Context, question: JudgeBox) -> BoxVerdict:
     found = find(context, question.target, question.crop, question.examples, box)
     if found is None or box is None:
         why = f"the {question.target.words} does not show in this picture"
-        return BoxVerdict(reasoning=why, decision="reject", problem=why)
+        return BoxVerdict(reasoning=why, decision="reject", problem=why, wrong_points=[])
     seen, place = found
-    if fits(box, place, seen):
-        return BoxVerdict(reasoning="the box is tight", decision="accept", problem="")
+    wrong = _wrong_points(question, seen, place)
+    if fits(box, place, seen, Tolerance.on(question.crop)):
+        return BoxVerdict(reasoning="the box is tight", decision="accept", problem="", wrong_points=wrong)
     if box.intersection(place.box) is None:
         why = f"the {question.target.words} lies elsewhere"
-        return BoxVerdict(reasoning=why, decision="reject", problem=why)
+        return BoxVerdict(reasoning=why, decision="reject", problem=why, wrong_points=[])
     why = f"it should reach from ({place.box.x0:.0f}, {place.box.y0:.0f}) to ({place.box.x1:.0f}, {place.box.y1:.0f})"
-    return BoxVerdict(reasoning=why, decision="revise", problem=why)
+    return BoxVerdict(reasoning=why, decision="revise", problem=why, wrong_points=wrong)
+
+
+def _wrong_points(question: JudgeBox, seen: Seen, place: Place) -> list[WrongPoint]:
+    """Points to take hold at that are not on the thing, and points to put something at that are not in its place."""
+    points = {mark.label: mark.point for mark in question.crop.marks if isinstance(mark, PointMark)}
+    name, wrong = place.meaning.thing, []
+    for use in question.uses:
+        point = points.get(use)
+        if point is None:
+            continue
+        if use in ("pick", "grasp") and name is not None and seen.at(point, (name,)) is None:
+            wrong.append(WrongPoint(use=use, why=f"it is not on the {question.target.words} itself"))
+        elif use == "place" and not place.box.contains(point):
+            wrong.append(WrongPoint(use=use, why=f"it lies outside of the {question.target.words}"))
+    return wrong
 
 
 def answer_judge_revision(context: Context, question: JudgeRevision) -> RevisionVerdict:
@@ -76,7 +97,7 @@ def answer_judge_revision(context: Context, question: JudgeRevision) -> Revision
     if found is None or before is None or after is None:
         return RevisionVerdict(reasoning="the target does not show in this picture", decision="keep_before")
     seen, place = found
-    if fits(after, place, seen):
+    if fits(after, place, seen, Tolerance.on(question.after)):
         return RevisionVerdict(reasoning="the box after is tight", decision="take_after_stop")
     if _off(after, place.box) < _off(before, place.box):
         return RevisionVerdict(reasoning="the box after is nearer", decision="take_after_go_on")

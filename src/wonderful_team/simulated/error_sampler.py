@@ -109,6 +109,8 @@ class ErrorSampler:
         return value.model_copy(update={"number": self.other(value.number, range(1, count + 1), "other")})
 
     def _verdict(self, value: BoxVerdict) -> BoxVerdict:
+        if value.wrong_points and self.draws(self.profile.accepts_wrong, "accepts the points"):
+            value = value.model_copy(update={"wrong_points": []})
         if value.decision == "accept" and self.draws(self.profile.refuses_right, "refuses"):
             return value.model_copy(update={"decision": "revise", "problem": "the box looks loose"})
         if value.decision != "accept" and self.draws(self.profile.accepts_wrong, "accepts"):

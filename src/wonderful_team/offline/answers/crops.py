@@ -20,10 +20,11 @@ from wonderful_team.contracts import (
     PresenceAnswer,
     RevisionVerdict,
     ShownSlot,
+    WrongPoint,
 )
 from wonderful_team.core.geometry import Box
-from wonderful_team.core.pictures import BoxMark, Picture, Point
-from wonderful_team.core.values import Target
+from wonderful_team.core.pictures import BoxMark, PathMark, Picture, Point, PointMark
+from wonderful_team.core.values import PointRole, Target
 from wonderful_team.offline.answers.areas import judge_area, judge_place, nearest_free
 from wonderful_team.offline.answers.finding import middle_of, push_goal
 from wonderful_team.offline.eyes import examples_of, eyes_of, is_free_area, shape_alone, target_description
@@ -31,6 +32,8 @@ from wonderful_team.offline.vision import BoxFit, fit_box, see, strip_presence
 
 SAME_SIZE = 0.2
 """A box whose sides differ from the target's by less than this share is moved as a whole, else its edges are set."""
+HOLDING: tuple[PointRole, ...] = ("pick", "grasp")
+"""Uses of points at which a thing is taken hold of."""
 WIDEN = 0.3
 """How far a box is widened where its target does not show, in shares of its sides."""
 
@@ -84,10 +87,27 @@ def answer_judge_box(question: JudgeBox) -> BoxVerdict:
     """Accept what is tight, send back what can be moved onto the target, reject what is on another thing."""
     fit = measure(question.target, question.crop, marked_box(question.crop), question.examples)
     if fit.verdict == "tight":
-        return BoxVerdict(reasoning=fit.why, decision="accept", problem="")
+        return BoxVerdict(reasoning=fit.why, decision="accept", problem="", wrong_points=_wrong_points(question, fit))
     if fit.verdict == "loose" or (fit.verdict == "empty" and fit.best is not None):
-        return BoxVerdict(reasoning=fit.why, decision="revise", problem=_problem(fit, marked_box(question.crop)))
-    return BoxVerdict(reasoning=fit.why, decision="reject", problem=f"the box is not on the target: {fit.why}")
+        problem = _problem(fit, marked_box(question.crop))
+        return BoxVerdict(
+            reasoning=fit.why, decision="revise", problem=problem, wrong_points=_wrong_points(question, fit)
+        )
+    problem = f"the box is not on the target: {fit.why}"
+    return BoxVerdict(reasoning=fit.why, decision="reject", problem=problem, wrong_points=[])
+
+
+def _wrong_points(question: JudgeBox, fit: BoxFit) -> list[WrongPoint]:
+    """Points to take hold at that do not lie on the target's material."""
+    if fit.target is None:
+        return []
+    points = {mark.label: mark.point for mark in question.crop.marks if isinstance(mark, PointMark)}
+    why = f"it does not lie on the material of the {fit.target.look.words}"
+    return [
+        WrongPoint(use=use, why=why)
+        for use in question.uses
+        if use in HOLDING and (point := points.get(use)) is not None and not fit.target.holds(point)
+    ]
 
 
 def _problem(fit: BoxFit, box: Box) -> str:
@@ -197,7 +217,7 @@ def answer_choose_point(question: ChoosePoint) -> PointChoice:
     fit = fit_box(question.crop, box, shape_alone(description, known), known)
     if fit.target is None:
         return _nearest(points, box.centre, range(1, len(points) + 1), f"{fit.why}; nearest to the middle of the box")
-    if question.role in ("pick", "grasp"):
+    if question.role in HOLDING:
         on = [number for number, point in enumerate(points, start=1) if fit.target.holds(point)]
         where = fit.target.steady_point()
         return _nearest(points, where, on or range(1, len(points) + 1), f"on the material of a {fit.target.look.words}")
@@ -208,16 +228,24 @@ def answer_choose_point(question: ChoosePoint) -> PointChoice:
 
 
 def _push_start(question: ChoosePoint, box: Box, points: Sequence[Point]) -> PointChoice:
-    """Beside the box, on the side away from where the push goes."""
-    goal = push_goal(question.plan, question.target, eyes_of(question.crop, question.examples))
+    """Beside the box, on the side away from where the push goes: where the arrow points, else what the plan's words say."""
+    arrow = next((mark.points for mark in question.crop.marks if isinstance(mark, PathMark)), None)
+    goal = arrow[-1] if arrow is not None else _goal_of_words(question)
     cx, cy = box.centre
     dx, dy = (goal[0] - cx, goal[1] - cy) if goal is not None else (1.0, 0.0)
     beside = [number for number, point in enumerate(points, start=1) if not box.contains(point)]
     best = max(
         beside or range(1, len(points) + 1), key=lambda k: -(points[k - 1][0] - cx) * dx - (points[k - 1][1] - cy) * dy
     )
-    why = "away from where it goes" if goal is not None else "left of it: the crop does not show where it goes"
+    why = "away from where it goes" if goal is not None else "left of it: nothing shows where it goes"
     return PointChoice(reasoning=f"beside the box, {why}", number=best)
+
+
+def _goal_of_words(question: ChoosePoint) -> Point | None:
+    """Where the plan's words say that a thing is pushed, in pixels of the crop, as far as one of the pictures shows it."""
+    shown = question.crop if question.whole is None else question.whole
+    goal = push_goal(question.plan, question.target, eyes_of(shown, question.examples))
+    return None if goal is None else question.crop.frame.point_to_picture(shown.frame.point_to_view(goal))
 
 
 def _nearest(points: Sequence[Point], wanted: Point, allowed: Sequence[int] | range, why: str) -> PointChoice:

@@ -30,8 +30,8 @@ from wonderful_team.offline.eyes import Eyes, eyes_of, eyes_of_task
 SAME_ANGLE_DEG = 0.5
 """Turns closer than this are the same [degrees]."""
 
-Problem: TypeAlias = tuple[int, str, str]
-"""Number of the step, kind of doubt, question."""
+Problem: TypeAlias = tuple[int | str, str, str]
+"""Number of the step (id of the target, for a doubt about its point or box), kind of doubt, question."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,8 +60,9 @@ def answer_review_steps(question: ReviewSteps) -> PlanReview:
             doubt=None,
         )
     number, kind, text = fresh[0]
+    subject = f"Step {number} does not do" if isinstance(number, int) else f"{number} does not lie where it serves"
     return PlanReview(
-        reasoning=f"Step {number} does not do what its subgoal says.",
+        reasoning=f"{subject} what its subgoal says.",
         approved=False,
         doubt=CritiqueDraft(about=str(number), kind=kind, question=text),
     )
@@ -181,7 +182,7 @@ def _drawn_problems(overview: Picture, question: ReviewSteps, eyes: Eyes) -> lis
         arrow = numbered.get(str(number))
         if box is not None and arrow is not None and not box.scaled(1.3).contains(arrow.points[0]):
             text = f"The arrow of step {number} begins beside the box of {step.pick}; is its point right?"
-            problems.append((number, "wrong_target", text))
+            problems.append((step.pick, "wrong_point", text))
         problems += _boxed_wrongly(number, step, question, boxes, here)
     return problems
 
@@ -197,5 +198,5 @@ def _boxed_wrongly(
         return []
     if thing.box.intersection(box) is None:
         text = f"The box of {target.id} is not on the {target.words}, which I see elsewhere; is step {number} right?"
-        return [(number, "wrong_target", text)]
+        return [(target.id, "wrong_box", text)]
     return []

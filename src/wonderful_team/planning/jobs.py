@@ -1,0 +1,95 @@
+"""The grounding of one target on its way: what is known, what was rejected, and its story so far."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from typing import Literal
+
+from wonderful_team.contracts import ShownSlot, Strip, WrongPoint
+from wonderful_team.core.geometry import Box
+from wonderful_team.core.pictures import Axes, BoxMark, Picture, Point, PointMark
+from wonderful_team.core.values import GroundingEvent, Provenance, Target
+from wonderful_team.images import crop, edge_strips
+from wonderful_team.planning.scene import SceneShown
+from wonderful_team.planning.session import AgentSession
+
+
+@dataclass(frozen=True)
+class Rejected:
+    """A point of the view that was wrong [view px], and what was said of it."""
+
+    point: Point
+    why: str
+
+
+@dataclass
+class Job:
+    """The grounding of one target: what is known, and its story so far.
+
+    Attributes:
+        number: Place of the target among all, which orders what Memory keeps.
+        goal: Id of the target that this one is pushed to; None when it is not pushed.
+        accepted: Targets whose boxes the Checker accepted [view px], by id; shared by the jobs of one plan.
+        avoid: Points that were tried and rejected, and why.
+        problem: What the Checker last found wrong with the box; "" while nothing was.
+        wrong_points: What it found wrong with the points that were chosen together with the box.
+        towards: Where this target is pushed to [view px], once it is known.
+    """
+
+    session: AgentSession
+    scene: SceneShown
+    target: Target
+    number: int
+    plan: tuple[str, ...]
+    examples: tuple[ShownSlot, ...]
+    goal: str | None = None
+    accepted: dict[str, tuple[Target, Box]] = field(default_factory=dict)
+    history: list[GroundingEvent] = field(default_factory=list)
+    avoid: list[Rejected] = field(default_factory=list)
+    problem: str = ""
+    wrong_points: tuple[WrongPoint, ...] = ()
+    towards: Point | None = None
+
+    @property
+    def view_box(self) -> Box:
+        return Box(0, 0, *self.scene.view.size_px)
+
+    def reject(self, points: Iterable[Point], why: str) -> None:
+        """These points [view px] were wrong: the Manager is shown them, and told why, when it looks again."""
+        self.avoid += [Rejected(point, why) for point in points]
+
+    def with_rejected(self, picture: Picture) -> tuple[Picture, tuple[str, ...]]:
+        """A picture with the rejected points that it shows marked on it, and what was said of each, by its label."""
+        at = [(picture.frame.point_to_picture(item.point), item.why) for item in self.avoid]
+        shown = [(point, why) for point, why in at if picture.frame.valid.contains(point)]
+        labels = ["rejected"] if len(shown) == 1 else [f"rejected {number}" for number in range(1, len(shown) + 1)]
+        marks = [PointMark(point, label) for label, (point, _) in zip(labels, shown, strict=True)]
+        return picture.marked(*marks), tuple(f"{label}: {why}" for label, (_, why) in zip(labels, shown, strict=True))
+
+    def tell(
+        self,
+        what: str,
+        text: str,
+        box: Box | None = None,
+        points: tuple[Point, ...] = (),
+        provenance: Provenance = "model",
+    ) -> None:
+        """Add a line to the target's story; coordinates are view pixels."""
+        self.history.append(GroundingEvent(what, text, box, points, provenance))
+
+    def crop_with(self, name: str, window: Box, box: Box, style: Literal["target", "before", "after"]) -> Picture:
+        """A crop round `window` with `box` marked on it (both view pixels).
+
+        Its axes are labelled in the whole view's pixels, so that it can be found there.
+        """
+        picture = crop(self.scene.view, window, name)
+        return picture.marked(self.view_axes, BoxMark(picture.frame.box_to_picture(box), style))
+
+    @property
+    def view_axes(self) -> Axes:
+        """Axes of a crop, labelled in pixels of the whole view as it is shown."""
+        return Axes(self.scene.views[0].frame)
+
+    def strips(self, box: Box) -> tuple[Strip, ...]:
+        return tuple(Strip(edge, side, cut) for (edge, side), cut in edge_strips(self.scene.view, box).items())

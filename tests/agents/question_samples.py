@@ -12,6 +12,7 @@ from wonderful_team.contracts import (
     ExtractTargets,
     GiveBox,
     JudgeBox,
+    JudgeBoxes,
     JudgeOutcome,
     JudgeRevision,
     LocatePoints,
@@ -90,6 +91,12 @@ SAMPLES: tuple[Question, ...] = (
     ReadScene((TARGET, AREA), PLAN, picture("whole", Axes()), (picture("other side"),), EXAMPLES),
     Presence(TARGET, STRIPS, EXAMPLES),
     JudgeBox(TARGET, picture("crop", BOX, Axes()), EXAMPLES),
+    JudgeBoxes(
+        (
+            JudgeBox(TARGET, picture("crop of T7", BOX, Axes()), EXAMPLES),
+            JudgeBox(AREA, picture("crop of T8", BOX), ()),
+        )
+    ),
     JudgeRevision(TARGET, picture("crop before", BOX), picture("crop after", BOX), EXAMPLES),
     MoveBox(
         TARGET,
@@ -102,7 +109,9 @@ SAMPLES: tuple[Question, ...] = (
     ),
     ChoosePoint(TARGET, "grasp", PLAN, picture("crop points", BOX, MARKS), True, EXAMPLES),
     WriteSteps(TASK, KINDS, SUBGOALS, (TARGET, AREA), ("G1",), "step 2 turns the wrong way"),
-    ReviewSteps(TASK, SUBGOALS, (TARGET, AREA), STEPS, picture("overview", BOX), ("step 1 was asked about",)),
+    ReviewSteps(
+        TASK, SUBGOALS, (TARGET, AREA), STEPS, picture("overview", BOX), ("step 1 was asked about",), False, KINDS
+    ),
     WriteFunction(
         SUBGOALS[0], picture("view for path"), {"T7": Box(1.5, 2, 3, 4)}, "NameError: x", "def path(boxes): ...", 17
     ),

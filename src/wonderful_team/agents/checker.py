@@ -5,10 +5,12 @@ Source of the role: Wang, Shen & Stadie 2024, arXiv:2407.19094; the words are ou
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from wonderful_team.agents.common import ANSWER, DATA, EXAMPLES, PICTURES, system_words
 from wonderful_team.agents.rendering import example_parts, picture_parts, target_words, words
 from wonderful_team.agents.role import Ask, role
-from wonderful_team.contracts import JudgeBox, JudgeRevision
+from wonderful_team.contracts import JudgeBox, JudgeBoxes, JudgeRevision, ShownSlot
 from wonderful_team.core.values import Part
 
 SYSTEM = system_words(
@@ -35,6 +37,13 @@ Judge the box that is drawn on the crop.
   in the box instead. For an area: reject when the region is not what is described.
 """
 
+JUDGE_BOXES = f"""
+Several boxes are shown, each on a crop of its own with its own target. Judge each as if it were the only one: do not
+compare them, and do not let one verdict sway another. Answer every target once, by its id. What holds for each box:
+
+{JUDGE_BOX.strip()}
+"""
+
 JUDGE_REVISION = """
 Both crops show the same piece of the scene, each with its own box: before and after one revision. Compare the boxes.
 - keep_before: the revision is worse, or no better.
@@ -52,6 +61,15 @@ def _render_judge_box(question: JudgeBox) -> list[Part]:
     ]
 
 
+def _render_judge_boxes(question: JudgeBoxes) -> list[Part]:
+    examples: dict[str, ShownSlot] = {slot.name: slot for item in question.boxes for slot in item.examples}
+    parts = example_parts(tuple(examples.values()))
+    for number, item in enumerate(question.boxes, start=1):
+        parts += words(f"Box {number} of {len(question.boxes)}, for {item.target.id}:")
+        parts += _render_judge_box(replace(item, examples=()))
+    return parts
+
+
 def _render_judge_revision(question: JudgeRevision) -> list[Part]:
     return [
         *example_parts(question.examples),
@@ -65,6 +83,7 @@ CHECKER = role(
     "checker",
     SYSTEM,
     Ask(JudgeBox, JUDGE_BOX, _render_judge_box),
+    Ask(JudgeBoxes, JUDGE_BOXES, _render_judge_boxes),
     Ask(JudgeRevision, JUDGE_REVISION, _render_judge_revision),
     grounds=True,
 )

@@ -78,15 +78,29 @@ def _render_review_plan(question: ReviewPlan) -> list[Part]:
     ]
 
 
+DRAWN = "the plan drawn over the main view"
+
+PLAN_TOO = """
+The plan itself was not checked before: check it now, together with the steps. Does it fulfil the whole instruction in this
+scene, is nothing missing, is nothing in the way, and are these the right things? A doubt about the plan is about a
+subgoal: give its id. A doubt about a step alone gives the step's number.
+"""
+
+
 def _render_review_steps(question: ReviewSteps) -> list[Part]:
     steps = [f"{number}. {step_words(step)}" for number, step in enumerate(question.steps, start=1)]
+    # Where the overview is the main view itself, it is shown once.
+    drawn = [] if question.overview is question.task.main else picture_parts(question.overview, DRAWN)
+    title = "The scene now" if drawn else f"The scene now, with {DRAWN}"
     return [
-        *task_parts(question.task),
+        *task_parts(question.task, title),
+        *(ability_parts(question.step_kinds) if question.step_kinds else []),
         *subgoal_parts(question.subgoals),
         *target_parts(question.targets),
-        *picture_parts(question.overview, "the plan drawn over the main view"),
+        *drawn,
         *words("Steps:", *(steps or ["none"])),
         *listed("Checked or asked before", question.checked, "nothing yet"),
+        *([] if question.plan_checked else words(PLAN_TOO)),
     ]
 
 

@@ -18,6 +18,8 @@ class ReviewSteps(Question):
 
     Attributes:
         overview: The main view with every target's box and label, and the steps as numbered arrows.
+        plan_checked: The plan itself was approved before. Else it is checked now too, and a doubt may be about a subgoal.
+        step_kinds: What the robot can do; shown where the plan is checked too.
     """
 
     task: ShownTask
@@ -26,10 +28,14 @@ class ReviewSteps(Question):
     steps: tuple[Step, ...]
     overview: Picture
     checked: tuple[str, ...] = ()
+    plan_checked: bool = True
+    step_kinds: tuple[str, ...] = ()
 
     def output(self) -> type[AnswerModel]:
         return PlanReview
 
     def validate(self, answer: Any) -> tuple[Any, tuple[str, ...]]:
-        check_review(answer, [str(number) for number in range(1, len(self.steps) + 1)], "step")
+        numbers = [str(number) for number in range(1, len(self.steps) + 1)]
+        whole = [] if self.plan_checked else [subgoal.id for subgoal in self.subgoals]
+        check_review(answer, [*numbers, *whole], "step or subgoal" if whole else "step")
         return answer, ()

@@ -22,10 +22,17 @@ Edge: TypeAlias = Literal["left", "top", "right", "bottom"]
 EDGES: tuple[Edge, ...] = ("left", "top", "right", "bottom")
 
 
+def _all_required(schema: dict[str, Any]) -> None:
+    """A model is asked for every field; a default is for answers that were given before the field was there."""
+    schema["required"] = list(schema.get("properties", {}))
+    for field in schema.get("properties", {}).values():
+        field.pop("default", None)
+
+
 class AnswerModel(BaseModel):
     """Base of every answer: unknown fields are refused."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True)
+    model_config = ConfigDict(extra="forbid", frozen=True, json_schema_extra=_all_required)
 
 
 class PointPx(AnswerModel):
@@ -173,3 +180,4 @@ def unique(names: Sequence[str], what: str) -> None:
 
 
 Reasoning = Field(description="Short: what in the picture or the words decides this.")
+Unsure: str = Field("", description="What you are not sure of, in one sentence; empty when nothing is in doubt.")

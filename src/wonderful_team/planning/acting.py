@@ -5,14 +5,17 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
+from wonderful_team.agents import step_words
 from wonderful_team.contracts import PlanReview, ReviewSteps, StepList, WriteSteps
 from wonderful_team.core.actions import Step
 from wonderful_team.core.pictures import BoxMark, PathMark, Picture, Point, PointMark
 from wonderful_team.core.values import Critique, GroundedTarget, PlannedAction, View
 from wonderful_team.motion import ground_actions
-from wonderful_team.planning.plan_loop import PlanState
+from wonderful_team.planning.notes import steps_note
+from wonderful_team.planning.plan_loop import PlanState, remember_doubt, resolve
 from wonderful_team.planning.scene import SceneShown
 from wonderful_team.planning.session import AgentSession
+from wonderful_team.planning.spending import inferred_turns, steps_said
 
 
 async def write_steps(
@@ -24,6 +27,23 @@ async def write_steps(
     )
     written: StepList = await session.ask(question, stage="act")
     return written.to_steps()
+
+
+def steps_of_plan(session: AgentSession, scene: SceneShown, state: PlanState) -> tuple[Step, ...] | None:
+    """`lean`: the steps of a plan that says everything they need; None where the Supervisor has to write them."""
+    kinds = scene.vocabulary.step_kinds
+    if not session.config.sparing or not steps_said(state.subgoals, state.targets, state.moves, kinds):
+        return None
+    session.skip("WriteSteps", "the plan states a pick and a place for each subgoal")
+    session.note("supervisor", "WriteSteps", steps_note(state.moves))
+    return state.moves
+
+
+def remember_angles(session: AgentSession, scene: SceneShown, state: PlanState, steps: Sequence[Step]) -> None:
+    """Let Memory keep why something is turned as far as it is, where no words of the instruction say how far."""
+    because = f" Because: {state.reasoning}" if state.reasoning else ""
+    for step in inferred_turns(steps, scene.instruction.text):
+        session.remember("supervisor", "act", "How far is it turned, and why?", f"{step_words(step)}.{because}")
 
 
 def compute(
@@ -43,23 +63,37 @@ async def check_steps(
     steps: tuple[Step, ...],
     grounded: Mapping[str, GroundedTarget],
     paths: Mapping[str, tuple[Point, ...]],
-) -> tuple[PlanState, tuple[Step, ...], tuple[PlannedAction, ...]]:
-    """Verification's look at the steps, drawn over the view; doubts send them back within the bound."""
+) -> tuple[PlanState, tuple[Step, ...], tuple[PlannedAction, ...] | None]:
+    """Verification's look at the steps, drawn over the view; doubts send them back within the bound.
+
+    A plan that nobody has looked at by itself is checked here too.
+
+    Returns:
+        The plan, its steps and their numbers. No numbers (None) when a doubt changed the plan: then the plan is a new one,
+        and has to be checked and grounded.
+    """
     checked: list[str] = []
     while True:
         actions = compute(scene, steps, grounded, paths)
         if not session.members.verification:
             return state, steps, actions
         shown = overview_picture(scene, grounded, actions)
-        answer = await session.ask_whole(
-            ReviewSteps(scene.task, state.subgoals, state.targets, steps, shown, tuple(checked)), stage="act"
-        )
+        question = _review_question(session, scene, state, steps, shown, checked)
+        answer = await session.ask_whole(question, stage="act")
         review: PlanReview = answer.value
         if review.doubt is None:
-            return state, steps, actions
+            return (state if state.reviewed else replace(state, verified=True)), steps, actions
         if len(state.questions) >= session.config.bounds.questions:
-            session.warn(f"Verification still doubts the steps: {review.doubt.question}")
+            what = "steps" if state.reviewed else "plan and its steps"
+            session.warn(f"Verification still doubts the {what}: {review.doubt.question}")
             return replace(state, verified=False), steps, actions
+        if review.doubt.about in {subgoal.id for subgoal in state.subgoals}:
+            asked = Critique(review.doubt.about, review.doubt.kind, review.doubt.question, provenance=answer.provenance)
+            state, answered = await resolve(session, scene, state, asked)
+            if answered.changed:
+                return state, steps, None
+            checked.append(f"asked about {answered.about}: {answered.question} Answer: {answered.answer}")
+            continue
         revised = await write_steps(session, scene, state, tuple(paths), review.doubt.question)
         doubt = Critique(
             f"step {review.doubt.about}",
@@ -69,8 +103,25 @@ async def check_steps(
             revised != steps,
             answer.provenance,
         )
+        remember_doubt(session, "act", doubt, "")
         checked.append(f"asked about step {doubt.about}: {doubt.question} Answer: {doubt.answer}")
         state, steps = replace(state, questions=(*state.questions, doubt)), revised
+
+
+def _review_question(
+    session: AgentSession,
+    scene: SceneShown,
+    state: PlanState,
+    steps: tuple[Step, ...],
+    shown: Picture,
+    checked: Sequence[str],
+) -> ReviewSteps:
+    task = scene.task
+    if session.config.sparing:
+        # The drawn plan takes the place of the main view, which it shows.
+        task = replace(task, views=(shown, *task.views[1:]))
+    kinds = () if state.reviewed else scene.vocabulary.step_kinds
+    return ReviewSteps(task, state.subgoals, state.targets, steps, shown, tuple(checked), state.reviewed, kinds)
 
 
 def overview_picture(

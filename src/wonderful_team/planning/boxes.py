@@ -5,13 +5,15 @@ Source: Wang, Shen & Stadie 2024, arXiv:2407.19094, Algorithm 2 (inner loop).
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
 from typing import Literal, TypeAlias
 
 from wonderful_team.contracts import (
     BoxMove,
     BoxVerdict,
     JudgeBox,
+    JudgeBoxes,
     JudgeRevision,
     MoveBox,
     Presence,
@@ -37,6 +39,9 @@ class Job:
 
     Attributes:
         number: Place of the target among all, which orders what Memory keeps.
+        judged: The Checker's first word, where it was asked about several boxes at once.
+        first_box: The box that was read with all others (`lean`), in view pixels.
+        unsure: Why it was not clear which thing is meant; "" where it was.
         avoid: Centres that were tried and rejected, in view pixels.
     """
 
@@ -46,6 +51,9 @@ class Job:
     number: int
     plan: tuple[str, ...]
     examples: tuple[ShownSlot, ...]
+    judged: Answer | None = None
+    first_box: Box | None = None
+    unsure: str = ""
     history: list[GroundingEvent] = field(default_factory=list)
     avoid: list[Point] = field(default_factory=list)
 
@@ -83,10 +91,7 @@ class Job:
 
 async def first_judgement(job: Job, box: Box) -> tuple[BoxVerdict, PresenceAnswer | None]:
     """The Checker's first word; in `paper` the edge strips are read at the same time."""
-    crop_shown = job.crop_with("crop", box, box, "target")
-    ask_judge = job.session.ask_whole(
-        JudgeBox(job.target, crop_shown, job.examples), stage="ground", branch=job.target.id
-    )
+    ask_judge = _judgement(job, box)
     presence: PresenceAnswer | None = None
     if job.session.config.mode == "paper":
         ask_strips = job.session.ask_whole(
@@ -100,6 +105,29 @@ async def first_judgement(job: Job, box: Box) -> tuple[BoxVerdict, PresenceAnswe
     text = f"Checker: {verdict.decision}" + (f" - {verdict.problem}" if verdict.problem else "")
     job.tell("verdict", text, box, provenance=judged.provenance)
     return verdict, presence
+
+
+def judge_question(job: Job, box: Box, name: str = "crop") -> JudgeBox:
+    """What the Checker is asked about a first box."""
+    return JudgeBox(job.target, job.crop_with(name, box, box, "target"), job.examples)
+
+
+async def _judgement(job: Job, box: Box) -> Answer:
+    """The Checker's first word on a box, which it may have given already."""
+    if job.judged is not None:
+        judged, job.judged = job.judged, None
+        return judged
+    return await job.session.ask_whole(judge_question(job, box), stage="ground", branch=job.target.id)
+
+
+async def judge_together(jobs: Sequence[Job], boxes: Sequence[Box]) -> None:
+    """Ask about the first boxes of several targets at once; each job then holds the word on its own."""
+    question = JudgeBoxes(
+        tuple(judge_question(job, box, f"crop of {job.target.id}") for job, box in zip(jobs, boxes, strict=True))
+    )
+    answer = await jobs[0].session.ask_whole(question, stage="ground")
+    for job in jobs:
+        job.judged = replace(answer, value=answer.value.of(job.target.id))
 
 
 async def refine(job: Job, box: Box) -> tuple[BoxFate, Box]:

@@ -8,15 +8,18 @@ from wonderful_team.contracts import (
     EDGES,
     BoxMove,
     BoxVerdict,
+    BoxVerdicts,
     ChoosePoint,
     EdgePresence,
     JudgeBox,
+    JudgeBoxes,
     JudgeRevision,
     MoveBox,
     PointChoice,
     Presence,
     PresenceAnswer,
     RevisionVerdict,
+    TargetVerdict,
 )
 from wonderful_team.core.geometry import Box
 from wonderful_team.core.pictures import BoxMark, Picture, Point
@@ -67,6 +70,13 @@ def answer_judge_box(context: Context, question: JudgeBox) -> BoxVerdict:
         return BoxVerdict(reasoning=why, decision="reject", problem=why)
     why = f"it should reach from ({place.box.x0:.0f}, {place.box.y0:.0f}) to ({place.box.x1:.0f}, {place.box.y1:.0f})"
     return BoxVerdict(reasoning=why, decision="revise", problem=why)
+
+
+def answer_judge_boxes(context: Context, question: JudgeBoxes) -> BoxVerdicts:
+    """Every box as if it were asked about alone."""
+    return BoxVerdicts(
+        boxes=[TargetVerdict(target=item.target.id, verdict=answer_judge_box(context, item)) for item in question.boxes]
+    )
 
 
 def answer_judge_revision(context: Context, question: JudgeRevision) -> RevisionVerdict:

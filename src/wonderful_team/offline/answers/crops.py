@@ -10,9 +10,11 @@ from wonderful_team.contracts import (
     EDGES,
     BoxMove,
     BoxVerdict,
+    BoxVerdicts,
     ChoosePoint,
     EdgePresence,
     JudgeBox,
+    JudgeBoxes,
     JudgeRevision,
     MoveBox,
     PointChoice,
@@ -20,6 +22,7 @@ from wonderful_team.contracts import (
     PresenceAnswer,
     RevisionVerdict,
     ShownSlot,
+    TargetVerdict,
 )
 from wonderful_team.core.geometry import Box
 from wonderful_team.core.pictures import BoxMark, Picture, Point
@@ -88,6 +91,13 @@ def answer_judge_box(question: JudgeBox) -> BoxVerdict:
     if fit.verdict == "loose" or (fit.verdict == "empty" and fit.best is not None):
         return BoxVerdict(reasoning=fit.why, decision="revise", problem=_problem(fit, marked_box(question.crop)))
     return BoxVerdict(reasoning=fit.why, decision="reject", problem=f"the box is not on the target: {fit.why}")
+
+
+def answer_judge_boxes(question: JudgeBoxes) -> BoxVerdicts:
+    """Every box as if it were asked about alone."""
+    return BoxVerdicts(
+        boxes=[TargetVerdict(target=item.target.id, verdict=answer_judge_box(item)) for item in question.boxes]
+    )
 
 
 def _problem(fit: BoxFit, box: Box) -> str:

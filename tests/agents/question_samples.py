@@ -12,6 +12,7 @@ from wonderful_team.contracts import (
     ExtractTargets,
     GiveBox,
     JudgeBox,
+    JudgeBoxes,
     JudgeOutcome,
     JudgeRevision,
     LocatePoints,
@@ -100,6 +101,12 @@ SAMPLES: tuple[Question, ...] = (
         picture("accepted twin"),
         picture("crop of scene_1", BOX),
     ),
+    JudgeBoxes(
+        (
+            JudgeBox(TARGET, picture("crop of T7", BOX, Axes()), EXAMPLES),
+            JudgeBox(AREA, picture("crop of T8", BOX), ()),
+        )
+    ),
     JudgeRevision(TARGET, picture("crop before", BOX), picture("crop after", BOX), EXAMPLES),
     MoveBox(
         TARGET,
@@ -129,6 +136,8 @@ SAMPLES: tuple[Question, ...] = (
         picture("overview", BOX),
         ("step 1 was asked about",),
         ("step 1: carried high",),
+        False,
+        KINDS,
     ),
     WriteFunction(
         SUBGOALS[0], picture("view for path"), {"T7": Box(1.5, 2, 3, 4)}, "NameError: x", "def path(boxes): ...", 17

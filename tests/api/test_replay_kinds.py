@@ -93,7 +93,7 @@ def robot_fault(out):
 
 
 def model_fault(out):
-    trial = in_world(out, team=wt.Team(model=Failing("JudgeBox", KeyError("x")), out=out))
+    trial = in_world(out, team=wt.Team(model=Failing("JudgeBoxes", KeyError("x")), out=out))
     assert trial.outcome == "error"
     return trial
 

@@ -164,7 +164,7 @@ def test_a_run_that_ended_at_a_cap_ends_so_again(desk, tmp_path):
 def test_an_invalid_answer_is_replayed_as_invalid(desk, tmp_path):
     class Stumbling(OfflineModel):
         def answer(self, request):
-            if request.contract == "ReviewPlan" and request.attempt == 0:
+            if request.contract == "ReviewSteps" and request.attempt == 0:
                 return '{"reasoning": 3}'
             return super().answer(request)
 
@@ -209,21 +209,21 @@ def test_other_words_are_named(photo_run):
 
 def test_another_picture_is_named(photo_run):
     def change(record):
-        entry = next(e for e in record["planner"]["requests"] if e["contract"] == "JudgeBox")
+        entry = next(e for e in record["planner"]["requests"] if e["contract"] == "JudgeBoxes")
         next(part for part in entry["parts"] if "picture" in part)["clean"] = "0" * 16
 
     _edit(photo_run.folder, change)
-    with pytest.raises(ReplayError, match=r"JudgeBox/1 \(try 1\) .* has other pixels"):
+    with pytest.raises(ReplayError, match=r"JudgeBoxes/1 \(try 1\) .* has other pixels"):
         replay(photo_run.folder)
 
 
 def test_a_request_that_was_never_asked_is_named(photo_run):
     def change(record):
         requests = record["planner"]["requests"]
-        record["planner"]["requests"] = [e for e in requests if e["contract"] != "WriteSteps"]
+        record["planner"]["requests"] = [e for e in requests if e["contract"] != "ReviewSteps"]
 
     _edit(photo_run.folder, change)
-    with pytest.raises(ReplayError, match=r"0/act/main/WriteSteps/1 \(try 1\) is not in the record"):
+    with pytest.raises(ReplayError, match=r"0/act/main/ReviewSteps/1 \(try 1\) is not in the record"):
         replay(photo_run.folder)
 
 
@@ -259,7 +259,7 @@ class Counting(OfflineModel):
 
 @pytest.mark.parametrize(
     ("stage", "asked"),
-    [("plan", {"plan", "ground", "act", "memory"}), ("ground", {"ground", "act", "memory"}), ("act", {"act"})],
+    [("plan", {"plan", "ground", "act"}), ("ground", {"ground", "act"}), ("act", {"act"})],
 )
 def test_a_branch_asks_the_model_from_its_stage_on_only(photo_run, tmp_path, stage, asked):
     model = Counting()

@@ -7,7 +7,7 @@ import random
 
 import pytest
 
-from tests.planning.helpers import Tape, asked, doubt, plan_with, scripted
+from tests.planning.helpers import APPROVED, Tape, asked, doubt, plan_with, scripted
 from tests.planning.rounds import photo
 from wonderful_team.core.actions import ARM, PICK_PLACE
 from wonderful_team.core.caps import Caps
@@ -94,13 +94,14 @@ def test_requests_do_not_depend_on_the_order_of_answers():
 
 def test_memory_that_cannot_answer_costs_a_warning_not_the_plan():
     tape = Tape()
-    plan = plan_with(scripted(Remember="nonsense"), tape=tape)
+    plan = plan_with(scripted(Remember="nonsense", ReviewPlan=[doubt(), APPROVED]), tape=tape)
     assert plan.status == "planned"
     assert "nothing remembered" in tape.warnings
 
 
 def test_what_memory_keeps_reaches_the_steps():
-    model = scripted(Remember={"keep": True, "key": "colour", "summary": "the bowl is the green one"})
+    kept = {"keep": True, "key": "colour", "summary": "the bowl is the green one"}
+    model = scripted(Remember=kept, ReviewPlan=[doubt(), APPROVED])
     plan_with(model)
     texts = "".join(p.text for r in asked(model, "WriteSteps") for p in r.parts if isinstance(p, Words))
     assert "the bowl is the green one" in texts

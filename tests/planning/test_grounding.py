@@ -40,7 +40,7 @@ def test_a_box_is_moved_until_the_checker_stops(mode):
         ],
         MoveBox=[shift(100), shift(-20), shift(-20)],
     )
-    plan = plan_with(model, TeamConfig(mode=mode))
+    plan = plan_with(model, TeamConfig(mode=mode, thorough=True))
     moved, still = plan.grounded["T1"], plan.grounded["T2"]
     assert moved.status == still.status == "found"
     first = next(event.box for event in moved.history if event.what == "box")

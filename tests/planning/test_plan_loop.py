@@ -8,6 +8,7 @@ from tests.planning.helpers import APPROVED, Tape, asked, doubt, draft, one_step
 from wonderful_team.planning import Bounds, TeamConfig
 
 LEAN = TeamConfig(mode="lean")
+THOROUGH = TeamConfig(mode="lean", thorough=True)
 
 
 def test_a_doubt_is_answered_and_recorded():
@@ -25,7 +26,7 @@ def test_a_revision_replaces_the_plan_and_keeps_the_first_draft():
     better = draft(subgoal("G1", "open the lid"), subgoal("G2", after=["G1"]))
     revise = {"reasoning": "", "decision": "revise", "answer": "The lid first.", "plan": better}
     model = scripted(ReviewPlan=[doubt(), APPROVED], RevisePlan=revise, WriteSteps=one_step_each)
-    plan = plan_with(model, LEAN)
+    plan = plan_with(model, THOROUGH)
     assert [s.text for s in plan.subgoals][0] == "open the lid"
     assert len(plan.first_draft) == 1
     assert plan.questions[0].changed
@@ -34,7 +35,7 @@ def test_a_revision_replaces_the_plan_and_keeps_the_first_draft():
 def test_full_mode_checks_every_subgoal_once_per_revision():
     three = draft(subgoal("G1"), subgoal("G2"), subgoal("G3"), mode="full")
     model = scripted(DraftPlan=three, WriteSteps=one_step_each)
-    plan = plan_with(model, LEAN)
+    plan = plan_with(model, THOROUGH)
     assert plan.verified
     assert [r.question.under_check for r in asked(model, "ReviewPlan")] == ["G1", "G2", "G3"]
 
@@ -42,7 +43,7 @@ def test_full_mode_checks_every_subgoal_once_per_revision():
 def test_full_mode_looks_at_the_whole_plan_after_an_answer_that_changed_nothing():
     two = draft(subgoal("G1"), subgoal("G2"), mode="full")
     model = scripted(DraftPlan=two, ReviewPlan=[doubt("G1"), APPROVED], WriteSteps=one_step_each)
-    plan = plan_with(model, LEAN)
+    plan = plan_with(model, THOROUGH)
     assert plan.verified
     assert [r.question.under_check for r in asked(model, "ReviewPlan")] == ["G1", "G2", None]
 
@@ -60,7 +61,7 @@ def test_endless_doubt_ends_at_the_bound_as_not_verified(mode):
 
 def test_strict_refuses_a_plan_that_is_not_approved():
     model = scripted(ReviewPlan=doubt())
-    plan = plan_with(model, TeamConfig(mode="lean", strict=True, bounds=Bounds(questions=1)))
+    plan = plan_with(model, TeamConfig(mode="lean", strict=True, thorough=True, bounds=Bounds(questions=1)))
     assert plan.status == "refused"
     assert not plan.actions
 
@@ -111,7 +112,7 @@ def test_a_model_that_never_learns_fails_the_plan_stage():
 
 def test_a_doubt_about_a_step_has_the_steps_rewritten():
     model = scripted(ReviewSteps=[doubt("1", "is it the right way round?"), APPROVED])
-    plan = plan_with(model, LEAN)
+    plan = plan_with(model, THOROUGH)
     assert plan.verified
     assert plan.questions[0].about == "step 1"
     assert asked(model, "WriteSteps")[1].question.doubt == "is it the right way round?"

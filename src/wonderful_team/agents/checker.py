@@ -5,10 +5,12 @@ Source of the role: Wang, Shen & Stadie 2024, arXiv:2407.19094; the words are ou
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from wonderful_team.agents.common import ANSWER, DATA, EXAMPLES, PICTURES, system_words
 from wonderful_team.agents.rendering import example_parts, picture_parts, target_words, words
 from wonderful_team.agents.role import Ask, role
-from wonderful_team.contracts import JudgeBox, JudgeRevision, Tolerance
+from wonderful_team.contracts import JudgeBox, JudgeBoxes, JudgeRevision, ShownSlot, Tolerance
 from wonderful_team.core.pictures import Picture
 from wonderful_team.core.values import Part
 from wonderful_team.images import line_width_px
@@ -47,6 +49,13 @@ Judge every point that is drawn, by the use that stands at it. List in wrong_poi
 - push_start: beside the target, clear of it. push_end: where something can be pushed to.
 """
 
+JUDGE_BOXES = f"""
+Several boxes are shown, each on a crop of its own with its own target. Judge each as if it were the only one: do not
+compare them, and do not let one verdict sway another. Answer every target once, by its id. What holds for each box:
+
+{JUDGE_BOX.strip()}
+"""
+
 JUDGE_REVISION = """
 Both crops show the same piece of the scene, each with its own box: before and after one revision. Compare the boxes.
 An edge of a box is the middle of the drawn line; how far it may lie off, inwards and outwards, is stated with the target.
@@ -82,6 +91,15 @@ def _optional(picture: Picture | None, about: str) -> list[Part]:
     return [] if picture is None else picture_parts(picture, about)
 
 
+def _render_judge_boxes(question: JudgeBoxes) -> list[Part]:
+    examples: dict[str, ShownSlot] = {slot.name: slot for item in question.boxes for slot in item.examples}
+    parts = example_parts(tuple(examples.values()))
+    for number, item in enumerate(question.boxes, start=1):
+        parts += words(f"Box {number} of {len(question.boxes)}, for {item.target.id}:")
+        parts += _render_judge_box(replace(item, examples=()))
+    return parts
+
+
 def _render_judge_revision(question: JudgeRevision) -> list[Part]:
     return [
         *example_parts(question.examples),
@@ -96,6 +114,7 @@ CHECKER = role(
     "checker",
     SYSTEM,
     Ask(JudgeBox, JUDGE_BOX, _render_judge_box),
+    Ask(JudgeBoxes, JUDGE_BOXES, _render_judge_boxes),
     Ask(JudgeRevision, JUDGE_REVISION, _render_judge_revision),
     grounds=True,
 )

@@ -73,6 +73,8 @@ Find every target in the picture that is named for the answer: for each one a bo
 - push_start: beside the thing, on the side away from where it should go. push_end: where the push should stop.
 - Two targets are the same spot only if the plan means the same thing.
 - found is false, with a null box and no points, when a target is not in the picture. Do not guess.
+- unsure: what makes you doubt that this is the right thing or the right outline, such as another one that fits the words
+  as well, or a thing that is half hidden; it is then looked at more closely. Empty when nothing does.
 Answer every target once, by its id.
 """
 

@@ -57,6 +57,12 @@ How to write the plan
   pair shows an arrangement or a motion to reproduce: work out from it which thing goes where.
 - after: only the subgoals without which this one cannot be reached. function: null, unless a subgoal needs a path of
   its own shape, such as a circle or a zigzag, and the robot can follow paths; then say what is to be computed.
+- move: for a subgoal that one pick and one place carry out, what is picked, where it goes and how far it is turned: "at" a
+  target is the point chosen on it, "beside" a target needs a side as the main view shows it, "origin" is where the target
+  stood at the start. rotate_deg is only what the instruction or its pictures state. null for a push, a path, several
+  moves, or when you are not sure; the steps are then written later.
+- unsure: what about the plan you are not sure of after looking closely, such as an angle that you had to estimate or two
+  things that look the same; it is then looked at more closely. Empty when nothing is in doubt, as in most plain scenes.
 - mode: one_step for a short plan without obstacles; full when many subgoals depend on each other.
 - Empty subgoals only when the main view shows that the instruction is already fulfilled.
 - clarification: null, unless two or more readings remain after looking closely, they lead to different results, and
@@ -156,7 +162,9 @@ def _doubt_parts(doubt: Critique) -> list[Part]:
 def _targets_wanted(with_targets: bool) -> list[Part]:
     if with_targets:
         return words("Targets: list them with the plan; each subgoal names at least one.")
-    return words("Targets: leave `targets` empty, for the plan and for every subgoal; they are listed later.")
+    return words(
+        "Targets: leave `targets` empty, for the plan and for every subgoal, and `move` null; they are listed later."
+    )
 
 
 def _render_extract(question: ExtractTargets) -> list[Part]:

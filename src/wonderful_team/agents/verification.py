@@ -52,9 +52,7 @@ GROUNDING_KINDS = """
 - wrong_box: a target's box is on another thing than its words say, or holds only a part of it.
 """.strip()
 
-REVIEW_PLAN = f"""
-Check whether the plan, carried out in its order, fulfils the whole instruction in this scene.
-
+WALK = """
 First walk through the subgoals that are to be checked now, in order, each in the scene as the earlier ones leave it; a
 target that was moved lies where it was put. For each, one short clause:
 - before: what must be true before it, and what provides it: the picture or which subgoal.
@@ -65,6 +63,12 @@ target that was moved lies where it was put. For each, one short clause:
 
 Then look for what the instruction asks for and no subgoal brings about. A target that no subgoal names may be a subgoal
 that was lost.
+""".strip()
+
+REVIEW_PLAN = f"""
+Check whether the plan, carried out in its order, fulfils the whole instruction in this scene.
+
+{WALK}
 
 Approve when every verdict is fine and nothing is missing. Otherwise ask one question, the most serious one, about one
 subgoal: name its id ("plan" for a missing subgoal or a plan without any), and say what in the picture or the instruction
@@ -107,16 +111,31 @@ def _render_review_plan(question: ReviewPlan) -> list[Part]:
     ]
 
 
+DRAWN = "the plan drawn over the main view"
+
+PLAN_TOO = f"""
+The plan itself was not checked before: check it now, before its steps. {WALK}
+
+A doubt about the plan is about a subgoal: give its id, or "plan" for a missing one. A doubt about a step alone gives the step's
+number.
+""".strip()
+
+
 def _render_review_steps(question: ReviewSteps) -> list[Part]:
     steps = [f"{number}. {step_words(step)}" for number, step in enumerate(question.steps, start=1)]
+    # Where the overview is the main view itself, it is shown once.
+    drawn = [] if question.overview is question.task.main else picture_parts(question.overview, DRAWN)
+    title = "The scene now" if drawn else f"The scene now, with {DRAWN}"
     return [
-        *task_parts(question.task),
+        *task_parts(question.task, title),
+        *(ability_parts(question.step_kinds) if question.step_kinds else []),
         *subgoal_parts(question.subgoals),
         *target_parts(question.targets),
-        *picture_parts(question.overview, "the plan drawn over the main view"),
+        *drawn,
         *words("Steps:", *(steps or ["none"])),
         *listed("Computed for the steps", question.numbers),
         *listed("Checked or asked before", question.checked, "nothing yet"),
+        *([] if question.plan_checked else words(PLAN_TOO)),
     ]
 
 

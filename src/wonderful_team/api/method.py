@@ -49,6 +49,7 @@ class Method:
         repeat: Number of this repetition: repetitions do not share kept answers.
         prompts: A folder with your own words for the team's roles.
         strict: Refuse a plan that Verification did not approve.
+        thorough: The lean team asks every question, however plain the scene: slower and dearer, for models that see badly.
         out: Where run folders go; default $WONDERFUL_TEAM_RUNS or `runs`.
         subscribers: Told of every event as it happens.
         command: The command line that reproduces the run, for the page.
@@ -71,6 +72,7 @@ class Method:
     repeat: int = 0
     prompts: str | Path | None = None
     strict: bool = False
+    thorough: bool = False
     out: str | Path | None = None
     subscribers: Sequence[Subscriber] = ()
     command: str | None = None
@@ -83,7 +85,7 @@ class Method:
     world: World | None = None
 
     def __post_init__(self) -> None:
-        self._config = team_config(self.method, self.prompts, self.strict)
+        self._config = team_config(self.method, self.prompts, self.strict, self.thorough)
         options = model_options(self.thinking, self.price, self.local_only, role_names(), self.timeout)
         made = registry.make_models(self.model, role_names(), options, self.world)
         if self._config is not None and any(getattr(made[role], "weak_pointing", False) for role in POINTING_ROLES):
@@ -169,12 +171,15 @@ class Method:
             "cache": "off" if self._store is None else (self.cache or "on"),
             "repeat": self.repeat,
             "strict": self.strict,
+            "thorough": self.thorough,
             "prompts": None if self._config is None else self._config.prompts.hash,
             **({} if self.parent is None else {"parent": dict(self.parent)}),
         }
 
 
-def team_config(method: str, prompts: str | Path | None = None, strict: bool = False) -> TeamConfig | None:
+def team_config(
+    method: str, prompts: str | Path | None = None, strict: bool = False, thorough: bool = False
+) -> TeamConfig | None:
     """The configuration that a `team…` name means; None for a method of one's own.
 
     Raises:
@@ -186,7 +191,7 @@ def team_config(method: str, prompts: str | Path | None = None, strict: bool = F
     if mode is None:
         return None
     words = Prompts.default() if prompts is None else Prompts.load(Path(prompts))
-    return TeamConfig(mode=mode.mode, ablation=mode.ablation, strict=strict, prompts=words)
+    return TeamConfig(mode=mode.mode, ablation=mode.ablation, strict=strict, thorough=thorough, prompts=words)
 
 
 def _known_names(model: ModelChoice, made: Mapping[str, Model]) -> ModelChoice:

@@ -178,6 +178,8 @@ def _team(folder: Path, record: Mapping[str, Any], model: Model | Mapping[str, M
             concurrency=int(configuration["concurrency"]),
             prompts=words,
             strict=bool(configuration["strict"]),
+            # Earlier releases asked every question.
+            thorough=bool(configuration.get("thorough", True)),
             **{"cache": "off", **more},
         )
 

@@ -6,11 +6,12 @@ from wonderful_team.contracts.draft_plan import DraftPlan
 from wonderful_team.contracts.extract_targets import ExtractTargets, SubgoalTargets, TargetList
 from wonderful_team.contracts.give_box import BoxAnswer, GiveBox
 from wonderful_team.contracts.judge_box import BoxVerdict, JudgeBox, WrongPoint
+from wonderful_team.contracts.judge_boxes import BoxVerdicts, JudgeBoxes, TargetVerdict
 from wonderful_team.contracts.judge_outcome import JudgeOutcome, Outcome, VerdictDraft
 from wonderful_team.contracts.judge_revision import JudgeRevision, RevisionVerdict
 from wonderful_team.contracts.locate_points import LocatePoints, Points
 from wonderful_team.contracts.move_box import BoxMove, MoveBox
-from wonderful_team.contracts.plans import ClarificationDraft, PlanDraft, SubgoalDraft, TargetDraft
+from wonderful_team.contracts.plans import ClarificationDraft, MoveDraft, PlanDraft, SubgoalDraft, TargetDraft
 from wonderful_team.contracts.presence import EdgePresence, Presence, PresenceAnswer, Strip
 from wonderful_team.contracts.read_scene import ReadScene, RolePoint, SceneReading, SceneTarget
 from wonderful_team.contracts.remember import MemoryEntry, Remember
@@ -52,6 +53,7 @@ QUESTIONS: tuple[type[Question], ...] = (
     ReadScene,
     Presence,
     JudgeBox,
+    JudgeBoxes,
     JudgeRevision,
     MoveBox,
     ChoosePoint,
@@ -71,6 +73,7 @@ __all__ = [
     "BoxMove",
     "BoxPx",
     "BoxVerdict",
+    "BoxVerdicts",
     "ChooseMark",
     "ChoosePoint",
     "ClarificationDraft",
@@ -84,12 +87,14 @@ __all__ = [
     "GROUNDING_KINDS",
     "GiveBox",
     "JudgeBox",
+    "JudgeBoxes",
     "JudgeOutcome",
     "JudgeRevision",
     "LocatePoints",
     "MarkChoice",
     "MemoryEntry",
     "MoveBox",
+    "MoveDraft",
     "Outcome",
     "PathReview",
     "PlaceDraft",
@@ -123,6 +128,7 @@ __all__ = [
     "SubgoalTargets",
     "TargetDraft",
     "TargetList",
+    "TargetVerdict",
     "Tolerance",
     "VerdictDraft",
     "WalkedReview",

@@ -8,7 +8,9 @@ from typing import Literal
 
 from pydantic import Field
 
-from wonderful_team.contracts.shown import AnswerModel, Reasoning, ShownSlot, fits, known, unique
+from wonderful_team.contracts.shown import AnswerModel, Reasoning, ShownSlot, Unsure, fits, known, unique
+from wonderful_team.contracts.steps import PlaceDraft
+from wonderful_team.core.steps import PickPlaceStep
 from wonderful_team.core.values import Alike, PointRole, Subgoal, Target
 
 
@@ -39,6 +41,20 @@ class TargetDraft(AnswerModel):
         )
 
 
+class MoveDraft(AnswerModel):
+    """One pick and one place that carry out a whole subgoal."""
+
+    pick: str = Field(description="Id of the target that is picked up.")
+    place: PlaceDraft
+    rotate_deg: float = Field(
+        description="How far it is turned on the way, clockwise seen from above; 0 for not at all."
+    )
+
+    def to_step(self, subgoal: str) -> PickPlaceStep:
+        """The step that says the same. Raises ValueError for a place beside a target without a side."""
+        return PickPlaceStep(subgoal, self.pick, self.place.to_place(), self.rotate_deg)
+
+
 class SubgoalDraft(AnswerModel):
     """One qualitative goal: no coordinates."""
 
@@ -47,6 +63,9 @@ class SubgoalDraft(AnswerModel):
     after: list[str] = Field(description="Ids of subgoals that must be reached first.")
     targets: list[str] = Field(description="Ids of the targets it needs; empty when targets are extracted later.")
     function: str | None = Field(description="What a helper function should compute (a path), or null.")
+    move: MoveDraft | None = Field(
+        None, description="The one pick and place that carries it out; null where it takes more."
+    )
 
     def to_subgoal(self) -> Subgoal:
         return Subgoal(self.id, self.text, tuple(self.after), tuple(self.targets), self.function)
@@ -69,12 +88,17 @@ class PlanDraft(AnswerModel):
         description="How it should be checked. full: subgoal after subgoal; one_step: the whole plan at once."
     )
     clarification: ClarificationDraft | None
+    unsure: str = Unsure
 
     def to_subgoals(self) -> tuple[Subgoal, ...]:
         return tuple(draft.to_subgoal() for draft in self.subgoals)
 
     def to_targets(self) -> tuple[Target, ...]:
         return tuple(draft.to_target() for draft in self.targets)
+
+    def to_moves(self) -> tuple[PickPlaceStep, ...]:
+        """The picks and places that the subgoals state, in order."""
+        return tuple(draft.move.to_step(draft.id) for draft in self.subgoals if draft.move is not None)
 
 
 def check_subgoals(subgoals: Sequence[SubgoalDraft], target_ids: Sequence[str] | None) -> None:
@@ -88,6 +112,9 @@ def check_subgoals(subgoals: Sequence[SubgoalDraft], target_ids: Sequence[str] |
             raise ValueError(f"subgoal {draft.id} stands before {', '.join(late)}, which it says must come first")
         if target_ids is not None:
             known(draft.targets, target_ids, f"target of subgoal {draft.id}")
+        if target_ids is not None and draft.move is not None:
+            known([draft.move.pick, draft.move.place.target], target_ids, f"target in the move of {draft.id}")
+            draft.move.to_step(draft.id)
 
 
 def settle_targets(

@@ -14,6 +14,7 @@ from wonderful_team.contracts.shown import (
     Question,
     Reasoning,
     ShownSlot,
+    Unsure,
     known,
     settle_box,
     settle_point,
@@ -37,6 +38,7 @@ class SceneTarget(AnswerModel):
     found: bool = Field(description="false when it is not in the picture; box and points are then left out.")
     box: BoxPx | None = Field(description="Tight round the target, or round the free spot of an area.")
     points: list[RolePoint] = Field(description="One for each use that the target lists.")
+    unsure: str = Unsure
 
 
 class SceneReading(AnswerModel):

@@ -110,31 +110,37 @@ class ReviewPlan(Question):
 
     def validate(self, answer: Any) -> tuple[Any, tuple[str, ...]]:
         check_review(answer, [*(subgoal.id for subgoal in self.subgoals), "plan"], "subgoal")
-        if answer.reasoning is None:
-            self._check_walk(answer)
+        check_walk(answer, self.to_walk)
         return answer, ()
-
-    def _check_walk(self, answer: WalkedReview) -> None:
-        walked = [item.subgoal for item in answer.walk or ()]
-        known(walked, self.to_walk, "subgoal in the walk")
-        unique(walked, "subgoals of the walk")
-        missing = [name for name in self.to_walk if name not in walked]
-        if missing:
-            raise ValueError(f"the walk must hold every subgoal that is to be checked; missing: {', '.join(missing)}")
-        amiss = [f"{item.subgoal} {item.verdict}" for item in answer.walk or () if item.verdict != "fine"]
-        if answer.approved and amiss:
-            raise ValueError(
-                f"approved, yet the walk says {', '.join(amiss)}: raise it as the doubt, or correct the verdict where the "
-                "pictures or an earlier answer settle it"
-            )
 
     def walked(self, review: PlanReview) -> WalkedReview:
         """A review with a walk that says no more than the review: for models that judge the plan by other means."""
-        return WalkedReview(
-            walk=[_said(item, review.doubt) for item in self.subgoals if item.id in self.to_walk],
-            approved=review.approved,
-            doubt=review.doubt,
+        return walked([item for item in self.subgoals if item.id in self.to_walk], review)
+
+
+def check_walk(answer: WalkedReview, to_walk: Sequence[str]) -> None:
+    """Raise ValueError when a walk leaves a subgoal out, or speaks against what follows from it."""
+    if answer.reasoning is not None:
+        return
+    walk = answer.walk or []
+    names = [item.subgoal for item in walk]
+    known(names, to_walk, "subgoal in the walk")
+    unique(names, "subgoals of the walk")
+    missing = [name for name in to_walk if name not in names]
+    if missing:
+        raise ValueError(f"the walk must hold every subgoal that is to be checked; missing: {', '.join(missing)}")
+    amiss = [f"{item.subgoal} {item.verdict}" for item in walk if item.verdict != "fine"]
+    if answer.approved and amiss:
+        raise ValueError(
+            f"approved, yet the walk says {', '.join(amiss)}: raise it as the doubt, or correct the verdict where the "
+            "pictures or an earlier answer settle it"
         )
+
+
+def walked(subgoals: Sequence[Subgoal], review: PlanReview) -> WalkedReview:
+    """A review with a walk through these subgoals that says no more than the review."""
+    walk = [_said(item, review.doubt) for item in subgoals]
+    return WalkedReview(walk=walk, approved=review.approved, doubt=review.doubt)
 
 
 def _said(subgoal: Subgoal, doubt: CritiqueDraft | None) -> SubgoalCheck:

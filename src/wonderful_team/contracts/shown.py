@@ -225,3 +225,4 @@ def unique(names: Sequence[str], what: str) -> None:
 
 
 Reasoning = Field(description="Short: what in the picture or the words decides this.")
+Unsure: str = Field("", description="What you are not sure of, in one sentence; empty when nothing is in doubt.")

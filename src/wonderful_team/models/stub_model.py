@@ -54,6 +54,12 @@ def stub_script() -> dict[str, Any]:
         "ChooseMark": lambda _: {"reasoning": "", "number": 1},
         "GiveBox": lambda request: {"reasoning": "", "box": _box(request)},
         "ReadScene": _reading,
+        "JudgeBoxes": lambda request: {
+            "boxes": [
+                {"target": item.target.id, "verdict": {"reasoning": "", "decision": "accept", "problem": ""}}
+                for item in request.question.boxes
+            ]
+        },
         "Presence": lambda _: {
             "reasoning": "",
             "edges": [{"edge": edge, "inside": True, "outside": False} for edge in c.EDGES],
@@ -111,12 +117,14 @@ def _first(kind: Any) -> Any:
 
 def _draft(with_targets: bool) -> dict[str, Any]:
     targets = _TARGETS if with_targets else []
+    move = {"pick": "T1", "place": {"target": "T2", "how": "at", "side": None}, "rotate_deg": 0}
     subgoal = {
         "id": "G1",
         "text": "put the first thing into the second thing",
         "after": [],
         "targets": [target["id"] for target in targets],
         "function": None,
+        "move": move if with_targets else None,
     }
     return {"reasoning": "", "subgoals": [subgoal], "targets": targets, "mode": "one_step", "clarification": None}
 

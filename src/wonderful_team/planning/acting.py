@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from wonderful_team.contracts import GROUNDING_KINDS, PlanReview, ReviewSteps, StepList, WriteSteps
+from wonderful_team.agents import step_words
+from wonderful_team.contracts import GROUNDING_KINDS, PlanReview, ReviewSteps, StepList, WalkedReview, WriteSteps
 from wonderful_team.core.actions import Step
 from wonderful_team.core.pictures import BoxMark, PathMark, Picture, Point, PointMark
 from wonderful_team.core.text import counted
@@ -15,9 +16,11 @@ from wonderful_team.motion.in_words import numbers_in_words
 from wonderful_team.planning.functions import write_functions
 from wonderful_team.planning.grounding import ENDS, ground_again
 from wonderful_team.planning.jobs import Job
-from wonderful_team.planning.plan_loop import PlanState, settled_lines
+from wonderful_team.planning.notes import steps_note
+from wonderful_team.planning.plan_loop import PlanState, remember_doubt, resolve, settled_lines
 from wonderful_team.planning.scene import SceneShown
 from wonderful_team.planning.session import AgentSession
+from wonderful_team.planning.spending import inferred_turns, steps_said
 
 
 async def write_steps(
@@ -29,6 +32,23 @@ async def write_steps(
     )
     written: StepList = await session.ask(question, stage="act")
     return written.to_steps()
+
+
+def steps_of_plan(session: AgentSession, scene: SceneShown, state: PlanState) -> tuple[Step, ...] | None:
+    """`lean`: the steps of a plan that says everything they need; None where the Supervisor has to write them."""
+    kinds = scene.vocabulary.step_kinds
+    if not session.config.sparing or not steps_said(state.subgoals, state.targets, state.moves, kinds):
+        return None
+    session.skip("WriteSteps", "the plan states a pick and a place for each subgoal")
+    session.note("supervisor", "WriteSteps", steps_note(state.moves))
+    return state.moves
+
+
+def remember_angles(session: AgentSession, scene: SceneShown, state: PlanState, steps: Sequence[Step]) -> None:
+    """Let Memory keep why something is turned as far as it is, where no words of the instruction say how far."""
+    because = f" Because: {state.reasoning}" if state.reasoning else ""
+    for step in inferred_turns(steps, scene.instruction.text):
+        session.remember("supervisor", "act", "How far is it turned, and why?", f"{step_words(step)}.{because}")
 
 
 def compute(
@@ -47,13 +67,15 @@ class Acted:
 
     Attributes:
         grounded: Targets as they are used; one that was doubted may have been found elsewhere, or not at all.
-        actions: None when a doubted target was not found again.
+        actions: None when a doubted target was not found again, or the plan was changed.
+        changed: A doubt changed the plan itself: it is a new one, and has to be checked and grounded.
     """
 
     state: PlanState
     steps: tuple[Step, ...]
     grounded: Mapping[str, GroundedTarget]
     actions: tuple[PlannedAction, ...] | None
+    changed: bool = False
 
 
 async def check_steps(
@@ -65,10 +87,10 @@ async def check_steps(
     paths: Mapping[str, tuple[Point, ...]],
     jobs: Sequence[Job],
 ) -> Acted:
-    """Verification's look at the steps, drawn over the view.
+    """Verification's look at the steps, drawn over the view, and at the plan where nobody has looked at it by itself.
 
-    A doubt about a step sends the steps back to the Supervisor, one about a point or a box sends its target back to
-    grounding, both within their bounds.
+    A doubt about a step or a subgoal sends steps or plan back to the Supervisor, one about a point or a box sends its target
+    back to grounding, all within their bounds.
 
     Raises:
         GeometryError: The numbers of a step cannot be computed.
@@ -79,28 +101,27 @@ async def check_steps(
         if not session.members.verification:
             return Acted(state, steps, grounded, actions)
         shown = overview_picture(scene, grounded, actions)
-        question = ReviewSteps(
-            scene.task,
-            state.subgoals,
-            state.targets,
-            steps,
-            shown,
-            settled_lines(state.questions),
-            numbers_in_words(actions, grounded, scene.view, scene.limits),
-        )
+        question = _review_question(session, scene, state, steps, shown, grounded, actions)
         answer = await session.ask_whole(question, stage="act")
-        review: PlanReview = answer.value
+        review: PlanReview | WalkedReview = answer.value
         if review.doubt is None:
-            return Acted(state, steps, grounded, actions)
-        about, kind, question = review.doubt.about, review.doubt.kind, review.doubt.question
+            return Acted(state if state.reviewed else replace(state, verified=True), steps, grounded, actions)
+        about, kind, said = review.doubt.about, review.doubt.kind, review.doubt.question
         of_target = kind in GROUNDING_KINDS
         if len(state.questions) >= session.config.bounds.questions or (of_target and looks == 0):
+            what = about if of_target else "the steps" if state.reviewed else "the plan and its steps"
             bound = (
                 f" after it was looked for {counted(session.config.bounds.regrounds, 'time')} more" if of_target else ""
             )
-            session.warn(f"Verification still doubts {about if of_target else 'the steps'}{bound}: {question}")
+            session.warn(f"Verification still doubts {what}{bound}: {said}")
             return Acted(replace(state, verified=False), steps, grounded, actions)
-        doubt = Critique(about if of_target else f"step {about}", kind, question, provenance=answer.provenance)
+        if not of_target and about in {"plan", *(subgoal.id for subgoal in state.subgoals)}:
+            asked = Critique(about, kind, said, provenance=answer.provenance)
+            state, answered = await resolve(session, scene, state, asked)
+            if answered.changed:
+                return Acted(state, steps, grounded, None, changed=True)
+            continue
+        doubt = Critique(about if of_target else f"step {about}", kind, said, provenance=answer.provenance)
         if of_target:
             looks -= 1
             grounded, doubt = await _look_again(jobs, grounded, doubt)
@@ -109,9 +130,10 @@ async def check_steps(
             if paths:
                 paths = await write_functions(session, scene, state.subgoals, grounded)
         else:
-            revised = await write_steps(session, scene, state, tuple(paths), question)
+            revised = await write_steps(session, scene, state, tuple(paths), said)
             done = "steps rewritten" if revised != steps else "steps kept"
             steps, doubt = revised, replace(doubt, answer=done, changed=revised != steps)
+        remember_doubt(session, "act", doubt, "")
         state = replace(state, questions=(*state.questions, doubt))
 
 
@@ -134,6 +156,32 @@ async def _look_again(
         answer = f"{doubt.about} was looked for again and {what} is the same"
     job.session.stage("grounded", f"{doubt.about} doubted by Verification: {answer.partition(';')[0]}")
     return {**grounded, doubt.about: after}, replace(doubt, answer=answer, changed=moved)
+
+
+def _review_question(
+    session: AgentSession,
+    scene: SceneShown,
+    state: PlanState,
+    steps: tuple[Step, ...],
+    shown: Picture,
+    grounded: Mapping[str, GroundedTarget],
+    actions: Sequence[PlannedAction],
+) -> ReviewSteps:
+    task = scene.task
+    if session.config.sparing:
+        # The drawn plan takes the place of the main view, which it shows.
+        task = replace(task, views=(shown, *task.views[1:]))
+    return ReviewSteps(
+        task,
+        state.subgoals,
+        state.targets,
+        steps,
+        shown,
+        checked=settled_lines(state.questions),
+        numbers=numbers_in_words(actions, grounded, scene.view, scene.limits),
+        plan_checked=state.reviewed,
+        step_kinds=() if state.reviewed else scene.vocabulary.step_kinds,
+    )
 
 
 def overview_picture(

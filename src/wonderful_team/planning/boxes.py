@@ -5,12 +5,14 @@ Source: Wang, Shen & Stadie 2024, arXiv:2407.19094, Algorithm 2 (inner loop).
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Literal, TypeAlias
 
 from wonderful_team.contracts import (
     BoxMove,
     BoxVerdict,
+    JudgeBoxes,
     JudgeRevision,
     MoveBox,
     Presence,
@@ -32,7 +34,7 @@ async def first_judgement(
     job: Job, box: Box, points: Mapping[PointRole, Point]
 ) -> tuple[BoxVerdict, PresenceAnswer | None]:
     """The Checker's first word on a box and its points; in `paper` the edge strips are read at the same time."""
-    ask_judge = job.session.ask_whole(judge_box(job, box, points), stage="ground", branch=job.target.id)
+    ask_judge = _judgement(job, box, points)
     presence: PresenceAnswer | None = None
     if job.session.config.mode == "paper":
         ask_strips = job.session.ask_whole(
@@ -50,6 +52,28 @@ async def first_judgement(
         said = f"Checker: reject the {said_of(wrong.use)} point - {wrong.why}"
         job.tell("verdict", said, box, (points[wrong.use],), judged.provenance)
     return verdict, presence
+
+
+async def _judgement(job: Job, box: Box, points: Mapping[PointRole, Point]) -> Answer:
+    """The Checker's first word on a box, which it may have given already."""
+    if job.judged is not None:
+        judged, job.judged = job.judged, None
+        return judged
+    return await job.session.ask_whole(judge_box(job, box, points), stage="ground", branch=job.target.id)
+
+
+async def judge_together(jobs: Sequence[Job]) -> None:
+    """Ask about the first boxes of several targets at once; each job then holds the word on its own."""
+    question = JudgeBoxes(
+        tuple(
+            judge_box(job, job.first_box, job.first_points, f"crop of {job.target.id}")
+            for job in jobs
+            if job.first_box is not None
+        )
+    )
+    answer = await jobs[0].session.ask_whole(question, stage="ground")
+    for job in jobs:
+        job.judged = replace(answer, value=answer.value.of(job.target.id))
 
 
 async def refine(job: Job, box: Box, points: Mapping[PointRole, Point] | None = None) -> tuple[BoxFate, Box]:

@@ -8,6 +8,7 @@ from wonderful_team.contracts import BoxAnswer, ChooseMark, GiveBox, LocatePoint
 from wonderful_team.core.geometry import Box
 from wonderful_team.core.pictures import Candidates, Point, PointMark
 from wonderful_team.planning.jobs import Job
+from wonderful_team.planning.spending import agree
 from wonderful_team.planning.together import together
 
 
@@ -30,7 +31,15 @@ async def propose(job: Job, purpose: Literal["centre", "place"]) -> list[Point]:
 
 
 async def choose(job: Job, proposals: list[Point], purpose: Literal["centre", "place"]) -> Point | None:
-    """The best of the proposals, in view pixels; None when none is on the target."""
+    """The best of the proposals, in view pixels; None when none is on the target.
+
+    In `lean` nobody is asked to choose among guesses that agree.
+    """
+    agreed = agree(proposals, job.first_box, job.scene.view.size_px)
+    if agreed is not None and job.session.config.sparing:
+        job.session.skip("ChooseMark", "the guesses agree", job.target.id)
+        job.tell("chosen", f"{len(proposals)} proposals agree", points=(agreed,))
+        return agreed
     view = job.scene.labelled
     marked = view.marked(Candidates(tuple(view.frame.point_to_picture(point) for point in proposals)))
     choice: MarkChoice = await job.session.ask(
@@ -39,6 +48,8 @@ async def choose(job: Job, proposals: list[Point], purpose: Literal["centre", "p
     if choice.number is None:
         job.tell("chosen", "no proposal is on the target", points=tuple(proposals))
         return None
+    if agreed is None:
+        job.unsure = choice.reasoning or "the guesses lay apart"
     job.tell("chosen", f"proposal {choice.number} chosen", points=(proposals[choice.number - 1],))
     return proposals[choice.number - 1]
 

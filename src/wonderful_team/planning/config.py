@@ -77,10 +77,12 @@ class TeamConfig:
     """Configuration of a Team.
 
     Attributes:
-        mode: `lean` (fewest waiting rounds) or `paper` (the algorithms as published).
+        mode: `lean` (asks where there is doubt, in few waiting rounds) or `paper` (the algorithms as published, every round).
         ablation: A name of SETTINGS.
         strict: A plan that Verification did not approve is refused.
         axes: Label the axes of whole views in `lean` too (for models that point badly).
+        thorough: `lean` asks every question, however plain the scene: the plan is checked by itself, every box too, and the
+            steps are always written by the Supervisor. Runs of earlier releases did so.
 
     Raises:
         UnknownNameError: No such setting.
@@ -91,6 +93,7 @@ class TeamConfig:
     ablation: str = "full"
     strict: bool = False
     axes: bool = False
+    thorough: bool = False
     bounds: Bounds = field(default_factory=Bounds)
     prompts: Prompts = field(default_factory=Prompts.default)
 
@@ -99,6 +102,11 @@ class TeamConfig:
             raise ConfigError(f"way of working {self.mode!r}: valid are lean, paper")
         if self.ablation not in ABLATIONS:
             raise UnknownNameError("setting", self.ablation, ABLATIONS)
+
+    @property
+    def sparing(self) -> bool:
+        """Whether questions that a plain scene does not need are left out."""
+        return self.mode == "lean" and not self.thorough
 
     @property
     def members(self) -> Members:

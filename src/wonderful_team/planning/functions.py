@@ -45,6 +45,7 @@ async def _write_one(
     }
     shown = view.marked(*(BoxMark(box, "target", name) for name, box in boxes.items()))
     error, code = "", ""
+    criticised: list[str] = []
     for _ in range(session.config.bounds.functions):
         written: FunctionCode = await session.ask(
             WriteFunction(subgoal, shown, boxes, error, code), stage="act", branch=subgoal.id
@@ -59,8 +60,17 @@ async def _write_one(
             ReviewPath(subgoal, view.marked(PathMark(path, subgoal.id))), stage="act", branch=subgoal.id
         )
         if review.accepted:
+            if criticised:
+                session.remember(
+                    "supervisor",
+                    "act",
+                    f"The path for {subgoal.id} ({subgoal.function}) was criticised: {'; '.join(criticised)}",
+                    f"A later version was accepted: {written.reasoning}",
+                    branch=subgoal.id,
+                )
             return tuple(view.frame.point_to_view(point) for point in path)
         error = f"the path was drawn and refused: {review.problem}"
+        criticised.append(review.problem)
     raise PlanError(
         f"no helper function for {subgoal.id} was accepted in {session.config.bounds.functions} versions; "
         f"the last problem: {error}",

@@ -11,22 +11,26 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Literal, TypeAlias
 
-from wonderful_team.contracts import LocatePoints, Points, ReadScene, SceneReading
+from wonderful_team.contracts import LocatePoints, Points, ReadScene, SceneReading, SceneTarget
 from wonderful_team.core.geometry import Box
 from wonderful_team.core.pictures import Point
 from wonderful_team.core.values import Critique, GroundedTarget, PointRole, Provenance, Subgoal, Target
-from wonderful_team.planning.boxes import BoxFate, refine
+from wonderful_team.planning.boxes import BoxFate, judge_together, refine
 from wonderful_team.planning.centres import choose, give_box, propose
 from wonderful_team.planning.jobs import Job
 from wonderful_team.planning.judged import said_of
+from wonderful_team.planning.notes import one_line
 from wonderful_team.planning.points import choose_points
 from wonderful_team.planning.scene import SceneShown, plan_lines
 from wonderful_team.planning.session import AgentSession
-from wonderful_team.planning.together import together
+from wonderful_team.planning.spending import target_reason
+from wonderful_team.planning.together import both, together
 
 ENDS: tuple[PointRole, ...] = ("push_end", "place")
 """Uses of what something is brought to."""
 Fate: TypeAlias = Literal["found", "absent", "gave_up"]
+REFUSED = ("Checker: reject", "not settled")
+"""How the lines of a target's story begin that tell of a box that was given up."""
 MOVED_SHARE = 0.15
 """When refining moved a box's centre by more than this share of its size, a point read with the old box is stale."""
 
@@ -119,7 +123,10 @@ async def read_scene(jobs: Sequence[Job]) -> tuple[SceneReading, Provenance]:
     session, scene = jobs[0].session, jobs[0].scene
     targets = tuple(job.target for job in jobs)
     view = scene.labelled if session.config.axes else scene.views[0]
-    question = ReadScene(targets, jobs[0].plan, view, scene.views[1:], scene.examples(targets))
+    # Where all targets are plain, the main view alone is enough to find them in.
+    plain = session.config.sparing and not any(target.where or target.part for target in targets)
+    context = () if plain else scene.views[1:]
+    question = ReadScene(targets, jobs[0].plan, view, context, scene.examples(targets))
     answer = await session.ask_whole(question, stage="ground")
     return answer.value, answer.provenance
 
@@ -127,24 +134,66 @@ async def read_scene(jobs: Sequence[Job]) -> tuple[SceneReading, Provenance]:
 async def settle_reading(
     jobs: Sequence[Job], reading: SceneReading, provenance: Provenance
 ) -> dict[str, GroundedTarget]:
-    """`lean`, second round: judge every box that was read; those that fail go through the paper's loop."""
-    frame = jobs[0].scene.views[0].frame
+    """`lean`, second round: judge every box that was read; those that fail go through the paper's loop.
+
+    Plain targets are judged in one question, each of the others by itself.
+    """
     for job in jobs:
-        goal = next((item for item in reading.targets if item.id == job.goal), None)
-        ends = [entry.point for entry in goal.points if entry.role in ENDS] if goal is not None else []
-        job.towards = frame.point_to_view(ends[0].as_tuple) if ends else None
-    grounded = await together([_settle_one(job, reading, provenance) for job in jobs])
-    return _by_id(jobs, grounded)
+        _note_reading(job, reading)
+    plain = _plain(jobs, reading)
+    if len(plain) < 2:
+        plain = []
+    alone = [job for job in jobs if job not in plain]
+
+    async def together_first() -> list[GroundedTarget]:
+        if plain:
+            await judge_together(plain)
+            named = ", ".join(job.target.id for job in plain)
+            plain[0].session.skip("JudgeBox", f"plain targets are judged in one question ({named})")
+        return await together([_settle_one(job, provenance) for job in plain])
+
+    async def one_by_one() -> list[GroundedTarget]:
+        return await together([_settle_one(job, provenance) for job in alone])
+
+    judged, others = await both(together_first(), one_by_one())
+    found = {item.target.id: item for item in (*judged, *others)}
+    return {job.target.id: found[job.target.id] for job in jobs}
 
 
-async def _settle_one(job: Job, reading: SceneReading, provenance: Provenance) -> GroundedTarget:
-    item = next(entry for entry in reading.targets if entry.id == job.target.id)
-    if not item.found or item.box is None:
+def _plain(jobs: Sequence[Job], reading: SceneReading) -> list[Job]:
+    """The jobs whose boxes can be judged together: found, and nothing about them in doubt."""
+    session = jobs[0].session
+    if not (session.config.sparing and session.members.checker):
+        return []
+    size = jobs[0].scene.view.size_px
+    return [
+        job
+        for job in jobs
+        if job.first_box is not None and not target_reason(job.target, _read_of(job, reading), job.first_box, size)
+    ]
+
+
+def _read_of(job: Job, reading: SceneReading) -> SceneTarget:
+    return next(entry for entry in reading.targets if entry.id == job.target.id)
+
+
+def _note_reading(job: Job, reading: SceneReading) -> None:
+    """What was read of a target, and of what it is pushed to, in view pixels."""
+    item, frame = _read_of(job, reading), job.scene.views[0].frame
+    goal = next((entry for entry in reading.targets if entry.id == job.goal), None)
+    ends = [entry.point for entry in goal.points if entry.role in ENDS] if goal is not None else []
+    job.towards = frame.point_to_view(ends[0].as_tuple) if ends else None
+    job.unsure = item.unsure
+    if item.found and item.box is not None:
+        job.first_box = frame.box_to_view(item.box.as_box)
+        job.first_points = {entry.role: frame.point_to_view(entry.point.as_tuple) for entry in item.points}
+
+
+async def _settle_one(job: Job, provenance: Provenance) -> GroundedTarget:
+    if job.first_box is None:
         job.tell("absent", "the Manager says it is not in the picture", provenance=provenance)
         return _end(job, "absent", None)
-    frame = job.scene.views[0].frame
-    first = frame.box_to_view(item.box.as_box)
-    points: dict[PointRole, Point] = {entry.role: frame.point_to_view(entry.point.as_tuple) for entry in item.points}
+    first, points = job.first_box, dict(job.first_points)
     job.tell("box", "Manager's first box and points", first, tuple(points.values()), provenance)
     fate, box = await refine(job, first, points)
     if fate != "accepted":
@@ -202,17 +251,25 @@ async def ground_again(job: Job, before: GroundedTarget, doubt: Critique) -> Gro
 
 
 def _end(job: Job, status: Fate, box: Box | None, points: Mapping[PointRole, Point] | None = None) -> GroundedTarget:
+    # What was tried on the way is stale now.
+    job.session.notebooks.forget(job.target.id)
     chosen: dict[str, Point] = {role: point for role, point in (points or {}).items()}
     return GroundedTarget(job.target, status, job.scene.view.id, box, chosen, tuple(job.history))
 
 
 def _remember(job: Job, grounded: GroundedTarget) -> None:
-    said = job.history[-1].text if job.history else ""
+    """Let Memory keep what the plan does not show of a target: what was taken for it and rejected, and which look-alike it is."""
+    refused = [event.text for event in job.history if event.what == "verdict" and event.text.startswith(REFUSED)]
+    if not refused and not (job.unsure and grounded.status == "found"):
+        return
+    where = f" ({job.target.where})" if job.target.where else ""
+    story = [*refused, *([f"It was not clear which one it is: {job.unsure}"] if job.unsure else [])]
+    end = {"found": "found", "absent": "not in the picture", "gave_up": "given up"}[grounded.status]
     job.session.remember(
         "manager",
         "ground",
-        f"Where is {job.target.id}: {job.target.words}?",
-        f"{job.target.id} {grounded.status}: {said}",
+        f"Which thing is {job.target.id}, {job.target.words}{where}?",
+        one_line(f"{'; '.join(story)}. In the end: {end}."),
         target=job.number,
         branch=job.target.id,
     )

@@ -9,7 +9,7 @@ from typing import Literal
 from wonderful_team.contracts import ShownSlot, Strip, WrongPoint
 from wonderful_team.core.geometry import Box
 from wonderful_team.core.pictures import Axes, BoxMark, Picture, Point, PointMark
-from wonderful_team.core.values import GroundingEvent, Provenance, Target
+from wonderful_team.core.values import Answer, GroundingEvent, PointRole, Provenance, Target
 from wonderful_team.images import crop, edge_strips
 from wonderful_team.planning.scene import SceneShown
 from wonderful_team.planning.session import AgentSession
@@ -35,6 +35,9 @@ class Job:
         problem: What the Checker last found wrong with the box; "" while nothing was.
         wrong_points: What it found wrong with the points that were chosen together with the box.
         towards: Where this target is pushed to [view px], once it is known.
+        judged: The Checker's first word, where it was asked about several boxes at once.
+        first_box, first_points: What was read with all other targets (`lean`) [view px].
+        unsure: Why it was not clear which thing is meant; "" where it was.
     """
 
     session: AgentSession
@@ -50,6 +53,10 @@ class Job:
     problem: str = ""
     wrong_points: tuple[WrongPoint, ...] = ()
     towards: Point | None = None
+    judged: Answer | None = None
+    first_box: Box | None = None
+    first_points: dict[PointRole, Point] = field(default_factory=dict)
+    unsure: str = ""
 
     @property
     def view_box(self) -> Box:

@@ -19,13 +19,13 @@ ARRANGED: frozenset[SlotKind] = frozenset(("scene", "frame"))
 """Kinds of the instruction's pictures that show where things belong."""
 
 
-def judge_box(job: Job, box: Box, points: Mapping[PointRole, Point]) -> JudgeBox:
+def judge_box(job: Job, box: Box, points: Mapping[PointRole, Point], name: str = "crop") -> JudgeBox:
     """The question about one box [view px] and the points that were chosen with it [view px]."""
     reach = BESIDE * max(box.width, box.height)
     near = box.grown(reach, reach, reach, reach)
     drawn = {role: point for role, point in points.items() if near.contains(point) and job.view_box.contains(point)}
     also = [Box.around(point, 1, 1) for point in drawn.values()]
-    shown = _boxed(job, crop(job.scene.view, box, "crop", also=also), box)
+    shown = _boxed(job, crop(job.scene.view, box, name, also=also), box)
     marks = (PointMark(shown.frame.point_to_picture(point), said_of(role)) for role, point in drawn.items())
     return JudgeBox(
         job.target,
@@ -34,7 +34,7 @@ def judge_box(job: Job, box: Box, points: Mapping[PointRole, Point]) -> JudgeBox
         tuple(drawn),
         _whole_view(job, box),
         _alike(job),
-        _goal(job, box, also),
+        _goal(job, box, also, name),
     )
 
 
@@ -66,7 +66,7 @@ def _alike(job: Job) -> Picture | None:
     return None
 
 
-def _goal(job: Job, box: Box, also: list[Box]) -> Picture | None:
+def _goal(job: Job, box: Box, also: list[Box], beside: str) -> Picture | None:
     """The same part of the scene that defines an area, with the same box; only of a scene as large as the view."""
     if job.target.kind != "area":
         return None
@@ -77,5 +77,5 @@ def _goal(job: Job, box: Box, also: list[Box]) -> Picture | None:
             continue
         view = slot.views.get(job.scene.main_name) or next(iter(slot.views.values()))
         if view.size_px == main.size_px:
-            return _boxed(job, crop(view, box, f"crop of {{{name}}}", also=also), box)
+            return _boxed(job, crop(view, box, f"{beside} in {{{name}}}", also=also), box)
     return None

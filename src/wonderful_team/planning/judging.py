@@ -42,13 +42,6 @@ async def advise(
     replans_left: int,
 ) -> Advice:
     """Whether to stop, and what the next plan should do differently."""
-    session.remember(
-        "replanner",
-        "replan",
-        "What became of the subgoals?",
-        "; ".join(f"{v.subgoal} {v.status}" + (f" ({v.cause})" if v.cause else "") for v in verdicts),
-    )
-    await session.memory.barrier()
     question = Replan(scene_now.task, plan.subgoals, verdicts, measured_lines(executed), replans_left)
     advice: Advice = await session.ask(question, stage="replan")
     session.stage("replan", f"{advice.decision.replace('_', ' ')}: {advice.cause or 'all subgoals are done'}")

@@ -15,6 +15,8 @@ from wonderful_team.core.values import Note
 
 NOTEBOOK_LINES = 12
 """Most lines of a notebook that a request carries: the newest ones."""
+JUDGES_ATTEMPTS = "replanner"
+"""The role whose notes are about attempts, not about one picture."""
 
 
 class Notebooks:
@@ -23,16 +25,37 @@ class Notebooks:
     def __init__(self) -> None:
         self._lines: dict[tuple[str, str], list[Note | None]] = {}
 
-    def begin(self, role: str, branch: str) -> Callable[[Note], None]:
-        """Take the next line; what comes back writes it. Lines so stand in the order of asking, never of finishing."""
+    def begin(self, role: str, branch: str) -> Callable[[Note | None], None]:
+        """Take the next line; what comes back writes it, or leaves it empty.
+
+        Lines so stand in the order of asking, never of finishing.
+        """
         lines = self._lines.setdefault((role, branch), [])
         lines.append(None)
         number = len(lines) - 1
 
-        def write(note: Note) -> None:
+        def write(note: Note | None) -> None:
             lines[number] = note
 
         return write
+
+    def forget(self, branch: str) -> None:
+        """Drop what all roles noted while they worked on one target: it is settled, and what was tried is stale."""
+        for key in [key for key in self._lines if key[1] == branch]:
+            del self._lines[key]
+
+    def begin_plan(self) -> None:
+        """Drop what was noted of single targets: a new plan numbers its targets anew."""
+        for branch in {branch for _, branch in self._lines if branch}:
+            self.forget(branch)
+
+    def begin_attempt(self) -> None:
+        """Drop all that was noted of an earlier picture; who judges attempts goes on knowing them.
+
+        What has to outlive the picture is what the Memory agent keeps.
+        """
+        for key in [key for key in self._lines if key[0] != JUDGES_ATTEMPTS]:
+            del self._lines[key]
 
     def read(self, role: str, branch: str) -> tuple[Note, ...]:
         """The role's own lines on the main line, then those of this branch; the newest NOTEBOOK_LINES of them."""

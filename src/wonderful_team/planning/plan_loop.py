@@ -19,16 +19,25 @@ from wonderful_team.contracts import (
     TargetList,
     WalkedReview,
 )
+from wonderful_team.core.steps import PickPlaceStep
 from wonderful_team.core.text import counted
 from wonderful_team.core.values import Answer, Critique, Subgoal, Target
 from wonderful_team.errors import NeedsClarification
+from wonderful_team.planning.notes import one_line
 from wonderful_team.planning.scene import SceneShown
 from wonderful_team.planning.session import AgentSession
+from wonderful_team.planning.spending import plan_reasons
 
 
 @dataclass(frozen=True, eq=False)
 class PlanState:
-    """A plan on its way to approval."""
+    """A plan on its way to approval.
+
+    Attributes:
+        moves: The picks and places that its subgoals state.
+        unsure, reasoning: What the Supervisor was not sure of, and what decided the plan, in its words.
+        reviewed: Verification has looked at the plan by itself, whatever it said.
+    """
 
     subgoals: tuple[Subgoal, ...]
     targets: tuple[Target, ...]
@@ -36,6 +45,10 @@ class PlanState:
     first_draft: tuple[Subgoal, ...]
     verified: bool = False
     questions: tuple[Critique, ...] = ()
+    moves: tuple[PickPlaceStep, ...] = ()
+    unsure: str = ""
+    reasoning: str = ""
+    reviewed: bool = False
 
 
 async def draft(
@@ -51,9 +64,49 @@ async def draft(
     written: PlanDraft = await session.ask(question, stage="plan")
     if written.clarification is not None:
         raise NeedsClarification(written.clarification.question, written.clarification.choices)
-    subgoals = written.to_subgoals()
-    state = PlanState(subgoals, written.to_targets() if with_targets else (), written.mode, subgoals)
+    state = _as_written(PlanState((), (), written.mode, written.to_subgoals()), written, with_targets)
     session.stage("draft", _count(state))
+    return state
+
+
+def _as_written(state: PlanState, written: PlanDraft, with_targets: bool) -> PlanState:
+    """The state with a newly written plan in it, which nobody has looked at yet."""
+    return replace(
+        state,
+        subgoals=written.to_subgoals(),
+        targets=written.to_targets() if with_targets else (),
+        mode=written.mode,
+        moves=written.to_moves() if with_targets else (),
+        unsure=written.unsure,
+        reasoning=written.reasoning,
+        verified=False,
+        reviewed=False,
+    )
+
+
+async def verify_where_needed(
+    session: AgentSession, scene: SceneShown, state: PlanState, failed: bool = False
+) -> PlanState:
+    """`lean`: a plain plan is checked together with its steps, drawn over the picture; any other one by itself first.
+
+    Args:
+        session: Who asks.
+        scene: What is seen.
+        state: The plan.
+        failed: Something went wrong before.
+    """
+    why = plan_reasons(
+        state.subgoals,
+        state.moves,
+        scene.instruction.text,
+        unsure=state.unsure,
+        full=state.mode == "full",
+        doubted=bool(state.questions),
+        failed=failed,
+    )
+    if why or not (session.config.sparing and session.members.verification):
+        return await verify(session, scene, state)
+    session.skip("ReviewPlan", "a plain plan is checked with its steps, drawn over the picture")
     return state
 
 
@@ -62,11 +115,14 @@ async def verify(session: AgentSession, scene: SceneShown, state: PlanState) -> 
     if not session.members.verification:
         session.stage("checked", "not checked: Verification is switched off")
         return state
-    checked: list[str] = []
+    if state.unsure:
+        session.note("verification", "unsure", one_line(f"The Supervisor is not sure: {state.unsure}"))
+    whole = session.config.sparing
+    checked: list[str] = [*settled_lines(state.questions)]
     passed: set[str] = set()
     overruled = False
     while True:
-        under_check = _next_subgoal(state, passed)
+        under_check = _next_subgoal(state, passed, whole)
         review = await session.ask_whole(
             ReviewPlan(
                 scene.task, scene.vocabulary.step_kinds, state.subgoals, state.targets, under_check, tuple(checked)
@@ -79,7 +135,7 @@ async def verify(session: AgentSession, scene: SceneShown, state: PlanState) -> 
                 passed.add(under_check)
                 checked.append(f"{under_check} approved")
                 # A doubt that was answered but not followed is settled by one look at the whole plan.
-                if overruled or _next_subgoal(state, passed) is not None:
+                if overruled or _next_subgoal(state, passed, whole) is not None:
                     continue
             state = replace(state, verified=True)
             break
@@ -89,11 +145,12 @@ async def verify(session: AgentSession, scene: SceneShown, state: PlanState) -> 
             )
             break
         doubt = Critique(verdict.doubt.about, verdict.doubt.kind, verdict.doubt.question, provenance=review.provenance)
-        state, answered = await _resolve(session, scene, state, doubt)
+        state, answered = await resolve(session, scene, state, doubt)
         checked += settled_lines((answered,))
         # A revised plan is a new plan: each of its subgoals may be checked once more.
         overruled = not answered.changed
         passed = set() if answered.changed else passed | ({under_check} if under_check else set())
+    state = replace(state, reviewed=True)
     session.stage("checked", _told(state))
     return state
 
@@ -106,9 +163,14 @@ def settled_lines(questions: Sequence[Critique]) -> tuple[str, ...]:
     )
 
 
-async def _resolve(
+async def resolve(
     session: AgentSession, scene: SceneShown, state: PlanState, doubt: Critique
 ) -> tuple[PlanState, Critique]:
+    """The Supervisor's answer to a doubt about the plan: perhaps a new plan, and the doubt with its answer.
+
+    Raises:
+        NeedsClarification: Neither picture nor instruction settles what is meant.
+    """
     with_targets = session.config.mode == "lean"
     reply: Answer = await session.ask_whole(
         RevisePlan(scene.task, scene.vocabulary.step_kinds, state.subgoals, state.targets, doubt, with_targets),
@@ -116,19 +178,24 @@ async def _resolve(
     )
     revision: PlanRevision = reply.value
     answered = replace(doubt, answer=revision.answer, changed=revision.plan is not None)
+    remember_doubt(session, "plan", answered, revision.reasoning)
+    state = replace(state, questions=(*state.questions, answered))
     if revision.plan is None:
-        return replace(state, questions=(*state.questions, answered)), answered
+        return state, answered
     if revision.plan.clarification is not None:
         raise NeedsClarification(revision.plan.clarification.question, revision.plan.clarification.choices)
-    return (
-        replace(
-            state,
-            subgoals=revision.plan.to_subgoals(),
-            targets=revision.plan.to_targets() if with_targets else (),
-            mode=revision.plan.mode,
-            questions=(*state.questions, answered),
-        ),
-        answered,
+    return _as_written(state, revision.plan, with_targets), answered
+
+
+def remember_doubt(session: AgentSession, stage: str, doubt: Critique, reasoning: str) -> None:
+    """Let Memory keep what a doubt settled: the plan shows what was decided, not why."""
+    what = "Changed" if doubt.changed else "Kept as it was"
+    because = f" Because: {reasoning}" if reasoning else ""
+    session.remember(
+        "supervisor",
+        stage,
+        f"Verification doubted {doubt.about} ({doubt.kind}): {doubt.question}",
+        f"{what}. {doubt.answer}{because}",
     )
 
 
@@ -145,8 +212,9 @@ async def extract_targets(session: AgentSession, scene: SceneShown, state: PlanS
     )
 
 
-def _next_subgoal(state: PlanState, passed: set[str]) -> str | None:
-    if state.mode == "one_step":
+def _next_subgoal(state: PlanState, passed: set[str], whole: bool) -> str | None:
+    """The subgoal to look at now; None for the whole plan at once."""
+    if whole or state.mode == "one_step":
         return None
     return next((subgoal.id for subgoal in state.subgoals if subgoal.id not in passed), None)
 

@@ -1,4 +1,7 @@
-"""Action points: chosen among numbered candidates inside and beside a box, once coarse and once fine."""
+"""Action points: chosen among numbered candidates inside and beside a box, once coarse and once fine.
+
+In `lean` the fine round is left out where the coarse point is central on a compact shape.
+"""
 
 from __future__ import annotations
 
@@ -12,6 +15,7 @@ from wonderful_team.core.values import PointRole
 from wonderful_team.images import beside_points, crop, inside_points
 from wonderful_team.planning.jobs import Job
 from wonderful_team.planning.judged import said_of
+from wonderful_team.planning.spending import is_central
 from wonderful_team.planning.together import together
 
 GRID = 3
@@ -43,6 +47,10 @@ async def _choose(job: Job, box: Box, role: PointRole) -> Point:
         beside = beside_points(shown_box, BESIDE_SHARE * max(shown_box.width, shown_box.height))
         candidates = (*candidates, *(point for point in beside if shown.frame.valid.contains(point)))
     coarse = await _ask(job, shown, box, candidates, role, fine=False)
+    if job.session.config.sparing and role in ("pick", "grasp", "place") and is_central(coarse, box):
+        job.session.skip("ChoosePoint", "no second round: central on a compact shape", f"{job.target.id} {role}")
+        job.tell("point", f"{said_of(role)} point chosen", box, (coarse,))
+        return coarse
     cell = Box.around(coarse, box.width * FINE_SHARE, box.height * FINE_SHARE)
     # The point may lie beside the box: the window holds its neighbourhood as well.
     near = crop(job.scene.view, box, "crop", margin=FINE_MARGIN, min_side_px=FINE_SIDE_PX, also=(cell,))

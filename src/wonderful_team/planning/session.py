@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 import asyncio
-import json
 from dataclasses import dataclass, field
 from typing import Any
 
 from wonderful_team.agents import build_request
 from wonderful_team.agents.request import role_for
-from wonderful_team.contracts import MemoryEntry, Question, Remember
+from wonderful_team.contracts import QUESTIONS, MemoryEntry, Question, Remember
 from wonderful_team.core.values import Answer, Note
 from wonderful_team.errors import ModelOutputError
 from wonderful_team.models.client import ModelClient
 from wonderful_team.planning.config import Members, TeamConfig
 from wonderful_team.planning.memory import Notebooks, SystemMemory
+from wonderful_team.planning.notes import note_of
 
 STAGES = ("plan", "ground", "act", "replan", "memory")
 """Order in which memory entries of one attempt stand."""
@@ -35,6 +35,7 @@ class AgentSession:
     memory: SystemMemory = field(default_factory=SystemMemory)
     attempt: int = 0
     _counts: dict[tuple[str, str, str], int] = field(default_factory=dict)
+    _skipped: dict[str, dict[str, set[str]]] = field(default_factory=dict)
 
     @property
     def members(self) -> Members:
@@ -64,11 +65,40 @@ class AgentSession:
         )
         write_down = self.notebooks.begin(asker.name, branch)
         answer = await self.client.ask(request)
-        write_down(Note(question.contract, _short(answer.value), "notebook"))
+        said = note_of(question, answer.value)
+        write_down(Note(question.contract, said, "notebook") if said else None)
         return answer
 
+    def note(self, role: str, key: str, text: str) -> None:
+        """Write a line into a role's notebook that no answer of its own brought."""
+        self.notebooks.begin(role, "")(Note(key, text, "notebook"))
+
+    def skip(self, contract: str, why: str, about: str = "") -> None:
+        """Note that a question is not asked, and why; told in one line when planning ends."""
+        self._skipped.setdefault(contract, {}).setdefault(why, set()).update({about} if about else ())
+
+    def tell_skipped(self) -> None:
+        """Tell which questions were not asked, in an order that no race changes."""
+        parts = []
+        for question in QUESTIONS:
+            for why, about in sorted(self._skipped.get(question.contract, {}).items()):
+                named = f" ({', '.join(sorted(about))})" if about else ""
+                parts.append(f"{question.contract}{named}: {why}")
+        self._skipped.clear()
+        if parts:
+            self.stage("not asked", "; ".join(parts))
+
+    def begin_attempt(self) -> None:
+        """The next plan is made from a new picture."""
+        self.attempt += 1
+        self.notebooks.begin_attempt()
+
     def remember(self, role: str, stage: str, asked: str, answered: str, *, target: int = 0, branch: str = "") -> None:
-        """Let Memory keep what matters of an answer, beside the main line; nothing when Memory is switched off."""
+        """Let Memory keep what was decided and the plan does not show, beside the main line; nothing when it is switched off.
+
+        Asked only of a doubt that was settled, a box that was rejected, one of several look-alikes that was chosen, an angle
+        that nobody stated, a helper function that was criticised.
+        """
         if not self.members.memory:
             return
         question = Remember(self.instruction, role, asked, answered, self.memory.keys)
@@ -91,12 +121,6 @@ class AgentSession:
 
     def warn(self, text: str) -> None:
         self.client.tell("warning", "planning", text)
-
-
-def _short(value: Any) -> str:
-    """An answer in one line for a notebook, without its reasoning."""
-    content = value.model_dump(mode="json", exclude={"reasoning"})
-    return json.dumps(content, ensure_ascii=False)[:400]
 
 
 async def settle(session: AgentSession) -> None:

@@ -163,7 +163,8 @@ class TeamPolicy:
             plan = _failed(progress.plan, error)
         finally:
             await settle(session)
-        session.attempt += 1
+        session.tell_skipped()
+        session.begin_attempt()
         self._last = (scene, plan)
         self._client.tell("plan", plan.id, plan)
         return plan
@@ -186,9 +187,12 @@ class TeamPolicy:
             progress.plan = _with_state(progress.plan, state, "draft")
             if until == "draft":
                 return progress.plan
-            state = await plan_loop.verify(session, scene, state)
+            if until == "actions":
+                state = await plan_loop.verify_where_needed(session, scene, state, failed=bool(advice))
+            else:
+                state = await plan_loop.verify(session, scene, state)
             progress.plan = _with_state(progress.plan, state, "checked")
-            if self.config.strict and not state.verified:
+            if self._not_approved(state):
                 return _refused(progress.plan, "plan")
             if until == "checked":
                 return progress.plan
@@ -196,13 +200,10 @@ class TeamPolicy:
             if (absent and not _asks_anew(state, absent)) or (last is not None and _same_plan(state, last)):
                 break
             progress.plan = _with_state(progress.plan, state, "checked")
-            self._remember_plan(session, state)
             if not state.subgoals:
-                return replace(
-                    progress.plan, status="planned", message="nothing to do: the instruction is already fulfilled"
-                )
+                return _nothing_to_do(progress.plan)
             try:
-                plan, absent = await self._ground_and_act(session, scene, progress, state, until)
+                plan, absent = await self._carry_out(session, scene, progress, state, until)
             except GeometryError as error:
                 failed, absent, last = error, [], state
                 told: tuple[str, ...] = (f"The plan could not be carried out as it was written: {error}.",)
@@ -217,18 +218,41 @@ class TeamPolicy:
         assert failed is not None
         raise failed
 
-    async def _ground_and_act(
+    def _not_approved(self, state: PlanState) -> bool:
+        """Whether a plan ends here, because nothing may run that Verification did not approve."""
+        by_itself = state.reviewed or not self.config.members.verification
+        return self.config.strict and by_itself and not state.verified
+
+    async def _carry_out(
         self, session: AgentSession, scene: SceneShown, progress: _Progress, state: PlanState, until: Until
     ) -> tuple[Plan, list[GroundedTarget]]:
+        """Ground a plan and write its actions; anew when its last check changed the plan itself."""
+        while True:
+            plan, absent, changed = await self._ground_and_act(session, scene, progress, state, until)
+            if changed is None:
+                return plan, absent
+            # Each change has used up a question, so this ends at their bound.
+            state = await plan_loop.verify(session, scene, changed)
+            progress.plan = _with_state(progress.plan, state, "checked")
+            if self._not_approved(state):
+                return _refused(progress.plan, "plan"), []
+            if not state.subgoals:
+                return _nothing_to_do(progress.plan), []
+
+    async def _ground_and_act(
+        self, session: AgentSession, scene: SceneShown, progress: _Progress, state: PlanState, until: Until
+    ) -> tuple[Plan, list[GroundedTarget], PlanState | None]:
+        session.notebooks.begin_plan()
         jobs = grounding.make_jobs(session, scene, state.targets, state.subgoals)
         lean = self.config.mode == "lean" and session.members.manager
         needs_paths = any(subgoal.function for subgoal in state.subgoals)
-        steps = None
+        steps = acting.steps_of_plan(session, scene, state) if until == "actions" else None
         if lean:
             reading, provenance = await grounding.read_scene(jobs)
             await session.memory.barrier()
             settling = grounding.settle_reading(jobs, reading, provenance)
-            if until == "actions" and not needs_paths and all(item.found for item in reading.targets):
+            unwritten = until == "actions" and steps is None and not needs_paths
+            if unwritten and all(item.found for item in reading.targets):
                 # Steps name targets, not numbers: they are written while the boxes are judged.
                 grounded, steps = await both(settling, acting.write_steps(session, scene, state, ()))
             else:
@@ -241,7 +265,7 @@ class TeamPolicy:
         session.stage("grounded", "   ".join(f"{name} {_named(item)}" for name, item in grounded.items()))
         absent = [item for item in grounded.values() if item.status != "found"]
         if absent or until == "grounded":
-            return progress.plan, absent
+            return progress.plan, absent, None
         if not lean:
             await session.memory.barrier()
         paths: dict[str, tuple[Point, ...]] = await write_functions(session, scene, state.subgoals, grounded)
@@ -250,19 +274,18 @@ class TeamPolicy:
         progress.plan = replace(progress.plan, steps=steps)
         acted = await acting.check_steps(session, scene, state, steps, grounded, paths, jobs)
         progress.plan = replace(progress.plan, grounded=acted.grounded, questions=acted.state.questions)
+        if acted.changed:
+            return progress.plan, [], acted.state
         if acted.actions is None:
-            return progress.plan, [item for item in acted.grounded.values() if item.status != "found"]
+            return progress.plan, [item for item in acted.grounded.values() if item.status != "found"], None
         actions = acted.actions
+        acting.remember_angles(session, scene, acted.state, acted.steps)
         plan = replace(_with_state(progress.plan, acted.state, "planned"), steps=acted.steps, actions=actions)
         if self.config.strict and not acted.state.verified:
             plan = _refused(plan, "steps")
         pixels = " (no camera given: pixels only)" if any(item.action is None for item in actions) else ""
         session.stage("actions", counted(len(actions), "action") + pixels)
-        return plan, []
-
-    def _remember_plan(self, session: AgentSession, state: PlanState) -> None:
-        plan = "; ".join(f"{subgoal.id}: {subgoal.text}" for subgoal in state.subgoals) or "nothing to do"
-        session.remember("supervisor", "plan", "Which plan was approved?", plan)
+        return plan, [], None
 
     async def decide(self, situation: Situation) -> Decision:
         """Policy: plan at first; after execution judge, and replan while allowed."""
@@ -367,6 +390,10 @@ _STATUS: tuple[tuple[type[WonderfulTeamError], str], ...] = (
     (NeedsClarification, "needs_clarification"),
     (BudgetReached, "budget"),
 )
+
+
+def _nothing_to_do(plan: Plan) -> Plan:
+    return replace(plan, status="planned", message="nothing to do: the instruction is already fulfilled")
 
 
 def _refused(plan: Plan, what: str) -> Plan:

@@ -8,15 +8,18 @@ from wonderful_team.contracts import (
     EDGES,
     BoxMove,
     BoxVerdict,
+    BoxVerdicts,
     ChoosePoint,
     EdgePresence,
     JudgeBox,
+    JudgeBoxes,
     JudgeRevision,
     MoveBox,
     PointChoice,
     Presence,
     PresenceAnswer,
     RevisionVerdict,
+    TargetVerdict,
     Tolerance,
     WrongPoint,
 )
@@ -88,6 +91,13 @@ def _wrong_points(question: JudgeBox, seen: Seen, place: Place) -> list[WrongPoi
         elif use == "place" and not place.box.contains(point):
             wrong.append(WrongPoint(use=use, why=f"it lies outside of the {question.target.words}"))
     return wrong
+
+
+def answer_judge_boxes(context: Context, question: JudgeBoxes) -> BoxVerdicts:
+    """Every box as if it were asked about alone."""
+    return BoxVerdicts(
+        boxes=[TargetVerdict(target=item.target.id, verdict=answer_judge_box(context, item)) for item in question.boxes]
+    )
 
 
 def answer_judge_revision(context: Context, question: JudgeRevision) -> RevisionVerdict:

@@ -9,7 +9,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from wonderful_team.contracts import SubgoalDraft, TargetDraft
+from wonderful_team.contracts import MoveDraft, SubgoalDraft, TargetDraft
 from wonderful_team.core.values import PointRole, Subgoal, Target
 from wonderful_team.simulated.plan import Move, Put, Shove, Spot
 
@@ -118,7 +118,12 @@ def write(moves: Sequence[Move], words: Names, sizes_m: Mapping[str, float]) -> 
             spots += move.to.how == "spot"
             text, targets, step = _put(plan, move, words, sizes_m, spots)
         after = [f"G{number - 1}"] if number > 1 else []
-        plan.subgoals.append(SubgoalDraft(id=subgoal, text=text, after=after, targets=targets, function=None))
+        moved = None if step["kind"] != "pick_place" else {name: step[name] for name in MoveDraft.model_fields}
+        plan.subgoals.append(
+            SubgoalDraft.model_validate(
+                {"id": subgoal, "text": text, "after": after, "targets": targets, "function": None, "move": moved}
+            )
+        )
         plan.steps.append({"subgoal": subgoal, **step})
     return plan
 

@@ -43,7 +43,9 @@ def answer_draft(context: Context, question: DraftPlan) -> PlanDraft:
 
 def plan_draft(plan: Written, with_targets: bool) -> PlanDraft:
     """A written plan as an answer."""
-    subgoals = [item if with_targets else item.model_copy(update={"targets": []}) for item in plan.subgoals]
+    subgoals = [
+        item if with_targets else item.model_copy(update={"targets": [], "move": None}) for item in plan.subgoals
+    ]
     targets = plan.targets if with_targets else []
     reasoning = (
         f"{len(subgoals)} moves lead from this table to what is asked." if subgoals else "Nothing is left to do."
@@ -164,11 +166,24 @@ def _review(context: Context, question: ReviewPlan) -> PlanReview:
     return approved("Everything that has to be moved is named.")
 
 
-def answer_review_steps(context: Context, question: ReviewSteps) -> PlanReview:
-    """Approve steps that move the right things in the right order; doubt the first that differs."""
+def answer_review_steps(context: Context, question: ReviewSteps) -> PlanReview | WalkedReview:
+    """Approve steps that move the right things in the right order, and a plan that nobody checked; doubt what differs."""
+    return question.in_form(_review_steps(context, question))
+
+
+def _review_steps(context: Context, question: ReviewSteps) -> PlanReview:
     task = context.task(question.task)
     if task is None or context.see(question.overview) is None:
         return doubt("1", "ambiguity", f"Where do these steps lead? As it is shown, {BLIND}.")
+    if not question.plan_checked:
+        plan_said = _review(
+            context,
+            ReviewPlan(
+                question.task, question.step_kinds, question.subgoals, question.targets, checked=question.checked
+            ),
+        )
+        if plan_said.doubt is not None:
+            return plan_said
     plan = task.plan_of(question.subgoals)
     if plan is None:
         return approved("The steps belong to a plan of another's; nothing in them is impossible.")

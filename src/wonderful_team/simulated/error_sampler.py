@@ -12,6 +12,7 @@ from wonderful_team.contracts import (
     BoxAnswer,
     BoxPx,
     BoxVerdict,
+    BoxVerdicts,
     MarkChoice,
     Outcome,
     PointChoice,
@@ -66,6 +67,12 @@ class ErrorSampler:
                 return self._choice(value, len(question.candidates.points))
             case BoxVerdict():
                 return self._verdict(value)
+            case BoxVerdicts():
+                boxes = [
+                    item.model_copy(update={"verdict": self._verdict(item.verdict, f" {item.target}")})
+                    for item in value.boxes
+                ]
+                return value.model_copy(update={"boxes": boxes})
             case RevisionVerdict():
                 return self._revision(value)
             case Outcome():
@@ -108,12 +115,12 @@ class ErrorSampler:
             return value
         return value.model_copy(update={"number": self.other(value.number, range(1, count + 1), "other")})
 
-    def _verdict(self, value: BoxVerdict) -> BoxVerdict:
-        if value.wrong_points and self.draws(self.profile.accepts_wrong, "accepts the points"):
+    def _verdict(self, value: BoxVerdict, of: str = "") -> BoxVerdict:
+        if value.wrong_points and self.draws(self.profile.accepts_wrong, f"accepts the points{of}"):
             value = value.model_copy(update={"wrong_points": []})
-        if value.decision == "accept" and self.draws(self.profile.refuses_right, "refuses"):
+        if value.decision == "accept" and self.draws(self.profile.refuses_right, f"refuses{of}"):
             return value.model_copy(update={"decision": "revise", "problem": "the box looks loose"})
-        if value.decision != "accept" and self.draws(self.profile.accepts_wrong, "accepts"):
+        if value.decision != "accept" and self.draws(self.profile.accepts_wrong, f"accepts{of}"):
             return value.model_copy(update={"decision": "accept", "problem": ""})
         return value
 

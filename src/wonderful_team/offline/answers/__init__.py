@@ -12,6 +12,7 @@ from wonderful_team.contracts import (
     ExtractTargets,
     GiveBox,
     JudgeBox,
+    JudgeBoxes,
     JudgeOutcome,
     JudgeRevision,
     LocatePoints,
@@ -30,17 +31,19 @@ from wonderful_team.contracts import (
 from wonderful_team.offline.answers.crops import (
     answer_choose_point,
     answer_judge_box,
+    answer_judge_boxes,
     answer_judge_revision,
     answer_move_box,
     answer_presence,
 )
-from wonderful_team.offline.answers.drafting import answer_draft, answer_extract
+from wonderful_team.offline.answers.drafting import answer_extract
 from wonderful_team.offline.answers.grounding import (
     answer_choose_mark,
     answer_give_box,
     answer_locate,
     answer_read_scene,
 )
+from wonderful_team.offline.answers.moves import answer_draft
 from wonderful_team.offline.answers.outcome import answer_outcome, answer_replan
 from wonderful_team.offline.answers.paths import answer_review_path
 from wonderful_team.offline.answers.remembering import answer_remember
@@ -60,6 +63,7 @@ ANSWERS: dict[type[Question], Callable[..., Any]] = {
     ReadScene: answer_read_scene,
     Presence: answer_presence,
     JudgeBox: answer_judge_box,
+    JudgeBoxes: answer_judge_boxes,
     JudgeRevision: answer_judge_revision,
     MoveBox: answer_move_box,
     ChoosePoint: answer_choose_point,

@@ -10,9 +10,11 @@ from wonderful_team.contracts import (
     EDGES,
     BoxMove,
     BoxVerdict,
+    BoxVerdicts,
     ChoosePoint,
     EdgePresence,
     JudgeBox,
+    JudgeBoxes,
     JudgeRevision,
     MoveBox,
     PointChoice,
@@ -20,6 +22,7 @@ from wonderful_team.contracts import (
     PresenceAnswer,
     RevisionVerdict,
     ShownSlot,
+    TargetVerdict,
     WrongPoint,
 )
 from wonderful_team.core.geometry import Box
@@ -108,6 +111,13 @@ def _wrong_points(question: JudgeBox, fit: BoxFit) -> list[WrongPoint]:
         for use in question.uses
         if use in HOLDING and (point := points.get(use)) is not None and not fit.target.holds(point)
     ]
+
+
+def answer_judge_boxes(question: JudgeBoxes) -> BoxVerdicts:
+    """Every box as if it were asked about alone."""
+    return BoxVerdicts(
+        boxes=[TargetVerdict(target=item.target.id, verdict=answer_judge_box(item)) for item in question.boxes]
+    )
 
 
 def _problem(fit: BoxFit, box: Box) -> str:

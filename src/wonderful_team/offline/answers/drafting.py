@@ -1,4 +1,4 @@
-"""From aims to a plan in words, and DraftPlan, RevisePlan, ExtractTargets."""
+"""From aims to a plan in words, and ExtractTargets."""
 
 from __future__ import annotations
 
@@ -8,7 +8,6 @@ from dataclasses import dataclass, field, replace
 
 from wonderful_team.contracts import (
     ClarificationDraft,
-    DraftPlan,
     ExtractTargets,
     PlanDraft,
     SubgoalDraft,
@@ -180,10 +179,6 @@ def _reasoning(used: Sequence[str], result: Aims, eyes: Eyes) -> str:
     else:
         text += "Nothing is left to do. "
     return text + "; ".join((*result.settled, *result.notes))
-
-
-def answer_draft(question: DraftPlan) -> PlanDraft:
-    return draft(question.task, question.with_targets, question.advice)[0]
 
 
 def answer_extract(question: ExtractTargets) -> TargetList:

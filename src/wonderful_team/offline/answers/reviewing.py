@@ -276,10 +276,11 @@ def _order(wanted: Sequence[Aim], read: Sequence[ReadSubgoal]) -> list[Finding]:
 
 def answer_review(question: ReviewPlan) -> WalkedReview:
     """One doubt about one subgoal, or approval."""
-    return question.walked(_review(question))
+    return question.walked(review_of_plan(question))
 
 
-def _review(question: ReviewPlan) -> PlanReview:
+def review_of_plan(question: ReviewPlan) -> PlanReview:
+    """The same, without a walk."""
     found = findings(question.task, question.subgoals, question.targets, question.step_kinds)
     if question.under_check is not None:
         found = [item for item in found if item.about in (question.under_check, "plan")]

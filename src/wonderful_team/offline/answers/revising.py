@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from wonderful_team.contracts import PlanRevision, RevisePlan
 from wonderful_team.offline.answers.drafting import draft
+from wonderful_team.offline.answers.moves import with_moves
 from wonderful_team.offline.answers.reviewing import findings
 
 
@@ -19,6 +20,8 @@ def answer_revise(question: RevisePlan) -> PlanRevision:
             plan=None,
         )
     plan, _ = draft(question.task, question.with_targets)
+    if question.with_targets:
+        plan = with_moves(plan, question.task, question.step_kinds)
     return PlanRevision(
         reasoning=f"The doubt is right: {concerned[0].question}",
         decision="revise",

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import TypeAlias
 
-from wonderful_team.contracts import CritiqueDraft, PlanReview, ReviewSteps
+from wonderful_team.contracts import CritiqueDraft, PlanReview, ReviewPlan, ReviewSteps, WalkedReview
 from wonderful_team.core.actions import (
     SIDES,
     At,
@@ -22,7 +22,7 @@ from wonderful_team.core.actions import (
 from wonderful_team.core.geometry import Box
 from wonderful_team.core.pictures import BoxMark, PathMark, Picture
 from wonderful_team.core.values import Subgoal
-from wonderful_team.offline.answers.reviewing import named
+from wonderful_team.offline.answers.reviewing import named, review_of_plan
 from wonderful_team.offline.answers.roles import Task, tasks_of
 from wonderful_team.offline.answers.steps import place_of
 from wonderful_team.offline.eyes import Eyes, eyes_of, eyes_of_task
@@ -42,8 +42,20 @@ class _Asked:
     tasks: list[Task]
 
 
-def answer_review_steps(question: ReviewSteps) -> PlanReview:
-    """Check every step against its subgoal, and the drawn arrows against the boxes."""
+def answer_review_steps(question: ReviewSteps) -> PlanReview | WalkedReview:
+    """Check the plan where nobody did, every step against its subgoal, and the drawn arrows against the boxes."""
+    return question.in_form(_review(question))
+
+
+def _review(question: ReviewSteps) -> PlanReview:
+    if not question.plan_checked:
+        plan = review_of_plan(
+            ReviewPlan(
+                question.task, question.step_kinds, question.subgoals, question.targets, checked=question.checked
+            )
+        )
+        if plan.doubt is not None:
+            return plan
     eyes = eyes_of_task(question.task)
     asked = {
         subgoal.id: _Asked(subgoal, _one_by_one(tasks_of(subgoal, question.targets, eyes)))

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from wonderful_team.contracts import StepList, WriteSteps, step_list_type
 from wonderful_team.core.actions import SIDES, Side
-from wonderful_team.core.values import Subgoal
+from wonderful_team.core.values import Subgoal, Target
 from wonderful_team.errors import NotUnderstoodError, UnsupportedQuestion
 from wonderful_team.offline.answers.roles import Task, tasks_of
 from wonderful_team.offline.eyes import Eyes, eyes_of_task
@@ -23,8 +23,7 @@ def answer_write_steps(question: WriteSteps) -> StepList:
         if subgoal.id in question.functions and "follow" in question.step_kinds:
             steps.append({"kind": "follow", "subgoal": subgoal.id, "function": subgoal.id})
             continue
-        for task in tasks_of(subgoal, question.targets, eyes):
-            steps += _steps_of(task, subgoal, question.step_kinds, eyes)
+        steps += steps_of_subgoal(subgoal, question.targets, question.step_kinds, eyes)
     kinds = ", ".join(dict.fromkeys(str(step["kind"]) for step in steps)) or "no steps"
     reasoning = f"One task per subgoal in the plan's order, written as {kinds}."
     if question.doubt:
@@ -41,6 +40,18 @@ def _ordered(subgoals: Sequence[Subgoal]) -> list[Subgoal]:
         left.remove(ready)
         done.append(ready)
     return done
+
+
+def steps_of_subgoal(
+    subgoal: Subgoal, targets: Sequence[Target], kinds: Sequence[str], eyes: Eyes
+) -> list[dict[str, object]]:
+    """The steps that carry out one subgoal.
+
+    Raises:
+        NotUnderstoodError: It names no target to move.
+        UnsupportedQuestion: The robot has no kinds of step that would do.
+    """
+    return [step for task in tasks_of(subgoal, targets, eyes) for step in _steps_of(task, subgoal, kinds, eyes)]
 
 
 def _steps_of(task: Task, subgoal: Subgoal, kinds: Sequence[str], eyes: Eyes) -> list[dict[str, object]]:

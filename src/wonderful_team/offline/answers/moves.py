@@ -1,0 +1,40 @@
+"""DraftPlan: the plan, with the pick and place of every subgoal that is carried out by one."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from wonderful_team.contracts import DraftPlan, MoveDraft, PlanDraft, SubgoalDraft
+from wonderful_team.contracts.shown import ShownTask
+from wonderful_team.core.values import Target
+from wonderful_team.errors import WonderfulTeamError
+from wonderful_team.offline.answers.drafting import draft
+from wonderful_team.offline.answers.steps import steps_of_subgoal
+from wonderful_team.offline.eyes import Eyes, eyes_of_task
+
+
+def answer_draft(question: DraftPlan) -> PlanDraft:
+    """Read the instruction, look at the picture, write the plan."""
+    plan, _ = draft(question.task, question.with_targets, question.advice)
+    return with_moves(plan, question.task, question.step_kinds) if question.with_targets else plan
+
+
+def with_moves(plan: PlanDraft, task: ShownTask, step_kinds: Sequence[str]) -> PlanDraft:
+    """The plan with the move of every subgoal that one pick and place carries out."""
+    if not plan.subgoals or "pick_place" not in step_kinds:
+        return plan
+    eyes, targets = eyes_of_task(task), plan.to_targets()
+    subgoals = [item.model_copy(update={"move": _move(item, targets, step_kinds, eyes)}) for item in plan.subgoals]
+    return plan.model_copy(update={"subgoals": subgoals})
+
+
+def _move(subgoal: SubgoalDraft, targets: Sequence[Target], step_kinds: Sequence[str], eyes: Eyes) -> MoveDraft | None:
+    """The one step that would be written for a subgoal; None where it takes another kind, or several."""
+    try:
+        steps = steps_of_subgoal(subgoal.to_subgoal(), targets, step_kinds, eyes)
+    except WonderfulTeamError:
+        # What cannot be written as steps is refused by name when steps are asked for.
+        return None
+    if len(steps) != 1 or steps[0]["kind"] != "pick_place":
+        return None
+    return MoveDraft.model_validate({name: steps[0][name] for name in MoveDraft.model_fields})

@@ -9,7 +9,7 @@ from wonderful_team.contracts import ReviewPlan
 from wonderful_team.core.pictures import PathMark, PointMark
 from wonderful_team.planning import Bounds, TeamConfig
 
-LEAN = TeamConfig(mode="lean")
+LEAN = TeamConfig(mode="lean", thorough=True)
 HOLE = "The point lies in the hole of the ring; it should be on its rim."
 
 
@@ -69,7 +69,7 @@ def test_a_point_in_a_hole_is_chosen_anew_and_the_plan_succeeds():
 def test_without_a_grounding_team_the_supervisor_points_again():
     found = [{"reasoning": "", "found": True, "points": [{"x": x, "y": 240}]} for x in (180, 215)]
     model = scripted(ReviewSteps=[wrong(), APPROVED], LocatePoints=of_target("T1", found, found[0]))
-    plan = plan_with(model, TeamConfig(mode="lean", ablation="s6"))
+    plan = plan_with(model, TeamConfig(mode="lean", thorough=True, ablation="s6"))
     assert plan.grounded["T1"].points["pick"] == (215, 240)
     last = asked(model, "LocatePoints")[-1]
     assert last.role == "supervisor"
@@ -103,7 +103,7 @@ def test_a_doubted_box_is_looked_for_anew_and_one_that_is_not_there_goes_back_to
 def test_endless_doubt_about_a_point_ends_at_the_bound_and_says_so(strict):
     model = scripted(ReviewSteps=wrong(), ChoosePoint=lambda request: chosen(1 + len(request.question.rejected)))
     tape = Tape()
-    plan = plan_with(model, TeamConfig(mode="lean", strict=strict, bounds=Bounds(regrounds=2)), tape=tape)
+    plan = plan_with(model, TeamConfig(mode="lean", thorough=True, strict=strict, bounds=Bounds(regrounds=2)), tape=tape)
     assert plan.status == ("refused" if strict else "planned")
     assert not plan.verified
     assert [q.kind for q in plan.questions] == ["wrong_point"] * 2

@@ -50,13 +50,19 @@ def stub_script() -> dict[str, Any]:
         "ReviewPlan": lambda request: request.question.walked(
             c.PlanReview(reasoning="", approved=True, doubt=None)
         ).model_dump(),
+        "ReviewSteps": lambda request: request.question.in_form(
+            c.PlanReview(reasoning="", approved=True, doubt=None)
+        ).model_dump(),
         "LocatePoints": lambda request: {"reasoning": "", "found": True, "points": [_centre(request)]},
         "ChooseMark": lambda _: {"reasoning": "", "number": 1},
         "GiveBox": lambda request: {"reasoning": "", "box": _box(request)},
         "ReadScene": _reading,
         "JudgeBoxes": lambda request: {
             "boxes": [
-                {"target": item.target.id, "verdict": {"reasoning": "", "decision": "accept", "problem": ""}}
+                {
+                    "target": item.target.id,
+                    "verdict": {"reasoning": "", "decision": "accept", "problem": "", "wrong_points": []},
+                }
                 for item in request.question.boxes
             ]
         },

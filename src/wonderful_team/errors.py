@@ -43,12 +43,14 @@ class WonderfulTeamError(Exception):
         stage: Where a method failed; None where the error is not a method's.
         trace: The traceback of the user's own code that raised; empty where there is none.
         folder: The run folder that holds what had happened by then; None where nothing was recorded.
+        sent: False where a request to a model was refused before it was sent: it is no call and costs nothing.
     """
 
     exit_code: ClassVar[int] = 1
     stage: str | None = None
     trace: str = ""
     folder: Path | None = None
+    sent: bool = True
 
     def __init__(self, message: str, *, stage: str | None = None, cause: BaseException | None = None) -> None:
         super().__init__(redact(message if cause is None else f"{message} {raised(cause)}"))
@@ -195,6 +197,8 @@ class ModelCodeError(ModelUnavailableError):
 
 class CacheMissError(ModelUnavailableError):
     """`--cache only` forbids asking a model, and the cache holds no answer."""
+
+    sent = False
 
 
 class ReplayError(ConfigError):

@@ -7,6 +7,7 @@ import json
 import pytest
 
 from tests.desk import WORDS, draw_desk
+from wonderful_team import load_run
 from wonderful_team.cli.app import run
 
 
@@ -19,6 +20,12 @@ def test_cache_only_without_an_answer_ends_with_exit_code_3(desk, tmp_path, caps
     file = tmp_path / "answers.sqlite"
     words = ["plan", str(desk / "desk.png"), WORDS, "--cache-file", str(file), "--cache"]
     assert run([*words, "only"]) == 3
+    # Nothing was asked: the run has the request, and no call.
+    record = load_run("latest").record
+    assert record["planner"]["requests"][0]["failed"]["sent"] is False
+    page = load_run("latest").page.read_text(encoding="utf-8")
+    assert "<dt>calls</dt><dd>0</dd>" in page
+    assert "refused before it was sent: --cache only" in page
     assert "holds no answer of offline to DraftPlan" in capsys.readouterr().err
     assert run([*words, "on"]) == 0
     first = capsys.readouterr().out.splitlines()[0]

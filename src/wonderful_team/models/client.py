@@ -175,6 +175,8 @@ class ModelClient:
                 ticket.book_lost_try()
                 raise
             except WonderfulTeamError as error:
+                if not error.sent:
+                    usage = Usage(seconds=time.monotonic() - started)
                 self.tell("failed", request.id, (request, error))
                 raise
             finally:

@@ -227,7 +227,7 @@ def _revived(told: Mapping[str, Any]) -> WonderfulTeamError:
         kind = ModelOutputError
     error: WonderfulTeamError = kind.__new__(kind)
     WonderfulTeamError.__init__(error, told["message"], stage=told["stage"])
-    error.trace = str(told.get("trace", ""))
+    error.trace, error.sent = str(told.get("trace", "")), False
     for name in ("question", "choices", "contract", "reasons"):
         if name in told:
             value = told[name]

@@ -37,6 +37,7 @@ def per_role(asked: Sequence[Asked]) -> tuple[RoleCost, ...]:
 
 
 def _sum(role: str, asked: Sequence[Asked]) -> RoleCost:
+    asked = [one for one in asked if one.sent]
     usages = [one.answer["usage"] for one in asked if one.answer is not None]
     prices = [usage["usd"] for usage in usages]
     return RoleCost(
@@ -56,7 +57,7 @@ def rounds(asked: Sequence[Asked]) -> int:
     Memory works beside the main line and makes nobody wait.
     """
     count, free_s = 0, float("-inf")
-    for one in (one for one in asked if one.entry["role"] != "memory"):
+    for one in (one for one in asked if one.sent and one.entry["role"] != "memory"):
         if one.sent_s >= free_s:
             count += 1
             free_s = _end(one)

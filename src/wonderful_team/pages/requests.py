@@ -51,6 +51,16 @@ class Asked:
         return self.entry["answer"] or None
 
     @property
+    def failure(self) -> str:
+        """What came instead of an answer, in words."""
+        return str((self.entry.get("failed") or {}).get("message", ""))
+
+    @property
+    def sent(self) -> bool:
+        """Whether it went to a model; one that was refused before is no call."""
+        return bool((self.entry.get("failed") or {}).get("sent", True))
+
+    @property
     def seconds(self) -> float | None:
         return None if self.answered_s is None else self.answered_s - self.sent_s
 

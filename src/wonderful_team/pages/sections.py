@@ -131,7 +131,7 @@ def summary(record: dict[str, Any]) -> dict[str, Any]:
         "model": outcome.get("model") or settings.get("model") or "",
         "usd": None if any(price is None for price in prices) else sum(prices),
         "seconds": record["clock"].get("seconds"),
-        "calls": len(record["planner"]["requests"]),
+        "calls": sum((one.get("failed") or {}).get("sent", True) for one in record["planner"]["requests"]),
     }
 
 
@@ -204,6 +204,7 @@ def _stage_events(record: dict[str, Any], asked: Sequence[Asked]) -> list[tuple[
         during = [one for one in asked if one.answered_s is not None and last_s < one.answered_s <= at_s]
         usages = [one.answer["usage"] for one in during if one.answer is not None]
         tokens = sum(usage["tokens_in"] + usage["tokens_out"] + usage["tokens_thinking"] for usage in usages)
+        during = [one for one in during if one.sent]
         paid = counted(len(during), "call") + (f", {tokens:,} tokens" if tokens else "") if during else ""
         events.append((at_s, stage["name"], re.sub(r" {2,}", " · ", stage["text"]), paid))
         last_s = at_s

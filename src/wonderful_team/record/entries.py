@@ -91,6 +91,8 @@ def error_entry(error: WonderfulTeamError) -> dict[str, Any]:
     shown: dict[str, Any] = {"error": type(error).__name__, "message": str(error), "stage": error.stage}
     if error.trace:
         shown["trace"] = error.trace
+    if not error.sent:
+        shown["sent"] = False
     for name in ("question", "choices", "contract", "reasons"):
         if hasattr(error, name):
             shown[name] = to_jsonable(getattr(error, name))

@@ -193,11 +193,12 @@ class InvalidEntry(_Part):
 
 
 class FailedEntry(_Part):
-    """An error that came instead of an answer."""
+    """An error that came instead of an answer; `sent` is false where the request was refused before it was sent."""
 
     error: str
     message: str
     stage: str | None
+    sent: bool = True
 
 
 class RequestEntry(_Part):

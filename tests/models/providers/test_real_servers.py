@@ -184,7 +184,7 @@ def test_a_refusal_that_leaves_no_room_for_an_answer_is_final(server: Server) ->
     ]
     with pytest.raises(ContextTooLongError) as caught:
         ask(server.provider())
-    assert (caught.value.exit_code, len(server.bodies)) == (2, 1)
+    assert (caught.value.exit_code, caught.value.sent, len(server.bodies)) == (2, True, 1)
 
 
 def test_words_and_pictures_that_do_not_fit_are_refused_before_they_are_sent(server: Server) -> None:
@@ -192,6 +192,13 @@ def test_words_and_pictures_that_do_not_fit_are_refused_before_they_are_sent(ser
     with pytest.raises(ContextTooLongError, match="words and pictures alone take about .* context is 512 tokens"):
         ask(server.provider())
     assert server.bodies == []
+    # What was never sent is no call, and an answer's cap of calls is left whole.
+    budget = Budget(Caps(calls=1))
+    for _ in range(2):
+        with pytest.raises(ContextTooLongError) as caught:
+            asyncio.run(ModelClient(server.provider(), budget=budget).ask(question()))
+        assert not caught.value.sent
+    assert (budget.spent.calls, budget.spent.pictures, budget.spent.tokens, server.bodies) == (0, 0, 0, [])
 
 
 def test_the_longest_answer_that_a_service_allows_is_learnt(server: Server) -> None:

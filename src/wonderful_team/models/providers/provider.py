@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import functools
 import hashlib
 import math
 import time
-from collections.abc import AsyncGenerator, Mapping
+from collections.abc import AsyncGenerator, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 from weakref import WeakKeyDictionary
@@ -142,7 +143,8 @@ class Provider:
             BudgetReached: A cap was met before another try.
         """
         # The first request of a loop builds the client, which takes time that is not the service's.
-        await self._client()
+        with _before_sending():
+            await self._client()
         ticket = current_ticket()
         started = time.monotonic()
         # A little earlier than whoever waits, so that the error can say what was tried.
@@ -150,8 +152,9 @@ class Provider:
         await self._ask_facts(deadline_s)
         tries, doubts, timed_out, wait_s = 0, 0, 0, 0.0
         while True:
-            composed = self._compose(request)
-            limit = self._limit(request, ticket)
+            with _before_sending(first=not tries):
+                composed = self._compose(request)
+                limit = self._limit(request, ticket)
             if tries:
                 ticket.another_try()
             tries += 1
@@ -363,6 +366,16 @@ async def _keep_open(client: Any) -> AsyncGenerator[None]:
         yield
     finally:
         await client.aclose()
+
+
+@contextlib.contextmanager
+def _before_sending(*, first: bool = True) -> Iterator[None]:
+    """What is refused here has not been sent, where no try came first."""
+    try:
+        yield
+    except WonderfulTeamError as error:
+        error.sent = not first
+        raise
 
 
 def _told(error: WonderfulTeamError, tries: int, wait_s: float, left_s: float) -> WonderfulTeamError:

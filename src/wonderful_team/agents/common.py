@@ -8,7 +8,8 @@ How to read the pictures
   tick labels along the edges) are listed there too; they are ours and are not things in the scene.
 - Positions count from the top-left corner of the picture: x grows to the right, y grows downwards. They are pixels of
   the picture that the request names, unless the request itself states another unit.
-- Left, right, above and below mean directions in the picture: above is towards its top edge.
+- Left, right, above and below mean directions in the picture: above is towards its top edge. So is north, unless
+  something else is said.
 """.strip()
 
 DATA = """
@@ -41,8 +42,8 @@ TARGETS = """
 How to write targets
 - A target is one thing or one spot that has to be found in the main view. List each once, even when several subgoals
   need it, in order of use: T1, T2, and so on. "All" or "every" means one target for each thing you count.
-- kind object: it has an outline, such as a block, a bowl, a handle. kind area: free space or a region, such as the empty
-  space between two plates.
+- kind object: it has an outline of its own, such as a block, a bowl, a handle, a coloured square on the table. kind area:
+  a spot without one, such as the free space between two plates, or the place where a picture shows a thing.
 - words: kind, colour, pattern, shape, so that someone who sees only the main view finds it. where: what tells it
   apart from things that look the same, such as "the left one"; empty when the words suffice. part: only when one part
   matters.
@@ -50,8 +51,10 @@ How to write targets
   they show as well. A whole scene shows where things are, never what one thing looks like: name it for places only.
 - alike: what the thing has in common with these pictures. both: shape and surface. shape: for "the same shape as", and
   for a plain grey example. surface: for "the same texture as".
-- use: what its points serve for. pick: it is picked up. place: something is put there (a bowl that receives something
-  is an object with use place). push_start, push_end: a push begins or ends there. grasp: a gripper closes on it.
+- use: what its points serve for. pick: it is picked up. place: the middle of something is to come to lie there, carried or
+  pushed (a bowl that receives something is an object with use place). push_start: where the front of the tool comes
+  down for a push. push_end: where the front of the tool stops; for where the pushed thing's middle should end, use
+  place. grasp: a gripper closes on it.
 - A thing that is moved beside another thing, or back to where it stood, needs no area of its own: steps can say
   "beside" and "origin".
 """.strip()

@@ -38,10 +38,15 @@ merely resembles it. If a target is not in the picture, say so: "not here" is a 
 
 LOCATE_POINTS = """
 Point at the target in the picture that is named for the answer.
-- Wanted the centre: give the middle of the visible target (of its part, if one is named). Several points only for
-  several places where this one target could be, the most likely first.
-- Wanted a place: give points at which something can be put down so that it lies in the middle of free, suitable
-  space, clear of other things and of the edges.
+- Wanted the centre: give the middle of the visible target (of its part, if one is named). If it is there to be picked or
+  grasped, the point must lie on its solid material: of a ring, a frame or an L-shaped thing take the spot of the
+  material nearest to its middle, never a hole or a gap. If it is there for push_start, give a point just beside it, on the
+  side away from where it should go. Several points only for several places where this one target could be, the most
+  likely first.
+- Wanted a place: give points at which the middle of something can come to lie, in the middle of the container, surface or
+  free space that is meant. See it as it will be once the earlier subgoals are done: what leaves before does not count,
+  so do not move into a corner to avoid it. Stay clear of what remains, of the edges, and of regions that nothing may
+  enter.
 - Points that are labelled on the picture as rejected were wrong: choose elsewhere, and not on the thing that was
   rejected there. What was said of them tells why.
 - found is false, without points, when you cannot see the target or no such space exists. Do not guess.
@@ -49,8 +54,10 @@ Point at the target in the picture that is named for the answer.
 
 CHOOSE_MARK = """
 Several independent guesses are numbered on the picture. Choose the number whose point fits the target best.
-- Wanted the centre: the point must lie on the target itself; of several that do, the one nearest to its middle.
-- Wanted a place: the point with the most free, suitable space around it.
+- Wanted the centre: the point must lie on the target itself, on solid material if it is picked or grasped, never in a
+  hole; of several that do, the one nearest to its middle.
+- Wanted a place: the point nearest to the middle of the container, surface or free space that is meant, as it will be
+  once the earlier subgoals are done.
 - number is null when no numbered point is on the target. Look at the scene, not at the numbers' order.
 """
 
@@ -69,8 +76,11 @@ Find every target in the picture that is named for the answer: for each one a bo
   or described region.
 - Point for pick or grasp: on the solid surface of the target itself, near its middle. For ring-shaped or L-shaped
   things, the middle of the box may be a hole: stay on the material.
-- Point for place: the middle of the container's inside, of the surface, or of the free space.
-- push_start: beside the thing, on the side away from where it should go. push_end: where the push should stop.
+- Point for place: where the middle of what goes there should lie: the middle of the container's inside, of the surface, or
+  of the free space, as it will be once the earlier subgoals are done. What leaves before does not count: do not move
+  into a corner to avoid it. Never in a region that nothing may enter.
+- push_start: where the front of the tool comes down, beside the thing, on the side away from where it should go.
+  push_end: where the front of the tool stops; the thing then lies before it.
 - Two targets are the same spot only if the plan means the same thing.
 - found is false, with a null box and no points, when a target is not in the picture. Do not guess.
 - unsure: what makes you doubt that this is the right thing or the right outline, such as another one that fits the words
@@ -90,9 +100,11 @@ CHOOSE_POINT = """
 Choose the numbered point at which the robot should act on the target. The final box is drawn on the crop.
 - pick or grasp: on the solid surface of the target, near its middle, where nothing else covers it. Never a hole, never
   the background inside the box.
-- place: the middle of the container's inside, of the surface, or of the free space.
-- push_start: just beside the thing, on the side away from where it should go: an arrow from the box points there, and
-  the whole view shows it. push_end: where the push should stop.
+- place: where the middle of what goes there should lie: the middle of the container's inside, of the surface, or of the
+  free space, as it will be once the earlier subgoals are done, never a corner.
+- push_start: where the front of the tool comes down, just beside the thing, on the side away from where it should go: an
+  arrow from the box points there, and the whole view shows it. push_end: where the front of the tool stops; the thing then
+  lies before it.
 - A point that is labelled as rejected was wrong; what was said of it tells why. Choose one that is free of this fault.
 - Second round: the points lie close together; choose the one that is most precisely right.
 """

@@ -101,7 +101,8 @@ class PushStep(_Step):
 
     kind: ClassVar[str] = "push"
     words: ClassVar[StepWords] = StepWords(
-        "push along the table from one place to another", told="push from {start} to {end}"
+        "lower the tool beside a thing, push the thing straight along the surface to a place, and lift the tool there",
+        told="push from {start} to {end}",
     )
     roles: ClassVar[tuple[tuple[str, str], ...]] = (("push_start", "start"), ("push_end", "end"))
     start: Place

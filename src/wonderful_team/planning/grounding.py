@@ -217,7 +217,8 @@ async def ground_by_supervisor(jobs: Sequence[Job]) -> dict[str, GroundedTarget]
 
 async def _point_by_supervisor(job: Job) -> GroundedTarget:
     view, said = job.with_rejected(job.scene.labelled)
-    question = LocatePoints(job.target, "centre", job.plan, view, job.scene.views[1:], job.examples, 1, said)
+    purpose: Literal["centre", "place"] = "place" if job.target.kind == "area" else "centre"
+    question = LocatePoints(job.target, purpose, job.plan, view, job.scene.views[1:], job.examples, 1, said)
     answer: Points = await job.session.ask(question, stage="ground", branch=job.target.id, role="supervisor")
     if not answer.points:
         job.tell("absent", "the Supervisor says it is not in the picture")

@@ -13,6 +13,7 @@ from wonderful_team.contracts.move_box import BoxMove, MoveBox
 from wonderful_team.contracts.plans import ClarificationDraft, PlanDraft, SubgoalDraft, TargetDraft
 from wonderful_team.contracts.presence import EdgePresence, Presence, PresenceAnswer, Strip
 from wonderful_team.contracts.read_scene import ReadScene, RolePoint, SceneReading, SceneTarget
+from wonderful_team.contracts.read_turn import ReadTurn, TurnChoice
 from wonderful_team.contracts.remember import MemoryEntry, Remember
 from wonderful_team.contracts.replan import Advice, Replan
 from wonderful_team.contracts.review_path import PathReview, ReviewPath
@@ -48,6 +49,7 @@ QUESTIONS: tuple[type[Question], ...] = (
     JudgeRevision,
     MoveBox,
     ChoosePoint,
+    ReadTurn,
     WriteSteps,
     ReviewSteps,
     WriteFunction,
@@ -97,6 +99,7 @@ __all__ = [
     "QUESTIONS",
     "Question",
     "ReadScene",
+    "ReadTurn",
     "Remember",
     "Replan",
     "ReviewPath",
@@ -116,6 +119,7 @@ __all__ = [
     "TargetDraft",
     "TargetList",
     "Tolerance",
+    "TurnChoice",
     "VerdictDraft",
     "WriteFunction",
     "WriteSteps",

@@ -30,10 +30,17 @@ Edge: TypeAlias = Literal["left", "top", "right", "bottom"]
 EDGES: tuple[Edge, ...] = ("left", "top", "right", "bottom")
 
 
+def _all_required(schema: dict[str, Any]) -> None:
+    """A model is asked for every field; a default is for answers that were given before the field was there."""
+    schema["required"] = list(schema.get("properties", {}))
+    for field in schema.get("properties", {}).values():
+        field.pop("default", None)
+
+
 class AnswerModel(BaseModel):
     """Base of every answer: unknown fields are refused."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True)
+    model_config = ConfigDict(extra="forbid", frozen=True, json_schema_extra=_all_required)
 
 
 class PointPx(AnswerModel):

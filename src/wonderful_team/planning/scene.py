@@ -9,8 +9,11 @@ from functools import cached_property
 from wonderful_team.contracts import ShownSlot, ShownTask
 from wonderful_team.core.actions import Vocabulary
 from wonderful_team.core.pictures import Axes, Picture
-from wonderful_team.core.values import Instruction, Limits, Observation, Subgoal, Target, View
+from wonderful_team.core.values import Instruction, Limits, Observation, SlotKind, Subgoal, Target, View
 from wonderful_team.images import whole
+
+ARRANGED: frozenset[SlotKind] = frozenset(("scene", "frame"))
+"""Kinds of the instruction's pictures that show where things belong."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,10 +30,19 @@ class SceneShown:
         """The main view."""
         return self.observation.main
 
-    @property
-    def main_name(self) -> str:
-        """What the main view is called."""
-        return next(iter(self.observation.views))
+    def arranged(self, target: Target) -> tuple[str, View] | None:
+        """The instruction's scene that defines a place, as seen where the main view is: its name and view.
+
+        None without one, and for one of another size: places in it are then no places in the main view.
+        """
+        main = next(iter(self.observation.views))
+        for name in target.like if target.kind == "area" else ():
+            slot = self.instruction.slots.get(name)
+            if slot is not None and slot.kind in ARRANGED:
+                view = slot.views.get(main) or next(iter(slot.views.values()))
+                if view.size_px == self.view.size_px:
+                    return name, view
+        return None
 
     @cached_property
     def views(self) -> tuple[Picture, ...]:

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from wonderful_team.core.actions import PickPlaceStep
 from wonderful_team.core.geometry import Box
 from wonderful_team.core.pictures import Point, TurnMark
-from wonderful_team.core.values import GroundedTarget, PlannedAction, PointRole, View
+from wonderful_team.core.values import GroundedTarget, PlannedAction, View
 from wonderful_team.images.canvas import INK, PURPLE, WHITE, Canvas
 from wonderful_team.images.lettering import plain
 from wonderful_team.images.placing import PointLabel
@@ -16,7 +16,6 @@ from wonderful_team.images.placing import PointLabel
 ARC_STEP_DEG = 6.0
 FROM_TO = 2
 """Numbers of an action that goes from one place to another."""
-HOLDS: tuple[PointRole, ...] = ("pick", "grasp")
 SAME_SCALE, SQUARE = 1.25, 0.95
 """A view from above stretches the table one way by at most this, and its sides are square but for this sine."""
 STAYS = 0.5
@@ -58,14 +57,14 @@ def action_turns(
         if not isinstance(step, PickPlaceStep) or not step.rotate_deg or len(action.sources) < FROM_TO:
             continue
         item = grounded.get(step.pick)
-        held = None if item is None else next((item.points[role] for role in HOLDS if role in item.points), None)
-        if item is None or item.box is None or held is None:
+        if item is None or item.box is None:
             continue
         # What was turned before is turned by both.
         sums[step.pick] = turn = sums.get(step.pick, 0.0) + step.rotate_deg
+        # The place of an action is where the thing's middle lands.
         put = action.sources[-1].point_px
-        ends = [_turned(point, held, put, turn) for point in (*item.box.corners, item.box.centre)]
-        marks.append(TurnMark(ends[-1], tuple(ends[:-1]), step.rotate_deg, str(number)))
+        corners = tuple(_turned(corner, item.box.centre, put, turn) for corner in item.box.corners)
+        marks.append(TurnMark(put, corners, step.rotate_deg, str(number)))
     return tuple(marks)
 
 
@@ -74,10 +73,10 @@ def stays(path: Sequence[Point], turn: TurnMark) -> bool:
     return math.dist(path[0], path[-1]) < STAYS * min(_sides(turn.corners))
 
 
-def _turned(point: Point, held: Point, put: Point, clockwise_deg: float) -> Point:
-    """Where a point of a thing ends that is held at one place, turned, and put down at another."""
+def _turned(point: Point, middle: Point, put: Point, clockwise_deg: float) -> Point:
+    """Where a point of a thing ends that is turned about its middle, which ends at `put`."""
     c, s = math.cos(math.radians(clockwise_deg)), math.sin(math.radians(clockwise_deg))
-    dx, dy = point[0] - held[0], point[1] - held[1]
+    dx, dy = point[0] - middle[0], point[1] - middle[1]
     return put[0] + c * dx - s * dy, put[1] + s * dx + c * dy
 
 

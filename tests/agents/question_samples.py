@@ -20,6 +20,7 @@ from wonderful_team.contracts import (
     Presence,
     Question,
     ReadScene,
+    ReadTurn,
     Remember,
     Replan,
     ReviewPath,
@@ -34,7 +35,7 @@ from wonderful_team.contracts import (
 )
 from wonderful_team.core.actions import Beside, MoveStep, OriginOf, PickPlaceStep
 from wonderful_team.core.geometry import Box, Frame
-from wonderful_team.core.pictures import Axes, BoxMark, Candidates, Mark, PathMark, Picture, PointMark
+from wonderful_team.core.pictures import Axes, BoxMark, Candidates, Mark, PathMark, Picture, PointMark, Tiles
 from wonderful_team.core.values import Critique, Subgoal, Target, Verdict
 
 KINDS = ("pick_place", "push", "move", "open", "close", "rotate_gripper", "follow", "home", "navigate")
@@ -126,6 +127,13 @@ SAMPLES: tuple[Question, ...] = (
         EXAMPLES,
         ("rejected: in the hole",),
         picture("all of it", BOX),
+    ),
+    ReadTurn(
+        TARGET,
+        picture("turns", BoxMark(Box(0, 4, 20, 24), label="goal"), Tiles((Box(24, 4, 40, 20), Box(44, 4, 60, 20)))),
+        (150.0, 155.0),
+        "the pictures {before_1} and {after_1}",
+        True,
     ),
     WriteSteps(TASK, KINDS, SUBGOALS, (TARGET, AREA), ("G1",), "step 2 turns the wrong way"),
     ReviewSteps(

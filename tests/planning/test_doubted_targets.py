@@ -103,7 +103,9 @@ def test_a_doubted_box_is_looked_for_anew_and_one_that_is_not_there_goes_back_to
 def test_endless_doubt_about_a_point_ends_at_the_bound_and_says_so(strict):
     model = scripted(ReviewSteps=wrong(), ChoosePoint=lambda request: chosen(1 + len(request.question.rejected)))
     tape = Tape()
-    plan = plan_with(model, TeamConfig(mode="lean", thorough=True, strict=strict, bounds=Bounds(regrounds=2)), tape=tape)
+    plan = plan_with(
+        model, TeamConfig(mode="lean", thorough=True, strict=strict, bounds=Bounds(regrounds=2)), tape=tape
+    )
     assert plan.status == ("refused" if strict else "planned")
     assert not plan.verified
     assert [q.kind for q in plan.questions] == ["wrong_point"] * 2

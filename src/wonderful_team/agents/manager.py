@@ -20,7 +20,7 @@ from wonderful_team.agents.rendering import (
 )
 from wonderful_team.agents.role import Ask, role
 from wonderful_team.agents.strips import strip_parts
-from wonderful_team.contracts import ChooseMark, ChoosePoint, GiveBox, LocatePoints, Presence, ReadScene
+from wonderful_team.contracts import ChooseMark, ChoosePoint, GiveBox, LocatePoints, Presence, ReadScene, ReadTurn
 from wonderful_team.core.values import Part, Target
 
 SYSTEM = system_words(
@@ -109,6 +109,17 @@ Choose the numbered point at which the robot should act on the target. The final
 - Second round: the points lie close together; choose the one that is most precisely right.
 """
 
+READ_TURN = """
+The picture shows on its left, marked goal, how the target is to lie in the end. Beside it the same thing is cut out as it
+lies at first and turned by growing angles, each with its number. Choose the number whose cut-out lies most nearly as the
+goal does.
+- Compare by what has a direction: a tip, a notch, an opening, the arms of a letter, the way its stripes run. Look where
+  it points in the goal, and which cut-out points there too.
+- Compare how things are turned, not where they lie in their pictures, nor what lies beside them.
+- Second round: the turns differ little; compare the slant of long edges.
+- number is null when none lies as the goal does, as for another thing.
+"""
+
 _WANTED: dict[Literal["centre", "place"], str] = {
     "centre": "the centre of the target",
     "place": "a place at which something can be put down",
@@ -191,6 +202,16 @@ def _render_choose_point(question: ChoosePoint) -> list[Part]:
     ]
 
 
+def _render_read_turn(question: ReadTurn) -> list[Part]:
+    turn = "second round, fine" if question.fine else "first round, coarse"
+    turns = "; ".join(f"{number} is {turn:g}" for number, turn in enumerate(question.turns, start=1))
+    return [
+        *picture_parts(question.strip, f"the goal and the turned cut-outs, from {question.shows}"),
+        *_target_parts(question.target),
+        *words(f"Degrees by which each cut-out is turned, clockwise ({turn}): {turns}."),
+    ]
+
+
 MANAGER = role(
     "manager",
     SYSTEM,
@@ -200,5 +221,6 @@ MANAGER = role(
     Ask(ReadScene, READ_SCENE, _render_read_scene),
     Ask(Presence, PRESENCE, _render_presence),
     Ask(ChoosePoint, CHOOSE_POINT, _render_choose_point),
+    Ask(ReadTurn, READ_TURN, _render_read_turn),
     grounds=True,
 )

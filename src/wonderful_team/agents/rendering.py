@@ -7,7 +7,18 @@ from collections.abc import Iterable, Sequence
 
 from wonderful_team.contracts import ShownSlot, ShownTask
 from wonderful_team.core.actions import STEPS
-from wonderful_team.core.pictures import Axes, BoxMark, Candidates, LineMark, Mark, PathMark, Picture, PointMark
+from wonderful_team.core.pictures import (
+    Axes,
+    BoxMark,
+    Candidates,
+    LineMark,
+    Mark,
+    PathMark,
+    Picture,
+    PointMark,
+    Tiles,
+    TurnMark,
+)
 from wonderful_team.core.values import Note, Part, Subgoal, Target, Words
 from wonderful_team.images.captions import axes_words, size_words
 
@@ -75,6 +86,14 @@ def mark_words(mark: Mark) -> str:
             return f"points numbered 1 to {count}" if count > 1 else "one point numbered 1"
         case PathMark():
             return f"a path labelled {mark.label}" if mark.label else "a path with an arrow at its end"
+        case Tiles():
+            return f"pictures numbered 1 to {len(mark.boxes)}"
+        case TurnMark():
+            return (
+                "an arc with the degrees of a turn"
+                + (f" labelled {mark.label}" if mark.label else "")
+                + (", and the outline of the thing after it")
+            )
         case LineMark():
             return "a line where the box's edge lies"
 

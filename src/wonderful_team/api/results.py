@@ -156,7 +156,7 @@ class PlanResult:
 
     def _repr_html_(self) -> str:
         """In a notebook: the picture of the plan, how it ended, its targets."""
-        from wonderful_team.images import action_arrows, overview
+        from wonderful_team.images import action_arrows, action_turns, overview
 
         names = picture_names(self.plan.instruction.text, self.plan.instruction.slots)
         lines = [self.message] if self.message else []
@@ -169,6 +169,7 @@ class PlanResult:
             self.plan.grounded,
             names=names,
             arrows=action_arrows(self.actions),
+            turns=action_turns(self.actions, self.plan.grounded, self.observation.main),
             keep_out=self.plan.keep_out,
         )
         spent = f"{counted(self.usage.calls, 'call')}, {self.seconds:.1f} s"

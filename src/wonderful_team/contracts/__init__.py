@@ -14,6 +14,7 @@ from wonderful_team.contracts.move_box import BoxMove, MoveBox
 from wonderful_team.contracts.plans import ClarificationDraft, MoveDraft, PlanDraft, SubgoalDraft, TargetDraft
 from wonderful_team.contracts.presence import EdgePresence, Presence, PresenceAnswer, Strip
 from wonderful_team.contracts.read_scene import ReadScene, RolePoint, SceneReading, SceneTarget
+from wonderful_team.contracts.read_turn import ReadTurn, TurnChoice
 from wonderful_team.contracts.remember import MemoryEntry, Remember
 from wonderful_team.contracts.replan import Advice, Replan
 from wonderful_team.contracts.review_path import PathReview, ReviewPath
@@ -57,6 +58,7 @@ QUESTIONS: tuple[type[Question], ...] = (
     JudgeRevision,
     MoveBox,
     ChoosePoint,
+    ReadTurn,
     WriteSteps,
     ReviewSteps,
     WriteFunction,
@@ -109,6 +111,7 @@ __all__ = [
     "QUESTIONS",
     "Question",
     "ReadScene",
+    "ReadTurn",
     "Remember",
     "Replan",
     "ReviewPath",
@@ -130,6 +133,7 @@ __all__ = [
     "TargetList",
     "TargetVerdict",
     "Tolerance",
+    "TurnChoice",
     "VerdictDraft",
     "WalkedReview",
     "WriteFunction",

@@ -27,7 +27,9 @@ class BoxVerdict(AnswerModel):
         description="accept: tight on the target; revise: on the target but loose or cut; reject: elsewhere."
     )
     problem: str = Field(description="What should change about the box, in one sentence; empty when accepted.")
-    wrong_points: list[WrongPoint] = Field(description="Points that would not serve their use; empty for none.")
+    wrong_points: list[WrongPoint] = Field(
+        default_factory=list, description="Points that would not serve their use; empty for none."
+    )
 
 
 @dataclass(frozen=True, eq=False)

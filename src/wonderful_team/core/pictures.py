@@ -124,7 +124,41 @@ class LineMark:
     end: Point
 
 
-Mark: TypeAlias = Axes | BoxMark | PointMark | Candidates | PathMark | LineMark
+@dataclass(frozen=True)
+class Tiles:
+    """Numbered pictures inside a picture, to choose from: tile k (1-based) is boxes[k - 1]."""
+
+    boxes: tuple[Box, ...]
+
+    def at(self, number: int) -> Box:
+        """The tile with that number.
+
+        Raises:
+            ValueError: No such number.
+        """
+        if not 1 <= number <= len(self.boxes):
+            raise ValueError(f"tile {number} does not exist; valid: 1 to {len(self.boxes)}")
+        return self.boxes[number - 1]
+
+
+@dataclass(frozen=True)
+class TurnMark:
+    """A thing that is turned: its outline as it comes to lie, and by how much it was turned.
+
+    Attributes:
+        centre: Middle of the outline, the arc's centre.
+        corners: Its box's corners at the end, turned; in order.
+        clockwise_deg: The turn, as the picture shows it.
+        label: Of the step that turns it.
+    """
+
+    centre: Point
+    corners: tuple[Point, ...]
+    clockwise_deg: float
+    label: str = ""
+
+
+Mark: TypeAlias = Axes | BoxMark | PointMark | Candidates | PathMark | LineMark | Tiles | TurnMark
 
 
 @dataclass(frozen=True, eq=False)

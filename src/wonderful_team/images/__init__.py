@@ -10,6 +10,7 @@ from wonderful_team.images.encode import to_png
 from wonderful_team.images.load import OWN_FORMATS, load_picture, open_picture
 from wonderful_team.images.overview import action_arrows, overview
 from wonderful_team.images.resample import picture_of, resampled, resampled_depth, valid_mask
+from wonderful_team.images.turn_marks import action_turns, seen_from_above
 
 __all__ = [
     "CHANGED",
@@ -17,6 +18,7 @@ __all__ = [
     "StripSide",
     "Ticks",
     "action_arrows",
+    "action_turns",
     "beside_points",
     "crop",
     "crop_pair",
@@ -33,6 +35,7 @@ __all__ = [
     "region_change",
     "resampled",
     "resampled_depth",
+    "seen_from_above",
     "to_png",
     "valid_mask",
     "whole",

@@ -15,6 +15,8 @@ from wonderful_team.core.pictures import (
     Picture,
     Point,
     PointMark,
+    Tiles,
+    TurnMark,
 )
 from wonderful_team.images.axes import Ticks, draw_axes
 from wonderful_team.images.canvas import (
@@ -31,6 +33,7 @@ from wonderful_team.images.canvas import (
 )
 from wonderful_team.images.lettering import plain
 from wonderful_team.images.placing import PointLabel, label_box, label_points, paint_plates
+from wonderful_team.images.turn_marks import draw_turn, number_tiles
 
 BOX_COLOURS: dict[BoxStyle, Colour] = {
     "target": ORANGE,
@@ -68,6 +71,7 @@ def draw(picture: Picture, ticks: Ticks = Ticks.PIXELS) -> Array:
         draw_line(canvas, line.start, line.end)
     for path in paths:
         draw_path(canvas, path.points)
+    turned = [label for mark in picture.marks if isinstance(mark, TurnMark) for label in draw_turn(canvas, mark)]
     radius, reach = candidate_radius(canvas), point_reach(canvas)
     numbered = [(point, str(k)) for choice in choices for k, point in enumerate(choice.points, start=1)]
     for point, _ in numbered:
@@ -84,7 +88,7 @@ def draw(picture: Picture, ticks: Ticks = Ticks.PIXELS) -> Array:
         for path in paths
         if path.label and path.points
     ]
-    placed = label_points(canvas, labels)
+    placed = label_points(canvas, [*labels, *turned])
     for point, _ in numbered:
         canvas.disc(point, radius, BLUE, WHITE)
     for mark in points:
@@ -93,6 +97,7 @@ def draw(picture: Picture, ticks: Ticks = Ticks.PIXELS) -> Array:
     for box in boxes:
         if box.label:
             label_box(canvas, box.box, plain(box.label), back=BOX_COLOURS[box.style])
+    number_tiles(canvas, [box for mark in picture.marks if isinstance(mark, Tiles) for box in mark.boxes])
     return canvas.rgb
 
 

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 
 from wonderful_team.core.geometry import Box, Camera
 from wonderful_team.core.geometry.arrays import Array
-from wonderful_team.core.pictures import BoxStyle, Picture, Point
+from wonderful_team.core.pictures import BoxStyle, Picture, Point, TurnMark
 from wonderful_team.core.text import spoken
 from wonderful_team.core.values import GroundedTarget, KeepOut, Limits, PlannedAction, View
 from wonderful_team.images.canvas import (
@@ -30,6 +31,7 @@ from wonderful_team.images.cut import whole
 from wonderful_team.images.draw import candidate_radius, draw_box, point_reach
 from wonderful_team.images.lettering import plain
 from wonderful_team.images.placing import PointLabel, label_box, label_points, paint_plates
+from wonderful_team.images.turn_marks import draw_turn, stays
 
 TARGET_COLOURS: tuple[Colour, ...] = (ORANGE, SKY, YELLOW, PURPLE, GREEN, VERMILLION)
 """Taken in turn by the targets of a plan."""
@@ -42,6 +44,7 @@ def overview(
     *,
     names: Mapping[str, str] | None = None,
     arrows: Sequence[Sequence[Point]] = (),
+    turns: Sequence[TurnMark] = (),
     keep_out: Sequence[KeepOut] = (),
     workspace: Limits | Box | None = None,
     camera: Camera | None = None,
@@ -53,6 +56,7 @@ def overview(
         grounded: Targets with boxes and points; those that were not found are left out.
         names: What the instruction's pictures are called, where a target's words speak of one as {name}.
         arrows: Moves in order, each through two or more points; `action_arrows` makes them from actions.
+        turns: Things that are turned, as `action_turns` makes them from actions.
         keep_out: Regions nothing may enter.
         workspace: Limits in metres, or a box in view px, to outline.
         camera: Turns metres into pixels when `shown` is a Picture; a View brings its own. Without one, outlines that
@@ -79,10 +83,22 @@ def overview(
             draw_box(canvas, box.corners, "target", colour)
             named.append(_Named(box, _name(item, names), colour, INK))
     paths = [_points(picture, arrow) for arrow in arrows if len(arrow) > 1]
-    labels = _draw_arrows(canvas, [_arc(path) for path in paths])
+    turned = [
+        replace(turn, corners=tuple(_points(picture, turn.corners)), centre=_points(picture, [turn.centre])[0])
+        for turn in turns
+    ]
+    # Where something is only turned, the arc says so.
+    still = {
+        turn.label for turn in turned for n, path in enumerate(paths, 1) if str(n) == turn.label and stays(path, turn)
+    }
+    labels = _draw_arrows(canvas, {n: _arc(path) for n, path in enumerate(paths, 1) if str(n) not in still})
+    for turn in turned:
+        labels += draw_turn(canvas, turn)
     for item, colour in found:
         labels += _draw_points(canvas, picture, item, colour, _name(item, names), bool(paths))
-    for path in paths:
+    for n, path in enumerate(paths, start=1):
+        if str(n) in still:
+            continue
         canvas.cross(path[-1], point_reach(canvas), GREEN)
     paint_plates(canvas, label_points(canvas, labels))
     for entry in named:
@@ -123,8 +139,9 @@ def _regions(
         yield item, "keep_out", item.name, 0.0
 
 
-def _draw_arrows(canvas: Canvas, paths: Sequence[Sequence[Point]]) -> list[PointLabel]:
-    """All arrows; returns their numbers, to be placed beside the middle of each, off the line and its head."""
+def _draw_arrows(canvas: Canvas, arrows: Mapping[int, Sequence[Point]]) -> list[PointLabel]:
+    """All arrows by their numbers; returns these, to be placed beside the middle of each, off the line and its head."""
+    paths = list(arrows.values())
     for path in paths:
         canvas.polyline(path, GREEN, width_px=canvas.stroke_px + 1, halo=WHITE)
         canvas.arrow_head(path[-2], path[-1], GREEN, 6.5 * canvas.stroke_px)
@@ -135,7 +152,9 @@ def _draw_arrows(canvas: Canvas, paths: Sequence[Sequence[Point]]) -> list[Point
         path[len(path) // 2] if len(path) > 2 else ((path[0][0] + path[1][0]) / 2, (path[0][1] + path[1][1]) / 2)
         for path in paths
     ]
-    return [PointLabel(at, str(number), 2.0 * canvas.stroke_px, GREEN) for number, at in enumerate(middles, start=1)]
+    return [
+        PointLabel(at, str(number), 2.0 * canvas.stroke_px, GREEN) for number, at in zip(arrows, middles, strict=True)
+    ]
 
 
 def _name(item: GroundedTarget, names: Mapping[str, str] | None) -> str:

@@ -8,9 +8,10 @@ from dataclasses import dataclass, replace
 from wonderful_team.agents import step_words
 from wonderful_team.contracts import GROUNDING_KINDS, PlanReview, ReviewSteps, StepList, WalkedReview, WriteSteps
 from wonderful_team.core.actions import Step
-from wonderful_team.core.pictures import BoxMark, PathMark, Picture, Point, PointMark
+from wonderful_team.core.pictures import BoxMark, PathMark, Picture, Point, PointMark, TurnMark
 from wonderful_team.core.text import counted
 from wonderful_team.core.values import Critique, GroundedTarget, PlannedAction, View
+from wonderful_team.images.turn_marks import action_turns, stays
 from wonderful_team.motion import ground_actions
 from wonderful_team.motion.in_words import numbers_in_words
 from wonderful_team.planning.functions import write_functions
@@ -21,6 +22,7 @@ from wonderful_team.planning.plan_loop import PlanState, remember_doubt, resolve
 from wonderful_team.planning.scene import SceneShown
 from wonderful_team.planning.session import AgentSession
 from wonderful_team.planning.spending import inferred_turns, steps_said
+from wonderful_team.planning.turns import settle_turns
 
 
 async def write_steps(
@@ -95,13 +97,15 @@ async def check_steps(
     Raises:
         GeometryError: The numbers of a step cannot be computed.
     """
+    settled = await settle_turns(session, scene, steps, grounded)
+    steps, grounded = settled.steps, settled.grounded
     looks = session.config.bounds.regrounds
     while True:
         actions = compute(scene, steps, grounded, paths)
         if not session.members.verification:
             return Acted(state, steps, grounded, actions)
         shown = overview_picture(scene, grounded, actions)
-        question = _review_question(session, scene, state, steps, shown, grounded, actions)
+        question = _review_question(session, scene, state, steps, shown, grounded, actions, settled.told)
         answer = await session.ask_whole(question, stage="act")
         review: PlanReview | WalkedReview = answer.value
         if review.doubt is None:
@@ -166,6 +170,7 @@ def _review_question(
     shown: Picture,
     grounded: Mapping[str, GroundedTarget],
     actions: Sequence[PlannedAction],
+    told: Sequence[str],
 ) -> ReviewSteps:
     task = scene.task
     if session.config.sparing:
@@ -177,7 +182,7 @@ def _review_question(
         state.targets,
         steps,
         shown,
-        checked=settled_lines(state.questions),
+        checked=(*told, *settled_lines(state.questions)),
         numbers=numbers_in_words(actions, grounded, scene.view, scene.limits),
         plan_checked=state.reviewed,
         step_kinds=() if state.reviewed else scene.vocabulary.step_kinds,
@@ -187,14 +192,27 @@ def _review_question(
 def overview_picture(
     scene: SceneShown, grounded: Mapping[str, GroundedTarget], actions: Sequence[PlannedAction]
 ) -> Picture:
-    """The main view with every target's box and label, and the steps as numbered arrows."""
-    return mark_targets(scene.views[0], scene.view, grounded).marked(
+    """The main view with every target's box and label, and the steps as numbered arrows.
+
+    A turn is an arc with its degrees and the outline after it; of a thing that is turned where it lies there is no arrow.
+    """
+    view = scene.views[0]
+    turns = {mark.label: _on(view, mark) for mark in action_turns(actions, grounded, scene.view)}
+    paths = {str(number): _path(view, action) for number, action in enumerate(actions, start=1)}
+    return mark_targets(view, scene.view, grounded).marked(
         *(
-            PathMark(path, str(number))
-            for number, action in enumerate(actions, start=1)
-            if len(path := _path(scene.views[0], action)) >= 2
-        )
+            PathMark(path, label)
+            for label, path in paths.items()
+            if len(path) >= 2 and not (label in turns and stays(path, turns[label]))
+        ),
+        *turns.values(),
     )
+
+
+def _on(picture: Picture, mark: TurnMark) -> TurnMark:
+    """A turn [view px] in pixels of a picture."""
+    at = picture.frame.point_to_picture
+    return replace(mark, centre=at(mark.centre), corners=tuple(at(corner) for corner in mark.corners))
 
 
 def mark_targets(picture: Picture, view: View, grounded: Mapping[str, GroundedTarget]) -> Picture:

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from wonderful_team.contracts import JudgeBox
 from wonderful_team.core.geometry import Box
 from wonderful_team.core.pictures import BoxMark, Picture, Point, PointMark
-from wonderful_team.core.values import PointRole, SlotKind
+from wonderful_team.core.values import PointRole
 from wonderful_team.images import crop, whole
 from wonderful_team.planning.jobs import Job
 
@@ -15,12 +15,10 @@ THUMBNAIL_PX = 640
 """Longest side of the whole view beside a crop."""
 BESIDE = 1.0
 """Points farther from the box than this share of its longer side do not show on its crop."""
-ARRANGED: frozenset[SlotKind] = frozenset(("scene", "frame"))
-"""Kinds of the instruction's pictures that show where things belong."""
 
 
 def judge_box(job: Job, box: Box, points: Mapping[PointRole, Point], name: str = "crop") -> JudgeBox:
-    """The question about one box [view px] and the points that were chosen with it [view px]."""
+    """The question about one box [view px] and the points that were chosen with it [view px]; `name` is the crop's."""
     reach = BESIDE * max(box.width, box.height)
     near = box.grown(reach, reach, reach, reach)
     drawn = {role: point for role, point in points.items() if near.contains(point) and job.view_box.contains(point)}
@@ -34,7 +32,7 @@ def judge_box(job: Job, box: Box, points: Mapping[PointRole, Point], name: str =
         tuple(drawn),
         _whole_view(job, box),
         _alike(job),
-        _goal(job, box, also, name),
+        _goal(job, box, also),
     )
 
 
@@ -51,7 +49,7 @@ def _whole_view(job: Job, box: Box) -> Picture | None:
     """The whole view with the box, where only its surroundings tell the target from others like it."""
     if not job.target.where:
         return None
-    shown = whole(job.scene.view, "whole view", max_side_px=THUMBNAIL_PX)
+    shown = whole(job.scene.view, f"whole view with the box of {job.target.id}", max_side_px=THUMBNAIL_PX)
     return shown.marked(BoxMark(shown.frame.box_to_picture(box)))
 
 
@@ -66,16 +64,11 @@ def _alike(job: Job) -> Picture | None:
     return None
 
 
-def _goal(job: Job, box: Box, also: list[Box], beside: str) -> Picture | None:
+def _goal(job: Job, box: Box, also: list[Box]) -> Picture | None:
     """The same part of the scene that defines an area, with the same box; only of a scene as large as the view."""
-    if job.target.kind != "area":
+    arranged = job.scene.arranged(job.target)
+    if arranged is None:
         return None
-    main = job.scene.view
-    for name in job.target.like:
-        slot = job.scene.instruction.slots.get(name)
-        if slot is None or slot.kind not in ARRANGED:
-            continue
-        view = slot.views.get(job.scene.main_name) or next(iter(slot.views.values()))
-        if view.size_px == main.size_px:
-            return _boxed(job, crop(view, box, f"{beside} in {{{name}}}", also=also), box)
-    return None
+    name, view = arranged
+    shown = crop(view, box, f"{{{name}}}, the same part as the crop of {job.target.id}", also=also)
+    return _boxed(job, shown, box)

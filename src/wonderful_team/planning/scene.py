@@ -10,9 +10,12 @@ from wonderful_team.contracts import ShownSlot, ShownTask
 from wonderful_team.core.actions import Vocabulary
 from wonderful_team.core.geometry import Box
 from wonderful_team.core.pictures import Axes, BoxMark, Picture
-from wonderful_team.core.values import Instruction, KeepOut, Limits, Observation, Subgoal, Target, View
+from wonderful_team.core.values import Instruction, KeepOut, Limits, Observation, SlotKind, Subgoal, Target, View
 from wonderful_team.images import whole
 from wonderful_team.images.keep_out import region_px, table_height_m
+
+ARRANGED: frozenset[SlotKind] = frozenset(("scene", "frame"))
+"""Kinds of the instruction's pictures that show where things belong."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,10 +39,19 @@ class SceneShown:
         """The main view."""
         return self.observation.main
 
-    @property
-    def main_name(self) -> str:
-        """What the main view is called."""
-        return next(iter(self.observation.views))
+    def arranged(self, target: Target) -> tuple[str, View] | None:
+        """The instruction's scene that defines a place, as seen where the main view is: its name and view.
+
+        None without one, and for one of another size: places in it are then no places in the main view.
+        """
+        main = next(iter(self.observation.views))
+        for name in target.like if target.kind == "area" else ():
+            slot = self.instruction.slots.get(name)
+            if slot is not None and slot.kind in ARRANGED:
+                view = slot.views.get(main) or next(iter(slot.views.values()))
+                if view.size_px == self.view.size_px:
+                    return name, view
+        return None
 
     @cached_property
     def views(self) -> tuple[Picture, ...]:

@@ -148,6 +148,15 @@ class Context:
         tables = frozenset(slot.name for slot in examples if slot.kind != "object")
         return meaning_of(target, seen, self.things(seen), sighted, tables, at)
 
+    def turn_of(self, target: Target) -> float | None:
+        """How far the right plan of the newest look turns one of its targets [degrees clockwise]; None when it moves it not."""
+        right = None if self._plans is None else self._plans[2]
+        meant = None if right is None else right.meant_by(target)
+        if right is None or meant is None:
+            return None
+        turns = [step["rotate_deg"] for step in right.steps if "pick" in step and right.meanings[step["pick"]] is meant]
+        return float(turns[0]) if turns else None
+
     def see(self, picture: Picture) -> Seen | None:
         """What a picture shows; None when it is not true."""
         return self.eyes.see(picture)

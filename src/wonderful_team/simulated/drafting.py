@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
+from dataclasses import replace
 
 from wonderful_team.contracts import (
     ClarificationDraft,
@@ -24,12 +26,15 @@ from wonderful_team.contracts import (
     step_list_type,
 )
 from wonderful_team.contracts.review_plan import CritiqueDraft
-from wonderful_team.core.actions import Step, places_of
+from wonderful_team.core.actions import PickPlaceStep, Step, places_of
+from wonderful_team.core.pictures import PathMark
 from wonderful_team.core.values import Subgoal, Target
 from wonderful_team.errors import UnsupportedQuestion
 from wonderful_team.simulated.context import Context
 from wonderful_team.simulated.draft import Written, key_of
 
+SAME_ANGLE_DEG = 5.0
+"""Turns that differ by less are the same: nearer than pictures show them [degrees]."""
 BLIND = "one of the pictures of this task shows nothing that was ever there"
 
 
@@ -193,9 +198,42 @@ def _review_steps(context: Context, question: ReviewSteps) -> PlanReview:
     ).to_steps()
     for number, (step, own) in enumerate(zip(question.steps, right, strict=False), start=1):
         text = f"Step {number} does something else than its subgoal asks; is it right?"
-        if step != own and not any(text in line for line in question.checked):
+        if not _same(step, own) and not any(text in line for line in question.checked):
             return doubt(str(number), "wrong_target" if places_of(step) != places_of(own) else "needless_step", text)
-    return approved("The steps do what the subgoals ask.")
+    return _off_the_thing(context, question, plan) or approved("The steps do what the subgoals ask.")
+
+
+def _off_the_thing(context: Context, question: ReviewSteps, plan: Written) -> PlanReview | None:
+    """A doubt about the first arrow that begins beside what is picked, as for a point in a hole."""
+    seen = context.see(question.overview)
+    starts = {mark.label: mark.points[0] for mark in question.overview.marks if isinstance(mark, PathMark)}
+    targets = {target.id: target for target in question.targets}
+    moved: set[str] = set()
+    for number, step in enumerate(question.steps, start=1):
+        if not isinstance(step, PickPlaceStep) or step.pick in moved or seen is None:
+            # What was moved before does not lie where the picture shows it.
+            continue
+        moved.add(step.pick)
+        meant = plan.meant_by(targets[step.pick])
+        start = starts.get(str(number))
+        if meant is None or meant.thing is None or start is None or meant.thing not in seen.names:
+            continue
+        text = (
+            f"Step {number} does not take hold of the {targets[step.pick].words} itself; should the point not be on it?"
+        )
+        known = any(text in line for line in question.checked)
+        overlooked = context.sampler is not None and context.sampler.draws(context.profile.overlooks, f"point {number}")
+        if seen.at(start, (meant.thing,)) is None and not known and not overlooked:
+            return doubt(step.pick, "wrong_point", text)
+    return None
+
+
+def _same(step: Step, own: Step) -> bool:
+    """Whether a step does the same; an angle that was read off pictures may be a few degrees off."""
+    if isinstance(step, PickPlaceStep) and isinstance(own, PickPlaceStep):
+        off = math.remainder(step.rotate_deg - own.rotate_deg, 360.0)
+        return replace(step, rotate_deg=own.rotate_deg) == own and abs(off) <= SAME_ANGLE_DEG
+    return step == own
 
 
 def _like(slots: Sequence[ShownSlot], target: Target) -> tuple[ShownSlot, ...]:

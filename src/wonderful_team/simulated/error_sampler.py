@@ -21,6 +21,7 @@ from wonderful_team.contracts import (
     RevisionVerdict,
     RolePoint,
     SceneReading,
+    TurnChoice,
 )
 from wonderful_team.core.pictures import Picture
 from wonderful_team.core.values import Request
@@ -65,6 +66,8 @@ class ErrorSampler:
                 )
             case MarkChoice() | PointChoice():
                 return self._choice(value, len(question.candidates.points))
+            case TurnChoice():
+                return self._choice(value, len(question.turns))
             case BoxVerdict():
                 return self._verdict(value)
             case BoxVerdicts():

@@ -20,6 +20,7 @@ from wonderful_team.contracts import (
     Presence,
     Question,
     ReadScene,
+    ReadTurn,
     Remember,
     Replan,
     ReviewPlan,
@@ -31,7 +32,7 @@ from wonderful_team.core.caps import Estimate
 from wonderful_team.core.protocols import SceneTruth
 from wonderful_team.core.values import Answer, Instruction, Request, Usage
 from wonderful_team.errors import UnsupportedQuestion
-from wonderful_team.simulated import crops, drafting, grounding, outcome
+from wonderful_team.simulated import crops, drafting, grounding, outcome, turns
 from wonderful_team.simulated.context import Context
 from wonderful_team.simulated.error_sampler import ErrorSampler
 from wonderful_team.simulated.profiles import PROFILES, Profile
@@ -53,6 +54,7 @@ ANSWERS: dict[type[Question], Callable[[Context, Any], Any]] = {
     JudgeRevision: crops.answer_judge_revision,
     MoveBox: crops.answer_move_box,
     ChoosePoint: crops.answer_choose_point,
+    ReadTurn: turns.answer_read_turn,
     JudgeOutcome: outcome.answer_outcome,
     Replan: outcome.answer_replan,
     Remember: outcome.answer_remember,

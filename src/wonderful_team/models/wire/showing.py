@@ -12,7 +12,19 @@ import numpy as np
 
 from wonderful_team.core.geometry import Box, Frame
 from wonderful_team.core.geometry.arrays import Array
-from wonderful_team.core.pictures import Axes, BoxMark, Candidates, LineMark, Mark, PathMark, Picture, Point, PointMark
+from wonderful_team.core.pictures import (
+    Axes,
+    BoxMark,
+    Candidates,
+    LineMark,
+    Mark,
+    PathMark,
+    Picture,
+    Point,
+    PointMark,
+    Tiles,
+    TurnMark,
+)
 from wonderful_team.images import Ticks, draw
 from wonderful_team.images.canvas import Canvas
 from wonderful_team.models.conventions import PIXELS, Convention, Size
@@ -161,6 +173,10 @@ def _scaled_mark(mark: Mark, sx: float, sy: float) -> Mark:
             return replace(mark, point=at(mark.point))
         case Candidates() | PathMark():
             return replace(mark, points=tuple(at(point) for point in mark.points))
+        case Tiles():
+            return Tiles(tuple(_scaled_box(box, sx, sy) for box in mark.boxes))
+        case TurnMark():
+            return replace(mark, centre=at(mark.centre), corners=tuple(at(corner) for corner in mark.corners))
         case LineMark():
             return LineMark(at(mark.start), at(mark.end))
         case Axes():

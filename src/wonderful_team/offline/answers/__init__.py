@@ -20,6 +20,7 @@ from wonderful_team.contracts import (
     Presence,
     Question,
     ReadScene,
+    ReadTurn,
     Remember,
     Replan,
     ReviewPath,
@@ -51,6 +52,7 @@ from wonderful_team.offline.answers.reviewing import answer_review
 from wonderful_team.offline.answers.revising import answer_revise
 from wonderful_team.offline.answers.step_review import answer_review_steps
 from wonderful_team.offline.answers.steps import answer_write_steps
+from wonderful_team.offline.answers.turns import answer_read_turn
 
 ANSWERS: dict[type[Question], Callable[..., Any]] = {
     DraftPlan: answer_draft,
@@ -67,6 +69,7 @@ ANSWERS: dict[type[Question], Callable[..., Any]] = {
     JudgeRevision: answer_judge_revision,
     MoveBox: answer_move_box,
     ChoosePoint: answer_choose_point,
+    ReadTurn: answer_read_turn,
     WriteSteps: answer_write_steps,
     ReviewSteps: answer_review_steps,
     ReviewPath: answer_review_path,

@@ -15,6 +15,7 @@ SECRET_ENDINGS = ("_KEY", "_TOKEN", "_SECRET")
 OPT_IN = {
     "slow": "takes more than ten seconds",
     "install": "installs packages: takes minutes and needs the package index",
+    "servers": "starts real model servers: takes minutes and needs one installed (docs/models.md)",
 }
 
 
@@ -30,7 +31,7 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
         if config.getoption(f"--run{marker}"):
             continue
         for item in items:
-            if marker in item.keywords:
+            if item.get_closest_marker(marker) is not None:
                 item.add_marker(pytest.mark.skip(reason=f"{marker}: {why}; use --run{marker}"))
 
 

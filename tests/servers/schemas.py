@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
 from tests.servers.heard import Rejected
@@ -80,3 +80,48 @@ def check_name(name: str, what: str) -> None:
     """Names of tools and schemas."""
     if not re.fullmatch(r"[a-zA-Z0-9_-]{1,64}", name):
         raise Rejected(400, f"{what}: {name!r} does not match '^[a-zA-Z0-9_-]{{1,64}}$'", code="invalid_value")
+
+
+_TYPES: Mapping[str, type | tuple[type, ...]] = {
+    "object": dict, "array": list, "string": str, "boolean": bool, "null": type(None), "number": (int, float), "integer": int,
+}  # fmt: skip
+_BOUNDS: tuple[tuple[str, Callable[[Any, Any], bool]], ...] = (
+    ("minLength", lambda value, bound: isinstance(value, str) and len(value) < bound),
+    ("maxLength", lambda value, bound: isinstance(value, str) and len(value) > bound),
+    ("minItems", lambda value, bound: isinstance(value, list) and len(value) < bound),
+    ("maxItems", lambda value, bound: isinstance(value, list) and len(value) > bound),
+    ("minimum", lambda value, bound: isinstance(value, int | float) and value < bound),
+    ("maximum", lambda value, bound: isinstance(value, int | float) and value > bound),
+    ("exclusiveMinimum", lambda value, bound: isinstance(value, int | float) and value <= bound),
+    ("exclusiveMaximum", lambda value, bound: isinstance(value, int | float) and value >= bound),
+    ("enum", lambda value, bound: value not in bound),
+    ("const", lambda value, bound: value != bound),
+)
+
+
+def misfits(value: Any, schema: Mapping[str, Any], where: str = "answer", root: Mapping[str, Any] | None = None) -> list[str]:
+    """Where a value breaks a JSON schema, by the words that ours use."""
+    root = schema if root is None else root
+    if "$ref" in schema:
+        return misfits(value, root["$defs"][schema["$ref"].rpartition("/")[2]], where, root)
+    for word in ("anyOf", "oneOf"):
+        if word in schema:
+            tried = [misfits(value, option, where, root) for option in schema[word]]
+            return [] if [] in tried else min(tried, key=len)
+    wanted = schema.get("type")
+    kind = _TYPES.get(wanted, object) if isinstance(wanted, str) else object
+    if not isinstance(value, kind) or (isinstance(value, bool) and wanted in ("integer", "number")):
+        return [f"{where}: {value!r} is no {wanted}"]
+    found = [f"{where}: {value!r} breaks {word} {schema[word]}" for word, broken in _BOUNDS if word in schema and broken(value, schema[word])]
+    if isinstance(value, list):
+        for index, item in enumerate(value):
+            found += misfits(item, schema.get("items", {}), f"{where}[{index}]", root)
+    if isinstance(value, dict):
+        properties = schema.get("properties", {})
+        found += [f"{where}: {name} is missing" for name in schema.get("required", ()) if name not in value]
+        for name, item in value.items():
+            if name in properties:
+                found += misfits(item, properties[name], f"{where}.{name}", root)
+            elif schema.get("additionalProperties") is False:
+                found.append(f"{where}: {name} is not asked for")
+    return found

@@ -29,11 +29,13 @@ PLAN: dict[str, Any] = {
     "mode": "one_step",
     "clarification": None,
 }
+WALKED = {"before": "the picture", "doable": "yes", "after": "nothing", "asked": "yes"}
+HOLE = {"use": "grasp", "why": "it lies in the hole"}
 BOX = {"x0": 10, "y0": 5, "x1": 30.5, "y1": 20}
 RIGHT: dict[str, dict[str, Any]] = {
     "DraftPlan": PLAN,
     "ReviewPlan": {
-        "reasoning": "",
+        "walk": [{**WALKED, "subgoal": "G2", "after": "it hits the lamp", "verdict": "wrong"}],
         "approved": False,
         "doubt": {"about": "G2", "kind": "collision", "question": "Is the way free?"},
     },
@@ -59,7 +61,14 @@ RIGHT: dict[str, dict[str, Any]] = {
         ],
     },
     "Presence": {"reasoning": "", "edges": [{"edge": edge, "inside": True, "outside": False} for edge in EDGES]},
-    "JudgeBox": {"reasoning": "", "decision": "revise", "problem": "The handle is cut."},
+    "JudgeBox": {"reasoning": "", "decision": "revise", "problem": "The handle is cut.", "wrong_points": [HOLE]},
+    "JudgeBoxes": {
+        "boxes": [
+            {"target": "T8", "verdict": {"reasoning": "", "decision": "accept", "problem": "", "wrong_points": []}},
+            {"target": "T7", "verdict": {"reasoning": "", "decision": "reject", "problem": "a cup", "wrong_points": []}},
+        ]
+    },
+    "ReadTurn": {"reasoning": "", "number": 2},
     "JudgeRevision": {"reasoning": "", "decision": "take_after_go_on"},
     "MoveBox": {
         "reasoning": "",
@@ -93,7 +102,7 @@ RIGHT: dict[str, dict[str, Any]] = {
         ],
     },
     "ReviewSteps": {
-        "reasoning": "",
+        "walk": [{**WALKED, "subgoal": name, "verdict": "fine"} for name in ("G1", "G2")],
         "approved": False,
         "doubt": {"about": "2", "kind": "needless_step", "question": "Why move?"},
     },

@@ -12,6 +12,8 @@ from pydantic import ValidationError
 from tests.contracts.right_answers import LEAVE_OUT, QUESTION, RIGHT, changed, judged
 from wonderful_team.contracts import QUESTIONS
 
+LATER = {"wrong_points", "walk"}
+"""Fields that came later: answers in records of earlier releases do without them."""
 EVERY = pytest.mark.parametrize("contract", [question.__name__ for question in QUESTIONS])
 
 
@@ -42,7 +44,7 @@ def test_a_field_that_the_contract_does_not_know_is_refused_wherever_it_stands(c
 @EVERY
 def test_a_field_that_is_left_out_is_refused_by_name(contract: str) -> None:
     for place, held in objects(RIGHT[contract]):
-        for name in held:
+        for name in held.keys() - LATER:
             with pytest.raises(ValidationError, match=rf"{name}\n  Field required|discriminator '{name}'"):
                 judged(QUESTION[contract], changed(contract, {f"{place}.{name}".lstrip("."): LEAVE_OUT}))
 

@@ -184,7 +184,7 @@ def read_put(parts: Parts, meaning: Meaning) -> None:
     things = _things(parts, meaning)
     pairs, source = _placed_pairs(parts)
     sides = parts.of("side")
-    if sides and pairs:
+    if sides and (pairs or "ITS" in parts.kinds):
         raise Unclear("it is not clear what is at that side")
     if "REMOVE" in parts.kinds or (source is not None and not pairs and not sides and wants):
         _away(things, source, meaning, sure="REMOVE" in parts.kinds)

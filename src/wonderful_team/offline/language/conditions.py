@@ -61,30 +61,17 @@ def open_conditions(text: str) -> tuple[str, bool]:
 
 def _leading(text: str) -> tuple[str, bool]:
     head = re.match(
-        rf"\s*(?:please,?\s+)?{_OPENERS}\s+(?:there (?:is|are)|you (?:see|find)|one finds|we have)\s+(?P<what>[^,.;]+?)"
-        r"(?:\s+(?:for it|on the table|present|available))?\s*,\s*(?:then\s+)?(?P<rest>.+)$",
+        rf"\s*(?:please,?\s+)?(?:{_OPENERS}\s+(?:there (?:is|are)|you (?:see|find)|one finds|we have)\s+(?P<there>[^,.;]+?)|"
+        rf"(?:{_OPENERS}|should)\s+(?P<what>[^,.;]+?)\s+(?:exists?|is (?:there|present|available)|can be found|"
+        r"be (?:there|present|available)))(?:\s+(?:for it|on the table|present|available))?\s*,\s*(?:then\s+)?(?P<rest>.+)$",
         text,
         re.IGNORECASE | re.DOTALL,
     )
     if head is None:
-        head = re.match(
-            rf"\s*(?:please,?\s+)?(?:{_OPENERS}|should)\s+(?P<what>[^,.;]+?)\s+(?:exists?|is (?:there|present|available)|"
-            r"can be found|be (?:there|present|available))(?:\s+for it|\s+on the table)?\s*,\s*(?:then\s+)?(?P<rest>.+)$",
-            text,
-            re.IGNORECASE | re.DOTALL,
-        )
-    if head is None:
         return text, False
-    what, rest = head.group("what").strip(), head.group("rest")
-    rest, count = re.subn(
-        r"\b(in|into|onto|on|to|inside)\s+(it|that one|this one|them|that area|this area|that region|the area)(?=\s*[.!;]|\s*$)",
-        rf"\1 {what}",
-        rest,
-        count=1,
-        flags=re.IGNORECASE,
-    )
-    if count == 0:
-        rest, count = re.subn(r"\bthere\b", f"into {what}", rest, count=1, flags=re.IGNORECASE)
+    what, rest = (head.group("there") or head.group("what")).strip(), head.group("rest")
+    place = r"\b(?:(in|into|onto|on|to|inside)\s+(?:it|that one|this one|them|(?:that|this|the) (?:area|region))(?=\s*[.!;]|\s*$)|there\b)"
+    rest, count = re.subn(place, lambda it: f"{it.group(1) or 'into'} {what}", rest, count=1, flags=re.IGNORECASE)
     return (rest, True) if count else (text, False)
 
 

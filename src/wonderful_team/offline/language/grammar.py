@@ -101,22 +101,12 @@ def simplest(tree: Tree[Token]) -> tuple[Tree[Token], float]:
         if isinstance(child, Tree):
             best, child_cost = simplest(child)
             cost += child_cost
-            if (
-                best.data == "plain_post"
-                and len(best.children) == 1
-                and (
-                    getattr(best.children[0], "data", "") == "colour"
-                    or getattr(best.children[0], "type", "") == "PATTERN"
-                )
-            ):
+            kinds = [getattr(item, "type", "") or getattr(item, "data", "") for item in best.children]
+            if best.data == "plain_post" and kinds in (["colour"], ["PATTERN"]):
                 cost += 0.6  # a colour after its noun ("everything red")
-            if best.data == "plain_post" and any(
-                isinstance(item, Token) and item.type == "EXCEPT" for item in best.children
-            ):
-                cost -= 0.3 * len(best.children)
-            if best.data == "adj" and any(
-                isinstance(item, Token) and item.type in ("NOUN", "LETTER") for item in best.children
-            ):
+            if best.data == "plain_post" and "EXCEPT" in kinds:
+                cost -= 0.3 * len(kinds)
+            if best.data == "adj" and {"NOUN", "LETTER"} & {*kinds}:
                 cost += 0.3
             children.append(best)
         else:

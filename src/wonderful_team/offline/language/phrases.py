@@ -108,7 +108,10 @@ _LISTED: dict[Entry, str] = {
     ("BETWEEN", "between"): """
     in between; in gap between; in space between; into gap between; into space between; halfway between;
     midway between; in middle between; in middle , between; right between""",
-    ("TAKE", "take"): "pick up; take hold of; look for; take up; get hold of; lift up; start with; begin with",
+    (
+        "TAKE",
+        "take",
+    ): "pick up; round up; take hold of; look for; take up; get hold of; lift up; start with; begin with",
     ("WANT", "want"): """
     i want; i would like; i d like; i want you to have; see to it that; make sure that; make sure; ensure that; ensure;
     i wish; we want; i need; we need; i would love; be sure that; i d love""",
@@ -177,7 +180,7 @@ _LISTED: dict[Entry, str] = {
     work area; in front of you; you see; you can see; you find; that you see; that you can see; there is; there are""",
     ("EXCEPT", "except"): """
     except for; apart from; other than; but not; with exception of; save for; aside from; all but not; not including;
-    leaving out; leave out; without counting; though not; not counting; but for""",
+    leaving out; leave out; just not; without counting; though not; not counting; but for""",
     ("OFF", "off"): "out of; off of; away off; from out of; off from",
     ("ONE_OF", 1.0): "one of; any one of; any of; single one of; either of; just one of; exactly one of",
     ("OF_TWO", 2): "of two; of both; out of two",

@@ -27,56 +27,41 @@ FILLERS = frozenset(
 )
 """Words that are skipped: politeness, addressing the robot, and words that do not change what is asked."""
 
-_COLOURS: dict[str, str] = {
-    "red": "red crimson scarlet ruby vermilion maroon",
-    "yellow": "yellow gold golden",
-    "green": "green emerald",
-    "cyan": "cyan turquoise teal aqua",
-    "blue": "blue navy azure cobalt",
-    "purple": "purple violet lilac lavender mauve",
-    "pink": "pink rose magenta fuchsia",
-    "brown": "brown tan beige",
-    "olive": "olive khaki",
-    "white": "white",
-    "grey": "grey gray silver",
-    "black": "black",
-}
-_PATTERNS: dict[str, str] = {
-    "plain": "plain unpatterned solid uniform",
-    "striped": "striped stripy stripe stripes lined banded",
-    "dotted": "dotted spotted dot dots spots polka speckled",
-    "checkered": "checkered chequered checked checkerboard chessboard",
-    "swirled": "swirled swirly swirl swirls swirling spiral curly",
-    "mottled": "mottled furry grainy",
-    "multicoloured": "multicoloured multicolored colourful colorful rainbow",
-}
-_SHAPES: dict[str, str] = {
-    "square": "square",
-    "rectangle": "rectangle rectangular oblong",
-    "circle": "circle circular round disc disk",
-    "ring": "ring doughnut donut",
-    "triangle": "triangle triangular",
-    "diamond": "diamond rhombus",
-    "pentagon": "pentagon pentagonal",
-    "hexagon": "hexagon hexagonal",
-    "star": "star",
-    "heart": "heart",
-    "cross": "cross plus",
-    "flower": "flower",
-    "oval": "oval ellipse elliptical",
-    "crescent": "crescent",
-    "frame": "frame",
-    "long": "long elongated line bar stick rod strip",
-}
-_NOUNS: dict[str, str] = {
-    "object": "object something item piece shape figure thing",
-    "block": "block cube ",
-    "fruit": "fruit",
-    "area": "area region zone field patch spot space paper sheet mat pad section location",
-    "letter": "letter",
-    "toy": "toy",
-    "ball": "ball sphere",
-}
+
+def _listed(words: str) -> dict[str, str]:
+    """Listings by their first word, which is the canonical one; "VALUE: words" lists words for what is no word itself."""
+    named = (entry.split(":") if ":" in entry else (entry.split()[0], entry) for entry in words.split(";"))
+    return {value.strip(): listing for value, listing in named}
+
+
+_COLOURS = _listed(
+    """
+    red crimson scarlet ruby vermilion maroon; yellow gold golden; green emerald; cyan turquoise teal aqua;
+    blue navy azure cobalt; purple violet lilac lavender mauve; pink rose magenta fuchsia; brown tan beige;
+    olive khaki; white; grey gray silver; black
+    """
+)
+_PATTERNS = _listed(
+    """
+    plain unpatterned solid uniform; striped stripy stripe stripes lined banded;
+    dotted spotted dot dots spots polka speckled; checkered chequered checked checkerboard chessboard;
+    swirled swirly swirl swirls swirling spiral curly; mottled furry grainy;
+    multicoloured multicolored colourful colorful rainbow
+    """
+)
+_SHAPES = _listed(
+    """
+    square; rectangle rectangular oblong; circle circular round disc disk; ring doughnut donut; triangle triangular;
+    diamond rhombus; pentagon pentagonal; hexagon hexagonal; star; heart; cross plus; flower;
+    oval ellipse elliptical; crescent; frame; long elongated line bar stick rod strip
+    """
+)
+_NOUNS = _listed(
+    """
+    object something item piece shape figure thing; block cube; fruit;
+    area region zone field patch spot space paper sheet mat pad section location; letter; toy; ball sphere
+    """
+)
 _CONTAINERS = "container bowl dish plate pan tray box bin basket receptacle pallet holder"
 _FRUITS = (
     "apple apricot avocado banana blackberry blueberry cherry coconut fig grape grapefruit kiwi lemon lime mandarin mango "
@@ -106,87 +91,49 @@ _VERBS: dict[str, str] = {
 }
 """Ways of moving things, from the classes of verbs of putting, sending, removing and turning; their regular forms are made."""
 _AS_THEY_STAND = frozenset(("see", "use", "look", "do"))
-_SMALL: dict[str, str] = {
-    "IN": "in inside within",
-    "INTO": "into",
-    "ON": "on upon atop over",
-    "ONTO": "onto",
-    "TO": "to towards toward at against",
-    "NEAR": "beside near alongside adjoining",
-    "BY": "by through",
-    "ABOVE": "above behind",
-    "BELOW": "below under beneath underneath",
-    "BETWEEN": "between",
-    "OF": "of",
-    "WITH": "with having bearing",
-    "FROM": "from",
-    "AS": "as",
-    "AND": "and but",
-    "CONTAIN": "contain hold holding holds enclose",
-    "FILL": "fill cover",
-    "THEN": "then afterwards afterward subsequently thereafter",
-    "THAT": "that which until till",
-    "WHOSE": "whose",
-    "FOR": "for",
-    "THERE": "there",
-    "IT": "it them itself themselves",
-    "ITS": "its their theirs",
-    "THEY": "they",
-    "MATCH": "match matches matching matched suits suit suiting fits corresponds correspond fitting belonging",
-    "SAME": "same identical corresponding equal",
-    "SHARE": "shares share sharing has have shows contains holds",
-    "AUX": "should must shall be is are been being live lives goes go belongs belong was were stood ends end ought gets lies lie stands stand sits sit rests wants wait comes come going",
-    "EACH": "each every",
-    "ANY": "any",
-    "ALL": "all",
-    "ONE": "one ones",
-    "RESPECTIVELY": "respectively",
-    "EVERYTHING": "everything",
-    "REST": "rest others other remaining",
-    "EXCEPT": "except excluding excepting save besides",
-    "ACCORDING": "accordingly according",
-    "FORMER": "former",
-    "LATTER": "latter",
-    "MEASURE": "angle amount",
-    "OPPOSITE": "backwards backward",
-    "OFF": "off out",
-    "ENOUGH": "enough wanted needed required desired due called",
-    "WHERE": "where",
-}
-_ASPECTS: dict[str, str] = {
-    "colour": "colour color colours colors coloured colored",
-    "texture": "texture pattern patterned textured textures patterns surface covering",
-    "shape": " profile outline form silhouette contour outlines profiles forms",
-}
-_MATERIALS: dict[str, str] = {
-    "brick": "brick bricks brickwork",
-    "tile": "tile tiles tiled tiling",
-    "wood": "wood wooden timber",
-    "granite": "granite stone stony marble marbled rocky rock concrete",
-    "plastic": "plastic",
-    "tiger": "tiger",
-    "lava": "lava magma volcanic",
-    "paisley": "paisley",
-}
+_SMALL = _listed(
+    """
+    IN: in inside within; INTO: into; ON: on upon atop over; ONTO: onto; TO: to towards toward at against;
+    NEAR: beside near alongside adjoining; BY: by through; ABOVE: above behind;
+    BELOW: below under beneath underneath; BETWEEN: between; OF: of; WITH: with having bearing; FROM: from; AS: as;
+    AND: and but; CONTAIN: contain hold holding holds enclose; FILL: fill cover;
+    THEN: then afterwards afterward subsequently thereafter; THAT: that which until till; WHOSE: whose; FOR: for;
+    THERE: there; IT: it them itself themselves; ITS: its their theirs; THEY: they;
+    MATCH: match matches matching matched suits suit suiting fits corresponds correspond fitting belonging;
+    SAME: same identical corresponding equal; SHARE: shares share sharing has have shows contains holds;
+    AUX: should must shall be is are been being live lives goes go belongs belong was were stood ends end ought gets lies lie stands stand sits sit rests wants wait comes come going;
+    EACH: each every; ANY: any; ALL: all; ONE: one ones; RESPECTIVELY: respectively; EVERYTHING: everything;
+    REST: rest others other remaining; EXCEPT: except excluding excepting save besides;
+    ACCORDING: accordingly according; FORMER: former; LATTER: latter; MEASURE: angle amount;
+    OPPOSITE: backwards backward; OFF: off out; ENOUGH: enough wanted needed required desired due called;
+    WHERE: where
+    """
+)
+_ASPECTS = _listed(
+    """
+    colour color colours colors coloured colored;
+    texture pattern patterned textured textures patterns surface covering;
+    shape: profile outline form silhouette contour outlines profiles forms
+    """
+)
+_MATERIALS = _listed(
+    """
+    brick bricks brickwork; tile tiles tiled tiling; wood wooden timber;
+    granite stone stony marble marbled rocky rock concrete; plastic; tiger; lava magma volcanic; paisley
+    """
+)
 _LOOKS: dict[str, tuple[str, tuple[str, ...]]] = {
     "gingham": ("checkered", ()), "plaid": ("checkered", ()), "zebra": ("striped", ("white", "black")),
     "camouflage": ("mottled", ()), "leopard": ("dotted", ()), "metallic": ("plain", ("grey",)),
 }  # fmt: skip
 """Surfaces named after something else: pattern and colours."""
-_SUPERLATIVES: dict[str, str] = {
-    "largest": "largest biggest large big bigger larger huge",
-    "smallest": "smallest littlest small little tiny tiniest smaller",
-    "leftmost": "leftmost",
-    "rightmost": "rightmost",
-    "topmost": "topmost uppermost",
-    "bottommost": "bottommost lowermost lowest",
-    "middle": "middle central centre center",
-    "tallest": "tallest highest tall taller",
-    "shortest": "shortest short shorter",
-    "nearest": "nearest closest",
-    "darkest": "darkest",
-    "lightest": "lightest palest brightest",
-}
+_SUPERLATIVES = _listed(
+    """
+    largest biggest large big bigger larger huge; smallest littlest small little tiny tiniest smaller; leftmost;
+    rightmost; topmost uppermost; bottommost lowermost lowest; middle central centre center;
+    tallest highest tall taller; shortest short shorter; nearest closest; darkest; lightest palest brightest
+    """
+)
 _SIDES = {"left": "leftmost", "right": "rightmost", "top": "topmost", "bottom": "bottommost", "upper": "topmost",
           "lower": "bottommost"}  # fmt: skip
 _ORDINALS = {"first": 1, "1st": 1, "last": -1, "second": 2, "third": 3, "fourth": 4, "fifth": 5, "sixth": 6, "2nd": 2,

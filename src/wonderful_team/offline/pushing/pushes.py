@@ -22,10 +22,12 @@ TOOL_HALF = 0.8
 """Half the tool's width."""
 BEHIND = 1.15
 """How far behind the thing's middle the tool comes down, its own thickness included."""
-DRIFT = 0.13
-"""How far a thing may wander sideways while it turns against the tool."""
-SQUARE_RAD = np.radians(12)
-"""A thing that stands square to a push within this angle does not turn."""
+DRIFT = 0.06
+"""How far a thing may wander sideways under a push."""
+ASTRAY = 0.3
+"""How much farther from where it was pushed to a thing may lie for each radian that it stood off square before."""
+READ_RAD = np.radians(3)
+"""How exactly a picture shows how a thing is turned."""
 ROOM_LEFT = 0.05
 """Least free space beside a lane."""
 SETTLED = 0.82
@@ -35,6 +37,8 @@ BEFORE_MOUTH = 1.3
 ENOUGH = 0.7
 """Free space beyond which more is worth nothing."""
 WORTH_CLEAR, WORTH_DEEP, PUSH_COST = 6.0, 2.5, 30.0
+RISK = 200.0
+"""What it costs, as sides of way, that a lane is this much narrower than where a thing may lie asks for."""
 WORTH_ROOM = 12.0
 """What distance from the open side is worth where others are to follow."""
 """What free space beside a lane and distance from a line are worth, and what one more push costs, as sides of way."""
@@ -216,8 +220,14 @@ def best_way(field: Field, number: int, *, clear_of: Sequence[Array] = (), deep:
         return straight
     nearest = np.argsort(first, kind="stable")[:MOST_STOPS]
     stops, first = stops[nearest], first[nearest]
-    turned = np.arctan2(*(stops - block.at).T[::-1])
-    both = first[:, None] + lanes.costs(stops, turned, goals) - worth
+    way = stops - block.at
+    turned, pushed = np.arctan2(*way.T[::-1]), np.linalg.norm(way, axis=1) / block.side
+    off = np.minimum(_off_square(turned - block.yaw_rad) + READ_RAD, np.pi / 4)
+    # On its corner a thing is balanced against the tool; from there it turns away ever faster, until it is square.
+    unsure = np.maximum(np.pi / 4 - (np.pi / 4 - off) * np.exp(pushed), 0.0)
+    # A push ends half the thing's upright box short of its end; square to the tool, the thing is half its side before it.
+    behind = (abs(np.cos(block.yaw_rad)) + abs(np.sin(block.yaw_rad)) - 1) / 2
+    both = first[:, None] + lanes.costs(stops, turned, goals, unsure, ASTRAY * off, behind) - worth
     if not np.isfinite(both).any() or (straight is not None and straight.cost <= both.min()):
         return straight
     k, m = np.unravel_index(int(both.argmin()), both.shape)
@@ -294,6 +304,11 @@ def _solid(field: Field, number: int) -> Array:
     return np.asarray(np.any([field.fixed, *others], axis=0))
 
 
+def _off_square(turn: Array) -> Array:
+    """How far a square that is turned against a push is from standing square to it, 0 to pi / 4 [rad]."""
+    return np.asarray(np.abs((turn + np.pi / 4) % (np.pi / 2) - np.pi / 4))
+
+
 def _distance(blocked: Array) -> Array:
     return np.asarray(cv2.distanceTransform((~blocked).astype(np.uint8), cv2.DIST_L2, 5))
 
@@ -306,16 +321,24 @@ class _Lanes:
         blocked = (_solid(field, block.number), field.line, field.shown)
         self.solid, self.line, self.shown = map(_distance, blocked)
 
-    def costs(self, starts: Array, yaws: Array, ends: Array) -> Array:
-        """From each start, the thing turned by yaw there, to each end, shape (S, E)."""
+    def costs(
+        self, starts: Array, yaws: Array, ends: Array, unsure: Array | float = READ_RAD, astray: Array | float = 0.0,
+        behind: float = 0.0,
+    ) -> Array:  # fmt: skip
+        """From each start, the thing turned by yaw there, to each end, shape (S, E).
+
+        After a push along `yaws` the yaw is known but for `unsure` [rad], and the thing lies up to `astray` aside of its
+        start and `behind` it (in sides); one each or shape (S,).
+        """
         count, side = len(starts) * len(ends), self.side
         start = np.repeat(starts, len(ends), axis=0)
         way = np.tile(ends, (len(starts), 1)) - start
         length = np.linalg.norm(way, axis=1)
         way = way / np.maximum(length, 1e-9)[:, None]
-        off = np.arctan2(way[:, 1], way[:, 0]) - np.repeat(yaws, len(ends))
-        off = np.abs((off + np.pi / 4) % (np.pi / 2) - np.pi / 4)
-        half = np.where(off < SQUARE_RAD, 0.5 + DRIFT / 2, np.sqrt(0.5) + DRIFT)
+        turn = np.arctan2(way[:, 1], way[:, 0]) - np.repeat(yaws, len(ends))
+        off = np.minimum(_off_square(turn) + np.repeat(unsure + 0 * yaws, len(ends)), np.pi / 4)
+        aside = np.repeat(astray + 0 * yaws, len(ends)) + behind * np.abs(np.sin(turn))
+        half = (np.cos(off) + np.sin(off)) / 2 + DRIFT
         clear = np.full(count, np.inf)
         seen_free = self._least(self.shown, ends, np.zeros_like(ends), 0.0, np.zeros(len(ends))) > FREE_NOW * side
         alive = np.flatnonzero((length > SHORTEST * side) & np.tile(seen_free, len(starts)))
@@ -334,7 +357,8 @@ class _Lanes:
                 clear[alive] = np.minimum(clear[alive], seen)
                 alive = alive[clear[alive] > ROOM_LEFT * side]
         cost = np.full(count, np.inf)
-        cost[alive] = PUSH_COST + length[alive] / side - WORTH_CLEAR * np.minimum(clear[alive] / side, ENOUGH)
+        short = np.maximum(aside - clear / side, 0.0)
+        cost[alive] = (PUSH_COST + length / side + RISK * short - WORTH_CLEAR * np.minimum(clear / side, ENOUGH))[alive]
         return cost.reshape(len(starts), len(ends))
 
     def _least(self, away: Array, starts: Array, way: Array, first: float, last: Array) -> Array:

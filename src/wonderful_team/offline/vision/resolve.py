@@ -9,7 +9,7 @@ import numpy as np
 
 from wonderful_team.core.pictures import Point
 from wonderful_team.offline.description import Description
-from wonderful_team.offline.vision.examples import alike
+from wonderful_team.offline.vision.examples import alike, alike_pattern
 from wonderful_team.offline.vision.kinds import is_kind_here, kind_score, named_score
 from wonderful_team.offline.vision.materials import material_score
 from wonderful_team.offline.vision.relations import pick_in_corner, pick_superlative, relation_score
@@ -26,7 +26,9 @@ _NEARLY_AS_ALIKE = 0.83
 """Share of the best likeness of shapes from which another thing has that shape too."""
 
 NEAR_BEST = 0.75
-"""Share of the best score from which things like an example are compared with each other."""
+"""Share of the best score from which things like an example are compared with each other or meant together."""
+_TEXTURE = 0.25
+"""How much the likeness of its texture to the best one's counts there (an exponent)."""
 
 _WEIGHTS = {"colour": 0.7, "pattern": 0.5, "outline": 1.0, "size": 0.35}
 """How much each aspect of an example counts (exponents of a weighted geometric mean)."""
@@ -48,11 +50,10 @@ def resolve(scene: Scene, description: Description, examples: Mapping[str, Examp
     matches = _fitting(scene, description, examples)
     for related in description.related:
         matches = _related(scene, matches, related.relation, related.to, examples)
+    several = description.quantity != "one" and description.like_only is None
+    if description.like is not None and (several or description.superlative is not None):
+        matches = _like_the_best(matches, textured=description.like_only != "shape")
     if description.superlative is not None:
-        if description.like is not None and matches:
-            # "the taller {thing}": only what is really like it is compared.
-            top = max(match.score for match in matches)
-            matches = [match for match in matches if match.score >= NEAR_BEST * top]
         corner = " " in description.name
         matches = (
             pick_in_corner(scene, matches, description.name)
@@ -220,6 +221,20 @@ def _fitting(scene: Scene, description: Description, examples: Mapping[str, Exam
         why = f"{thing.look.words}: " + ", ".join(f"{name} {value:.2f}" for name, value in parts.items())
         out.append(Match(thing, thing.box, _point_on(scene, thing), score, score, why, parts))
     return out
+
+
+def _like_the_best(matches: list[Match], *, textured: bool) -> list[Match]:
+    """Those nearly as like an example as the best one, and like that one in texture: within one picture this shows better."""
+    best = max(matches, key=lambda match: match.score, default=None)
+    kept = []
+    for match in matches:
+        assert best is not None  # there are matches
+        shared = 1.0
+        if textured and best.thing is not None and match.thing is not None:
+            shared = alike_pattern(best.thing.look, match.thing.look) ** _TEXTURE
+        if match.score * shared >= NEAR_BEST * best.score:
+            kept.append(match)
+    return kept
 
 
 def _point_on(scene: Scene, thing: Thing) -> Point:

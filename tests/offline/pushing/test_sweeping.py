@@ -249,3 +249,32 @@ def test_nothing_is_to_rest_where_another_stands_in_the_picture(blocks: tuple[tu
     stops = [stop for way in places(TOUCH.format("two", "s"), view) for stop in way]
     assert len(stops) >= len(blocks)
     assert all(np.hypot(stop[0] - x, stop[1] - y) > SIDE / np.sqrt(2) for stop in stops for x, y in blocks)
+
+
+def pushes_of(block: Block, line: tuple[int, int, int, int]) -> list[Array]:
+    """Where a block's middle is before the first and after every push [px]."""
+    (stops,) = places(TOUCH.format("one", ""), drawn(block, line=line))
+    return [np.array(block[1:], float), *map(np.array, stops)]
+
+
+def clearance(start: Array, end: Array, line: tuple[int, int, int, int]) -> float:
+    """Least distance of a block's middle from a line, in sides of the block."""
+    points = start + np.linspace(0, 1, 400)[:, None] * (end - start)
+    beyond = np.maximum(np.maximum(np.array(line[:2]) - points, points - np.array(line[2:])), 0)
+    return float(np.hypot(*beyond.T).min()) / SIDE
+
+
+@pytest.mark.parametrize(("x", "y"), [(423, 225), (410, 228)])
+def test_a_block_on_its_corner_is_not_taken_for_square_after_a_short_push(x: int, y: int) -> None:
+    line = (466, 160 - 56, 472, 160 + 56)
+    start, stop, *_, end = pushes_of(("red", x, y), line)
+    way = stop - start
+    turned = np.degrees(np.arctan2(way[1], way[0])) - (7 * x + 3 * y) % 90
+    on_corner = abs((turned + 45) % 90 - 45) > 36
+    assert not on_corner or np.hypot(*way) / SIDE > 3 or clearance(stop, end, line) > 0.75
+
+
+@pytest.mark.parametrize(("x", "y"), [(200, 144), (240, 186), (260, 144), (220, 144)])
+def test_a_block_that_was_pushed_before_may_lie_aside_of_its_stop(x: int, y: int) -> None:
+    *_, stop, end = pushes_of(("red", x, y), AT_MOUTH)
+    assert clearance(stop, end, AT_MOUTH) > 0.5 + 0.3

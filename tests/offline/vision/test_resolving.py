@@ -25,6 +25,7 @@ from tests.offline.vision.drawn import (
 )  # fmt: skip
 from wonderful_team.offline.answers.drafting import draft
 from wonderful_team.offline.description import Description, Related, Relation, Superlative
+from wonderful_team.offline.eyes import eyes_of_task
 from wonderful_team.offline.vision import NotSeen, resolve, see, study_example
 from wonderful_team.planning.scene import SceneShown
 from wonderful_team.sims.tabletop import make_world
@@ -179,3 +180,27 @@ def test_the_holes_of_a_plain_picture_are_part_of_the_shape_that_a_new_noun_mean
         world.close()
     plan, _ = draft(task, with_targets=True)
     assert [target.words for target in plan.targets] == ["green object", "orange object"]
+
+
+def test_things_of_the_same_colour_and_another_texture_are_not_meant_by_an_example() -> None:
+    examples = {"this": study_example(alone(box_shape((160, 120), 20, 20), dotted(GREEN, YELLOW, 22)))}
+    table = Drawing()
+    alike, others = ((100, 80, 10), (230, 200, 35), (360, 90, 60)), ((160, 250, 20), (300, 250, 45), (500, 160, 70))
+    for places, paint in ((alike, dotted(GREEN, YELLOW, 22)), (others, plain(GREEN))):
+        for x, y, turn_deg in places:
+            table.add(box_shape((x, y), 20, 20, turn_deg), paint)
+    found = resolve(see(table.picture()), Description("object", "", like="this", quantity="all"), examples)
+    assert sorted(round(match.point[0], -1) for match in found) == [100, 230, 360]
+
+
+@pytest.mark.parametrize(("task", "seed"), [("sweep_without_touching", 1), ("sweep_without_exceeding", 107)])
+def test_stripes_and_dots_of_the_same_two_colours_are_told_apart(task: str, seed: int) -> None:
+    world = make_world(task, seed=seed)
+    try:
+        shown = SceneShown(world.observe(), world.instruction, world.vocabulary, world.limits).task
+    finally:
+        world.close()
+    eyes = eyes_of_task(shown)
+    (found,) = eyes.find(Description("object", "", like="swept_obj", quantity="all"))
+    assert found.thing is not None
+    assert found.thing.look.pattern == "striped"

@@ -36,6 +36,7 @@ from wonderful_team.core.geometry import Box, Frame
 from wonderful_team.core.pictures import Axes, BoxMark, Candidates, Mark, PathMark, Picture, PointMark
 from wonderful_team.core.values import Critique, Subgoal, Target, Verdict
 
+WANTED = "Put the {base_obj} onto the tray."
 KINDS = ("pick_place", "push", "move", "open", "close", "rotate_gripper", "follow", "home", "navigate")
 
 
@@ -85,10 +86,11 @@ SAMPLES: tuple[Question, ...] = (
         (picture("side"),),
         EXAMPLES,
         3,
+        WANTED,
     ),
-    ChooseMark(TARGET, "place", PLAN, picture("guesses", Axes(), MARKS), EXAMPLES),
-    GiveBox(TARGET, PLAN, picture("centred", Axes(), PointMark((20, 10))), EXAMPLES),
-    ReadScene((TARGET, AREA), PLAN, picture("whole", Axes()), (picture("other side"),), EXAMPLES),
+    ChooseMark(TARGET, "place", PLAN, picture("guesses", Axes(), MARKS), EXAMPLES, WANTED),
+    GiveBox(TARGET, PLAN, picture("centred", Axes(), PointMark((20, 10))), EXAMPLES, WANTED),
+    ReadScene((TARGET, AREA), PLAN, picture("whole", Axes()), (picture("other side"),), EXAMPLES, WANTED),
     Presence(TARGET, STRIPS, EXAMPLES),
     JudgeBox(TARGET, picture("crop", BOX, Axes()), EXAMPLES),
     JudgeRevision(TARGET, picture("crop before", BOX), picture("crop after", BOX), EXAMPLES),
@@ -101,7 +103,7 @@ SAMPLES: tuple[Question, ...] = (
         True,
         EXAMPLES,
     ),
-    ChoosePoint(TARGET, "grasp", PLAN, picture("crop points", BOX, MARKS), True, EXAMPLES),
+    ChoosePoint(TARGET, "grasp", PLAN, picture("crop points", BOX, MARKS), True, EXAMPLES, WANTED),
     WriteSteps(TASK, KINDS, SUBGOALS, (TARGET, AREA), ("G1",), "step 2 turns the wrong way"),
     ReviewSteps(
         TASK,

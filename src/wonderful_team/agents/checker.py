@@ -41,6 +41,8 @@ Both crops show the same piece of the scene, each with its own box: before and a
 - take_after_go_on: it is better, but an edge still cuts the target or stands clearly too far away.
 - take_after_stop: it is at least as good, cuts nothing off, and no edge is further away than about a tenth of the
   target's size.
+Say in problem what is still wrong with the box that is kept, for the Mover's next change: which edge, and whether it should
+go outward or inward. It is empty after take_after_stop.
 """
 
 

@@ -74,7 +74,8 @@ def mark_words(mark: Mark) -> str:
             count = len(mark.points)
             return f"points numbered 1 to {count}" if count > 1 else "one point numbered 1"
         case PathMark():
-            return f"a path labelled {mark.label}" if mark.label else "a path with an arrow at its end"
+            strip = " with the strip that the tool sweeps" if mark.width else ""
+            return (f"a path labelled {mark.label}" if mark.label else "a path with an arrow at its end") + strip
         case LineMark():
             return "a line where the box's edge lies"
 

@@ -61,7 +61,8 @@ How to write the plan
 - A subgoal that pushes says where the thing should end and what it must keep away from. Where friction leaves a thing is
   not certain: what a second push of it needs is a guess until there is a new picture, so give it room.
 - after: only the subgoals without which this one cannot be reached. function: null, unless a subgoal needs a path of
-  its own shape, such as a circle or a zigzag, and the robot can follow paths; then say what is to be computed.
+  its own shape, such as a circle or a zigzag, and the robot can follow paths; then say what is to be computed, and
+  whether the tool touches the surface on it.
 - mode: one_step for a short plan without obstacles; full when many subgoals depend on each other.
 - Empty subgoals only when the main view shows that the instruction is already fulfilled.
 - clarification: null, unless two or more readings remain after looking closely, they lead to different results, and
@@ -108,7 +109,8 @@ id and give no coordinates.
 - rotate_deg: only what the instruction or its pictures state; clockwise seen from above is positive, anticlockwise
   negative; 0 when nothing is said.
 - With a gripper: open, move above, move at, close, move clear, then move above the place, move at, open, move clear.
-- A subgoal with a helper function is carried out with a follow step that names it.
+- A subgoal with a helper function is carried out with a follow step that names it. contact surface: the tool is lowered
+  to the surface at the first point and lifted after the last, as for drawing or wiping; air: it stays clear.
 - If Verification asked about the last version, repair what it found and keep the rest.
 """
 

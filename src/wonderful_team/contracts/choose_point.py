@@ -27,6 +27,7 @@ class ChoosePoint(Question):
     Attributes:
         crop: The neighbourhood with the final box as a BoxMark and exactly one Candidates mark.
         fine: Second round: the candidates lie close round the first choice.
+        instruction: What the user wants, in words.
     """
 
     target: Target
@@ -35,6 +36,7 @@ class ChoosePoint(Question):
     crop: Picture
     fine: bool = False
     examples: tuple[ShownSlot, ...] = ()
+    instruction: str = ""
 
     @property
     def candidates(self) -> Candidates:

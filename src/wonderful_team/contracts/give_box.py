@@ -25,12 +25,14 @@ class GiveBox(Question):
 
     Attributes:
         view: The whole main view with labelled axes and the chosen centre as a PointMark.
+        instruction: What the user wants, in words.
     """
 
     target: Target
     plan: tuple[str, ...]
     view: Picture
     examples: tuple[ShownSlot, ...] = ()
+    instruction: str = ""
 
     def output(self) -> type[AnswerModel]:
         return BoxAnswer

@@ -31,6 +31,7 @@ class LocatePoints(Question):
         context: Other views, for understanding only.
         examples: The instruction's pictures of this target.
         count: How many points are asked for at most.
+        instruction: What the user wants, in words.
     """
 
     target: Target
@@ -40,6 +41,7 @@ class LocatePoints(Question):
     context: tuple[Picture, ...] = ()
     examples: tuple[ShownSlot, ...] = ()
     count: int = 1
+    instruction: str = ""
 
     def output(self) -> type[AnswerModel]:
         return Points

@@ -8,7 +8,7 @@ from wonderful_team.images.cut import Edge, StripSide, crop, crop_pair, edge_str
 from wonderful_team.images.draw import draw
 from wonderful_team.images.encode import to_png
 from wonderful_team.images.load import OWN_FORMATS, load_picture, open_picture
-from wonderful_team.images.overview import action_arrows, overview
+from wonderful_team.images.overview import action_arrows, overview, swept_width, swept_widths
 from wonderful_team.images.resample import picture_of, resampled, resampled_depth, valid_mask
 
 __all__ = [
@@ -32,6 +32,8 @@ __all__ = [
     "region_change",
     "resampled",
     "resampled_depth",
+    "swept_width",
+    "swept_widths",
     "to_png",
     "valid_mask",
     "whole",

@@ -9,6 +9,7 @@ from wonderful_team.contracts import PlanReview, ReviewSteps, StepList, WriteSte
 from wonderful_team.core.actions import Step
 from wonderful_team.core.pictures import BoxMark, PathMark, Picture, Point, PointMark
 from wonderful_team.core.values import Critique, GroundedTarget, PlannedAction, View
+from wonderful_team.images import swept_width
 from wonderful_team.motion import ground_actions
 from wonderful_team.motion.in_words import numbers_in_words
 from wonderful_team.planning.plan_loop import PlanState, settled_lines
@@ -85,7 +86,7 @@ def overview_picture(
     """The main view with every target's box and label, and the steps as numbered arrows."""
     return mark_targets(scene.views[0], scene.view, grounded).marked(
         *(
-            PathMark(path, str(number))
+            PathMark(path, str(number), _swept(scene, action))
             for number, action in enumerate(actions, start=1)
             if len(path := _path(scene.views[0], action)) >= 2
         )
@@ -103,6 +104,12 @@ def mark_targets(picture: Picture, view: View, grounded: Mapping[str, GroundedTa
         elif item.points:
             marks.append(PointMark(picture.frame.point_to_picture(next(iter(item.points.values()))), name))
     return picture.marked(*marks)
+
+
+def _swept(scene: SceneShown, action: PlannedAction) -> float:
+    """How wide a strip the tool sweeps, in pixels of the shown view."""
+    width = swept_width(action.action, scene.limits.blade_m, scene.view.camera)
+    return width / float(scene.views[0].frame.T_view_picture[0, 0])
 
 
 def _path(picture: Picture, action: PlannedAction) -> tuple[Point, ...]:

@@ -14,7 +14,7 @@ from wonderful_team.planning.together import together
 async def propose(job: Job, purpose: Literal["centre", "place"]) -> list[Point]:
     """Independent proposals in view pixels; empty when most samples say that the target is not there."""
     view = with_avoided(job)
-    question = LocatePoints(job.target, purpose, job.plan, view, job.scene.views[1:], job.examples, count=1)
+    question = LocatePoints(job.target, purpose, job.plan, view, job.scene.views[1:], job.examples, 1, job.instruction)
     samples: list[Points] = await together(
         [
             job.session.ask(question, stage="ground", branch=job.target.id, sample=number)
@@ -34,7 +34,9 @@ async def choose(job: Job, proposals: list[Point], purpose: Literal["centre", "p
     view = job.scene.labelled
     marked = view.marked(Candidates(tuple(view.frame.point_to_picture(point) for point in proposals)))
     choice: MarkChoice = await job.session.ask(
-        ChooseMark(job.target, purpose, job.plan, marked, job.examples), stage="ground", branch=job.target.id
+        ChooseMark(job.target, purpose, job.plan, marked, job.examples, job.instruction),
+        stage="ground",
+        branch=job.target.id,
     )
     if choice.number is None:
         job.tell("chosen", "no proposal is on the target", points=tuple(proposals))
@@ -48,7 +50,7 @@ async def give_box(job: Job, centre: Point) -> Box | None:
     view = with_avoided(job)
     marked = view.marked(PointMark(view.frame.point_to_picture(centre), "centre"))
     answer = await job.session.ask_whole(
-        GiveBox(job.target, job.plan, marked, job.examples), stage="ground", branch=job.target.id
+        GiveBox(job.target, job.plan, marked, job.examples, job.instruction), stage="ground", branch=job.target.id
     )
     given: BoxAnswer = answer.value
     if given.box is None:

@@ -91,7 +91,7 @@ async def read_scene(jobs: Sequence[Job]) -> tuple[SceneReading, Provenance]:
     session, scene = jobs[0].session, jobs[0].scene
     targets = tuple(job.target for job in jobs)
     view = scene.labelled if session.config.axes else scene.views[0]
-    question = ReadScene(targets, jobs[0].plan, view, scene.views[1:], scene.examples(targets))
+    question = ReadScene(targets, jobs[0].plan, view, scene.views[1:], scene.examples(targets), jobs[0].instruction)
     answer = await session.ask_whole(question, stage="ground")
     return answer.value, answer.provenance
 
@@ -130,7 +130,9 @@ async def ground_by_supervisor(jobs: Sequence[Job]) -> dict[str, GroundedTarget]
     async def one(job: Job) -> GroundedTarget:
         view = job.scene.labelled
         purpose: Literal["centre", "place"] = "place" if job.target.kind == "area" else "centre"
-        question = LocatePoints(job.target, purpose, job.plan, view, job.scene.views[1:], job.examples, count=1)
+        question = LocatePoints(
+            job.target, purpose, job.plan, view, job.scene.views[1:], job.examples, 1, job.instruction
+        )
         answer: Points = await job.session.ask(question, stage="ground", branch=job.target.id, role="supervisor")
         if not answer.points:
             job.tell("absent", "the Supervisor says it is not in the picture")
@@ -147,7 +149,7 @@ def _end(job: Job, status: Fate, box: Box | None, points: Mapping[str, Point] | 
 
 
 def _remember(job: Job, grounded: GroundedTarget) -> None:
-    said = job.history[-1].text if job.history else ""
+    said = "; ".join(event.text for event in job.history)
     job.session.remember(
         "manager",
         "ground",

@@ -46,7 +46,12 @@ async def advise(
         "replanner",
         "replan",
         "What became of the subgoals?",
-        "; ".join(f"{v.subgoal} {v.status}" + (f" ({v.cause})" if v.cause else "") for v in verdicts),
+        "; ".join(
+            f"{v.subgoal} {v.status}"
+            + (f" ({v.cause})" if v.cause else "")
+            + (f", seen: {v.evidence}" if v.evidence else "")
+            for v in verdicts
+        ),
     )
     await session.memory.barrier()
     question = Replan(scene_now.task, plan.subgoals, verdicts, measured_lines(executed), replans_left)

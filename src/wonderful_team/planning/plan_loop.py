@@ -36,6 +36,7 @@ class PlanState:
     first_draft: tuple[Subgoal, ...]
     verified: bool = False
     questions: tuple[Critique, ...] = ()
+    reasoning: str = ""
 
 
 async def draft(
@@ -52,7 +53,9 @@ async def draft(
     if written.clarification is not None:
         raise NeedsClarification(written.clarification.question, written.clarification.choices)
     subgoals = written.to_subgoals()
-    state = PlanState(subgoals, written.to_targets() if with_targets else (), written.mode, subgoals)
+    state = PlanState(
+        subgoals, written.to_targets() if with_targets else (), written.mode, subgoals, reasoning=written.reasoning
+    )
     session.stage("draft", _count(state))
     return state
 
@@ -127,6 +130,7 @@ async def _resolve(
             targets=revision.plan.to_targets() if with_targets else (),
             mode=revision.plan.mode,
             questions=(*state.questions, answered),
+            reasoning=revision.plan.reasoning or revision.reasoning,
         ),
         answered,
     )

@@ -53,6 +53,8 @@ async def _ask(
 ) -> Point:
     marked = shown.marked(job.view_axes, BoxMark(shown_box), Candidates(candidates))
     choice: PointChoice = await job.session.ask(
-        ChoosePoint(job.target, role, job.plan, marked, fine, job.examples), stage="ground", branch=job.target.id
+        ChoosePoint(job.target, role, job.plan, marked, fine, job.examples, job.instruction),
+        stage="ground",
+        branch=job.target.id,
     )
     return shown.frame.point_to_view(candidates[choice.number - 1])

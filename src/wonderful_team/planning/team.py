@@ -244,8 +244,10 @@ class TeamPolicy:
         return plan, []
 
     def _remember_plan(self, session: AgentSession, state: PlanState) -> None:
-        plan = "; ".join(f"{subgoal.id}: {subgoal.text}" for subgoal in state.subgoals) or "nothing to do"
-        session.remember("supervisor", "plan", "Which plan was approved?", plan)
+        plan = [f"{subgoal.id}: {subgoal.text}" for subgoal in state.subgoals] or ["nothing to do"]
+        why = [f"Reasoning: {state.reasoning}"] if state.reasoning else []
+        answered = "\n".join((*plan, *why, *plan_loop.settled_lines(state.questions)))
+        session.remember("supervisor", "plan", "Write the plan that fulfils the instruction.", answered)
 
     async def decide(self, situation: Situation) -> Decision:
         """Policy: plan at first; after execution judge, and replan while allowed."""

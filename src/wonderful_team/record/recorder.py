@@ -20,7 +20,7 @@ from wonderful_team.core.protocols import Event
 from wonderful_team.core.text import counted, picture_names, spoken, visible
 from wonderful_team.core.values import GateCheck, GateReport, Instruction, Limits, Observation, Plan, Request, Trial
 from wonderful_team.errors import ActionRefusedError, BudgetReached, FileNotWrittenError, WonderfulTeamError
-from wonderful_team.images import Ticks, action_arrows, overview, to_png
+from wonderful_team.images import Ticks, action_arrows, overview, swept_widths, to_png
 from wonderful_team.images.keep_out import outlines
 from wonderful_team.record import entries
 from wonderful_team.record.picture_store import DRAWING, PictureStore
@@ -245,6 +245,7 @@ class Recorder:
             plan.grounded,
             names=picture_names(said.text, said.slots),
             arrows=action_arrows(plan.actions),
+            widths=swept_widths(plan.actions, self._limits.blade_m if self._limits else None, view.camera),
             keep_out=plan.keep_out,
             workspace=self._limits,
         )

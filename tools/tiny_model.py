@@ -273,9 +273,7 @@ def write_safetensors(path: Path, tensors: Tensors) -> None:
         at += tensor.nbytes
     words = json.dumps(head).encode()
     words += b" " * (-len(words) % 8)
-    path.write_bytes(
-        struct.pack("<Q", len(words)) + words + b"".join(tensor.tobytes() for tensor in tensors.values())
-    )
+    path.write_bytes(struct.pack("<Q", len(words)) + words + b"".join(tensor.tobytes() for tensor in tensors.values()))
 
 
 # -- the form of llama.cpp's files ---------------------------------------------------------------------------------
@@ -378,7 +376,11 @@ def write_gguf(path: Path, said: Mapping[str, Any], tensors: Tensors) -> None:
     for name, tensor in tensors.items():
         raw = np.ascontiguousarray(tensor, np.float32).tobytes()
         raw += bytes(-len(raw) % 32)
-        parts += [text(name), struct.pack(f"<I{tensor.ndim}Q", tensor.ndim, *reversed(tensor.shape)), struct.pack("<IQ", 0, at)]
+        parts += [
+            text(name),
+            struct.pack(f"<I{tensor.ndim}Q", tensor.ndim, *reversed(tensor.shape)),
+            struct.pack("<IQ", 0, at),
+        ]
         numbers.append(raw)
         at += len(raw)
     head = b"".join(parts)

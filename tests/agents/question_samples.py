@@ -38,6 +38,7 @@ from wonderful_team.core.geometry import Box, Frame
 from wonderful_team.core.pictures import Axes, BoxMark, Candidates, Mark, PathMark, Picture, PointMark, Tiles
 from wonderful_team.core.values import Critique, Subgoal, Target, Verdict
 
+WANTED = "Put the {base_obj} onto the tray."
 KINDS = ("pick_place", "push", "move", "open", "close", "rotate_gripper", "follow", "home", "navigate")
 
 
@@ -88,10 +89,13 @@ SAMPLES: tuple[Question, ...] = (
         EXAMPLES,
         3,
         ("rejected: the Checker saw a cup there",),
+        WANTED,
     ),
-    ChooseMark(TARGET, "place", PLAN, picture("guesses", Axes(), MARKS), EXAMPLES),
-    GiveBox(TARGET, PLAN, picture("centred", Axes(), PointMark((20, 10))), EXAMPLES, ("rejected: on the lamp",)),
-    ReadScene((TARGET, AREA), PLAN, picture("whole", Axes()), (picture("other side"),), EXAMPLES),
+    ChooseMark(TARGET, "place", PLAN, picture("guesses", Axes(), MARKS), EXAMPLES, WANTED),
+    GiveBox(
+        TARGET, PLAN, picture("centred", Axes(), PointMark((20, 10))), EXAMPLES, ("rejected: on the lamp",), WANTED
+    ),
+    ReadScene((TARGET, AREA), PLAN, picture("whole", Axes()), (picture("other side"),), EXAMPLES, WANTED),
     Presence(TARGET, STRIPS, EXAMPLES),
     JudgeBox(
         TARGET,
@@ -127,6 +131,7 @@ SAMPLES: tuple[Question, ...] = (
         EXAMPLES,
         ("rejected: in the hole",),
         picture("all of it", BOX),
+        WANTED,
     ),
     ReadTurn(
         TARGET,

@@ -65,7 +65,10 @@ RIGHT: dict[str, dict[str, Any]] = {
     "JudgeBoxes": {
         "boxes": [
             {"target": "T8", "verdict": {"reasoning": "", "decision": "accept", "problem": "", "wrong_points": []}},
-            {"target": "T7", "verdict": {"reasoning": "", "decision": "reject", "problem": "a cup", "wrong_points": []}},
+            {
+                "target": "T7",
+                "verdict": {"reasoning": "", "decision": "reject", "problem": "a cup", "wrong_points": []},
+            },
         ]
     },
     "ReadTurn": {"reasoning": "", "number": 2},

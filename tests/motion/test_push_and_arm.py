@@ -192,15 +192,30 @@ def test_the_bare_tool_moves_beside_a_thing() -> None:
 PATH = ((50.0, 50.0), (60.0, 60.0), (70.0, 50.0))
 
 
-def test_paths_are_followed_on_the_surface_after_touching_and_clear_otherwise() -> None:
-    clear = run(FollowStep("G1", "G1"), paths={"G1": PATH})[0]
-    touching = run(MoveStep("G1", At("T2"), "at"), FollowStep("G1", "G1"), paths={"G1": PATH})[1]
+def test_a_path_says_itself_whether_it_touches_the_surface() -> None:
+    (clear,) = run(FollowStep("G1", "G1", "air"), paths={"G1": PATH})
+    (touching,) = run(FollowStep("G1", "G1", "surface"), paths={"G1": PATH})
     assert isinstance(clear.action, Trajectory)
     assert isinstance(touching.action, Trajectory)
     assert clear.action.waypoints_m[:, 2] == pytest.approx([0.2] * 3, abs=1e-6)
-    assert touching.action.waypoints_m[:, 2] == pytest.approx([0.0] * 3, abs=1e-6)
-    assert CAMERA.project(touching.action.waypoints_m) == pytest.approx(np.array(PATH))
-    assert [source.point_px for source in touching.sources] == list(PATH)
+    # Lowered at the first point, lifted after the last: the height of the surface comes from the view.
+    assert touching.action.waypoints_m[:, 2] == pytest.approx([0.2, 0.0, 0.0, 0.0, 0.2], abs=1e-6)
+    assert CAMERA.project(touching.action.waypoints_m[1:4]) == pytest.approx(np.array(PATH))
+    assert touching.action.waypoints_m[0, :2] == pytest.approx(touching.action.waypoints_m[1, :2])
+    assert [source.point_px for source in touching.sources] == [PATH[0], *PATH, PATH[-1]]
+    assert len(touching.sources) == len(touching.action.points())
+
+
+def test_a_path_in_the_air_stays_there_after_the_tool_was_down() -> None:
+    after = run(MoveStep("G1", At("T2"), "at"), FollowStep("G1", "G1", "air"), paths={"G1": PATH})[1]
+    assert isinstance(after.action, Trajectory)
+    assert after.action.waypoints_m[:, 2] == pytest.approx([0.2] * 3, abs=1e-6)
+
+
+def test_a_second_push_of_a_thing_says_that_it_guesses() -> None:
+    first, second = run(PushStep("G1", At("T1"), At("T2")), PushStep("G1", At("T1"), Beside("T2", "below")))
+    assert not any("a guess" in source.how for source in first.sources)
+    assert "where step 1 should leave it: a guess" in second.sources[0].how
 
 
 def test_missing_and_stray_paths_are_named() -> None:

@@ -163,7 +163,7 @@ def test_the_manager_is_told_why_the_checker_rejected_a_box():
         model = scripted(
             JudgeBox=of_target("T1", [verdict("reject", "It is the striped hexagon."), verdict()], verdict())
         )
-        assert plan_with(model, TeamConfig(mode=mode)).status == "planned"
+        assert plan_with(model, TeamConfig(mode=mode, thorough=True)).status == "planned"
         told = ("rejected: the Checker refused the box there: It is the striped hexagon.",)
         looked = [r.question for r in asked(model, "LocatePoints") if r.question.target.id == "T1"][-1]
         boxed = [r.question for r in asked(model, "GiveBox") if r.question.target.id == "T1"][-1]

@@ -62,6 +62,8 @@ An edge of a box is the middle of the drawn line; how far it may lie off, inward
 - keep_before: the revision is worse, or no better.
 - take_after_go_on: it is better, but an edge still lies off by more than the limits.
 - take_after_stop: it is at least as good, and every edge is within the limits.
+Say in problem what is still wrong with the box that is kept, for the Mover's next change: which edge, and whether it should
+go outward or inward. It is empty after take_after_stop.
 """
 
 

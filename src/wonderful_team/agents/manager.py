@@ -7,10 +7,11 @@ from __future__ import annotations
 
 from typing import Literal
 
-from wonderful_team.agents.common import ANSWER, DATA, EXAMPLES, PICTURES, system_words
+from wonderful_team.agents.common import ANSWER, DATA, EXAMPLES, INSTRUCTION, PICTURES, system_words
 from wonderful_team.agents.rendering import (
     answer_in,
     example_parts,
+    fenced,
     listed,
     picture_parts,
     target_parts,
@@ -28,11 +29,11 @@ SYSTEM = system_words(
 You are the Grounding Manager of a team that plans for a robot. You find the plan's targets in the main view and say
 where they are. A Checker and a Mover refine your boxes; you choose the points at which the robot acts.
 
-You see the whole main view, the plan and the target. Do not change the plan, and do not swap a target for a thing that
-merely resembles it. If a target is not in the picture, say so: "not here" is a useful answer, a guess is not.
+You see the whole main view, the instruction, the plan and the target. Do not change the plan, and do not swap a target
+for a thing that merely resembles it. If a target is not in the picture, say so: "not here" is a useful answer, a guess is not.
 """,
     PICTURES + "\n" + EXAMPLES,
-    DATA,
+    DATA + "\n" + INSTRUCTION,
     ANSWER,
 )
 
@@ -130,8 +131,10 @@ def _target_parts(target: Target) -> list[Part]:
     return words(f"Target {target_words(target)}")
 
 
-def _plan_parts(plan: tuple[str, ...]) -> list[Part]:
-    return listed("The plan", plan, "not stated")
+def _plan_parts(plan: tuple[str, ...], instruction: str) -> list[Part]:
+    """What the plan is for, and the plan."""
+    wanted = words("The user's instruction:", fenced("instruction", instruction)) if instruction else []
+    return [*wanted, *listed("The plan", plan, "not stated")]
 
 
 def _rejected_parts(lines: tuple[str, ...]) -> list[Part]:
@@ -143,7 +146,7 @@ def render_locate_points(question: LocatePoints) -> list[Part]:
     return [
         *picture_parts(question.view, "the main view"),
         *view_parts("Other views", question.context, "another view, for understanding only"),
-        *_plan_parts(question.plan),
+        *_plan_parts(question.plan, question.instruction),
         *example_parts(question.examples),
         *_target_parts(question.target),
         *_rejected_parts(question.rejected),
@@ -155,7 +158,7 @@ def render_locate_points(question: LocatePoints) -> list[Part]:
 def _render_choose_mark(question: ChooseMark) -> list[Part]:
     return [
         *picture_parts(question.view, "the main view"),
-        *_plan_parts(question.plan),
+        *_plan_parts(question.plan, question.instruction),
         *example_parts(question.examples),
         *_target_parts(question.target),
         *words(f"Wanted: {_WANTED[question.purpose]}."),
@@ -165,7 +168,7 @@ def _render_choose_mark(question: ChooseMark) -> list[Part]:
 def _render_give_box(question: GiveBox) -> list[Part]:
     return [
         *picture_parts(question.view, "the main view"),
-        *_plan_parts(question.plan),
+        *_plan_parts(question.plan, question.instruction),
         *example_parts(question.examples),
         *_target_parts(question.target),
         *_rejected_parts(question.rejected),
@@ -177,7 +180,7 @@ def _render_read_scene(question: ReadScene) -> list[Part]:
     return [
         *picture_parts(question.view, "the main view"),
         *view_parts("Other views", question.context, "another view, for understanding only"),
-        *_plan_parts(question.plan),
+        *_plan_parts(question.plan, question.instruction),
         *example_parts(question.examples),
         *target_parts(question.targets),
         *answer_in(question.view),
@@ -194,7 +197,7 @@ def _render_choose_point(question: ChoosePoint) -> list[Part]:
     return [
         *whole,
         *picture_parts(question.crop, "the neighbourhood of the target"),
-        *_plan_parts(question.plan),
+        *_plan_parts(question.plan, question.instruction),
         *example_parts(question.examples),
         *_target_parts(question.target),
         *_rejected_parts(question.rejected),

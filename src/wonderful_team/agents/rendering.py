@@ -85,7 +85,8 @@ def mark_words(mark: Mark) -> str:
             count = len(mark.points)
             return f"points numbered 1 to {count}" if count > 1 else "one point numbered 1"
         case PathMark():
-            return f"a path labelled {mark.label}" if mark.label else "a path with an arrow at its end"
+            strip = " with the strip that the tool sweeps" if mark.width else ""
+            return (f"a path labelled {mark.label}" if mark.label else "a path with an arrow at its end") + strip
         case Tiles():
             return f"pictures numbered 1 to {len(mark.boxes)}"
         case TurnMark():

@@ -40,6 +40,8 @@ def _field_words(name: str, value: Any) -> str:
             return turn_words(value)
         case "height":
             return _HEIGHTS[value]
+        case "contact":
+            return {"surface": ", touching the surface", "air": ", in the air", None: ""}[value]
         case "tight":
             return " and keep squeezing" if value else ""
     return value if isinstance(value, str) else place_words(value)

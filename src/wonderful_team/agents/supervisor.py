@@ -61,7 +61,8 @@ How to write the plan
 - A subgoal that pushes says where the thing should end and what it must keep away from. Where friction leaves a thing is
   not certain: what a second push of it needs is a guess until there is a new picture, so give it room.
 - after: only the subgoals without which this one cannot be reached. function: null, unless a subgoal needs a path of
-  its own shape, such as a circle or a zigzag, and the robot can follow paths; then say what is to be computed.
+  its own shape, such as a circle or a zigzag, and the robot can follow paths; then say what is to be computed, and
+  whether the tool touches the surface on it.
 - move: for a subgoal that one pick and one place carry out, what is picked, where it goes and how far it is turned: "at" a
   target is the point chosen on it, "beside" a target needs a side as the main view shows it, "origin" is where the target
   stood at the start. rotate_deg is only what the instruction or its pictures state. null for a push, a path, several
@@ -114,7 +115,8 @@ id and give no coordinates.
 - rotate_deg: only what the instruction or its pictures state; clockwise seen from above is positive, anticlockwise
   negative; 0 when nothing is said.
 - With a gripper: open, move above, move at, close, move clear, then move above the place, move at, open, move clear.
-- A subgoal with a helper function is carried out with a follow step that names it.
+- A subgoal with a helper function is carried out with a follow step that names it. contact surface: the tool is lowered
+  to the surface at the first point and lifted after the last, as for drawing or wiping; air: it stays clear.
 - If Verification asked about the last version, repair what it found and keep the rest.
 """
 

@@ -60,6 +60,13 @@ def plan_lines(made: PlanResult) -> list[str]:
         lines.append(said_of(made.plan.instruction, made.message))
     if made.actions:
         lines += [f"PLAN  {action_line(planned, words)}" for planned in made.actions]
+        sources = [source for planned in made.actions for source in planned.sources]
+        if any(source.tool_px is not None for source in sources):
+            lines.append(
+                "note: a place is where the middle of the thing lands; the tool holds it elsewhere and ends at 'tool'"
+            )
+        if any("a guess" in source.how for source in sources):
+            lines.append("note: a push that starts where an earlier one should end is a guess; look again in between")
     else:
         lines += [f"GOAL  {subgoal.id} {said_of(made.plan.instruction, subgoal.text)}" for subgoal in made.subgoals]
         lines += [target_line(target, words) for target in made.targets]
@@ -100,11 +107,14 @@ def target_line(target: FoundTarget, words: Mapping[str, str]) -> str:
 def action_line(planned: PlannedAction, words: Mapping[str, str]) -> str:
     """One action: kind, its targets (`words` by id) with their pixels, metres where there are any."""
     pixels = {(source.role, source.target): source.point_px for source in planned.sources}
+    tools = {(source.role, source.target): source.tool_px for source in planned.sources}
     alone = planned.sources[0].point_px if len(planned.sources) == 1 else None
     ends = []
     for role, place in places_of(planned.step):
         point = pixels.get((role, place.target), alone)
         at = "" if point is None else f" @ ({point[0]:.0f}, {point[1]:.0f}) px"
+        tool = tools.get((role, place.target))
+        at += "" if tool is None else f", tool at ({tool[0]:.0f}, {tool[1]:.0f}) px"
         ends.append(_place_words(place, words) + at)
     what = [_kind_words(planned.step), "  ->  ".join(ends), _turn(planned.step), _metres(planned.action)]
     return "  ".join(part for part in what if part)
@@ -112,9 +122,9 @@ def action_line(planned: PlannedAction, words: Mapping[str, str]) -> str:
 
 def _kind_words(step: Step) -> str:
     said = {item.name: visible(str(getattr(step, item.name))) for item in fields(step)}
-    return step.words.line.format(
-        kind=step.kind, **{**said, "tight": ", tight" if getattr(step, "tight", False) else ""}
-    )
+    said["tight"] = ", tight" if getattr(step, "tight", False) else ""
+    said["contact"] = f" ({contact})" if (contact := getattr(step, "contact", None)) else ""
+    return step.words.line.format(kind=step.kind, **said)
 
 
 def _place_words(place: Place, words: Mapping[str, str]) -> str:
@@ -152,7 +162,9 @@ def numbers_line(planned: PlannedAction) -> str:
     action = planned.action
     if action is None:
         points = (
-            f"{source.role} ({source.point_px[0]:.1f}, {source.point_px[1]:.1f}) px" for source in planned.sources
+            f"{source.role} ({source.point_px[0]:.1f}, {source.point_px[1]:.1f}) px"
+            + ("" if source.tool_px is None else f", tool at ({source.tool_px[0]:.1f}, {source.tool_px[1]:.1f}) px")
+            for source in planned.sources
         )
         return f"{planned.step.kind}  {'  '.join(points)}"
     numbers = [_shown(item.name, getattr(action, item.name)) for item in fields(action)]

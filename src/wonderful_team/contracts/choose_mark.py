@@ -25,6 +25,7 @@ class ChooseMark(Question):
 
     Attributes:
         view: The whole main view, with exactly one Candidates mark.
+        instruction: What the user wants, in words.
     """
 
     target: Target
@@ -32,6 +33,7 @@ class ChooseMark(Question):
     plan: tuple[str, ...]
     view: Picture
     examples: tuple[ShownSlot, ...] = ()
+    instruction: str = ""
 
     def output(self) -> type[AnswerModel]:
         return MarkChoice

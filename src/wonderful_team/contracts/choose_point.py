@@ -30,6 +30,7 @@ class ChoosePoint(Question):
         fine: Second round: the candidates lie close round the first choice.
         rejected: What was said of the points that are marked as rejected, one line each.
         whole: The whole main view with the box, for a push, and an arrow to where the thing goes, where that is known.
+        instruction: What the user wants, in words.
     """
 
     target: Target
@@ -40,6 +41,7 @@ class ChoosePoint(Question):
     examples: tuple[ShownSlot, ...] = ()
     rejected: tuple[str, ...] = ()
     whole: Picture | None = None
+    instruction: str = ""
 
     @property
     def candidates(self) -> Candidates:

@@ -26,6 +26,7 @@ class GiveBox(Question):
     Attributes:
         view: The whole main view with labelled axes and the chosen centre as a PointMark.
         rejected: What was said of the points that are marked as rejected, one line each.
+        instruction: What the user wants, in words.
     """
 
     target: Target
@@ -33,6 +34,7 @@ class GiveBox(Question):
     view: Picture
     examples: tuple[ShownSlot, ...] = ()
     rejected: tuple[str, ...] = ()
+    instruction: str = ""
 
     def output(self) -> type[AnswerModel]:
         return BoxAnswer

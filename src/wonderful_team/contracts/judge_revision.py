@@ -20,6 +20,7 @@ class RevisionVerdict(AnswerModel):
         description="keep_before: the revision is worse; take_after_go_on: better, not yet right; "
         "take_after_stop: tight on the target."
     )
+    problem: str = Field("", description="What is still wrong with the kept box, in one sentence; empty after stop.")
 
 
 @dataclass(frozen=True, eq=False)

@@ -32,6 +32,7 @@ class LocatePoints(Question):
         examples: The instruction's pictures of this target.
         count: How many points are asked for at most.
         rejected: What was said of the points that are marked as rejected, one line each.
+        instruction: What the user wants, in words.
     """
 
     target: Target
@@ -42,6 +43,7 @@ class LocatePoints(Question):
     examples: tuple[ShownSlot, ...] = ()
     count: int = 1
     rejected: tuple[str, ...] = ()
+    instruction: str = ""
 
     def output(self) -> type[AnswerModel]:
         return Points

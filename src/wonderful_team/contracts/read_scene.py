@@ -56,6 +56,7 @@ class ReadScene(Question):
         view: The whole main view that coordinates refer to.
         context: Other views, for understanding only.
         examples: The instruction's pictures, for targets that are like one of them.
+        instruction: What the user wants, in words.
     """
 
     targets: tuple[Target, ...]
@@ -63,6 +64,7 @@ class ReadScene(Question):
     view: Picture
     context: tuple[Picture, ...] = ()
     examples: tuple[ShownSlot, ...] = ()
+    instruction: str = ""
 
     def output(self) -> type[AnswerModel]:
         return SceneReading

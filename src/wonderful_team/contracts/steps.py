@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Sequence
 from dataclasses import fields
-from functools import cache
-from typing import Annotated, Any, Literal, Union, cast, get_type_hints
+from functools import cache, reduce
+from operator import or_
+from typing import Annotated, Any, Literal, Union, cast, get_args, get_type_hints
 
 from pydantic import Field, create_model
+from pydantic.json_schema import SkipJsonSchema
 
 from wonderful_team.contracts.shown import AnswerModel, Reasoning, fits, known
 from wonderful_team.core import actions
 from wonderful_team.core.actions import Beside, OriginOf, Place, Side, Step
+from wonderful_team.core.later import LATER, is_later
 
 
 class PlaceDraft(AnswerModel):
@@ -56,13 +60,28 @@ def _draft_of(step: type[Step]) -> type[StepDraft]:
     """How a model writes a kind of step: its first line, its fields with their metadata, none of them left out."""
     hints = get_type_hints(step)
     given: dict[str, Any] = {
-        item.name: (PlaceDraft if hints[item.name] == Place else hints[item.name], Field(**item.metadata))
+        item.name: (PlaceDraft if hints[item.name] == Place else _hint_of(item, hints[item.name]), _field_of(item))
         for item in fields(step)
         if item.name != "subgoal"
     }
     given["kind"] = (Literal[step.kind], ...)
     name, words = f"{step.__name__.removesuffix('Step')}Draft", (step.__doc__ or "").partition("\n")[0]
     return create_model(name, __base__=StepDraft, __doc__=words, **given)
+
+
+def _hint_of(item: dataclasses.Field[Any], hint: Any) -> Any:
+    """The type of a field as a model is asked for it: one that came later has no null, which stands for "not said then"."""
+    if not is_later(item) or item.default is not None:
+        return hint
+    solid: tuple[Any, ...] = tuple(kind for kind in get_args(hint) if kind is not type(None))
+    hidden: Any = Annotated[None, SkipJsonSchema()]
+    return reduce(or_, (*solid, hidden))
+
+
+def _field_of(item: dataclasses.Field[Any]) -> Any:
+    """A field with its metadata; a later one keeps its default, for answers that were given before it was there."""
+    told = {key: value for key, value in item.metadata.items() if key != LATER}
+    return Field(**{"default": item.default, **told} if is_later(item) else told)
 
 
 class StepList(AnswerModel):

@@ -110,10 +110,15 @@ class Candidates:
 
 @dataclass(frozen=True)
 class PathMark:
-    """A path through points, drawn with an arrow at its end."""
+    """A path through points, drawn with an arrow at its end.
+
+    Attributes:
+        width: Of the strip that a tool sweeps along it, drawn under the line [px of the picture]; 0 for none.
+    """
 
     points: tuple[Point, ...]
     label: str = ""
+    width: float = 0.0
 
 
 @dataclass(frozen=True)

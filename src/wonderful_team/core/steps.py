@@ -9,9 +9,12 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import ClassVar, Literal, TypeAlias, get_args
 
+from wonderful_team.core.later import later
+
 Side: TypeAlias = Literal["left", "right", "above", "below"]
 """A side of an object as the picture shows it: above is towards the picture's top edge."""
 Height: TypeAlias = Literal["above", "at", "clear"]
+Contact: TypeAlias = Literal["surface", "air"]
 SIDES: tuple[Side, ...] = ("left", "right", "above", "below")
 
 
@@ -166,15 +169,24 @@ class RotateGripperStep(_Step):
 
 @dataclass(frozen=True)
 class FollowStep(_Step):
-    """Follow the path of the subgoal's helper function."""
+    """Follow the path of the subgoal's helper function.
+
+    Steps of earlier releases do not say whether they touch: they follow at the height at which the tool is.
+    """
 
     kind: ClassVar[str] = "follow"
     words: ClassVar[StepWords] = StepWords(
-        "move the tool along the path that a helper function computed",
-        told="follow the path of {function}",
-        line="follow {function}",
+        "move the tool along the path that a helper function computed: on the surface (it is lowered at the first point and "
+        "lifted after the last) or in the air",
+        told="follow the path of {function}{contact}",
+        line="follow {function}{contact}",
     )
     function: str = field(metadata={"description": "Id of the subgoal that asked for the function."})
+    contact: Contact | None = later(
+        None,
+        description="surface: the tool (or what it holds) touches what lies there, as for drawing or wiping; air: it stays "
+        "clear above everything.",
+    )
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ from wonderful_team.images.cut import Edge, StripSide, crop, crop_pair, edge_str
 from wonderful_team.images.draw import draw, line_width_px
 from wonderful_team.images.encode import to_png
 from wonderful_team.images.load import OWN_FORMATS, load_picture, open_picture
-from wonderful_team.images.overview import action_arrows, overview
+from wonderful_team.images.overview import action_arrows, overview, swept_width, swept_widths
 from wonderful_team.images.resample import picture_of, resampled, resampled_depth, valid_mask
 from wonderful_team.images.turn_marks import action_turns, seen_from_above
 
@@ -36,6 +36,8 @@ __all__ = [
     "resampled",
     "resampled_depth",
     "seen_from_above",
+    "swept_width",
+    "swept_widths",
     "to_png",
     "valid_mask",
     "whole",

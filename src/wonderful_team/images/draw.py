@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 from wonderful_team.core.geometry.arrays import Array
@@ -70,6 +71,7 @@ def draw(picture: Picture, ticks: Ticks = Ticks.PIXELS) -> Array:
     for line in lines:
         draw_line(canvas, line.start, line.end)
     for path in paths:
+        draw_strip(canvas, path.points, path.width)
         draw_path(canvas, path.points)
     turned = [label for mark in picture.marks if isinstance(mark, TurnMark) for label in draw_turn(canvas, mark)]
     radius, reach = candidate_radius(canvas), point_reach(canvas)
@@ -125,6 +127,18 @@ def draw_box(canvas: Canvas, corners: Sequence[Point], style: BoxStyle, colour: 
 def draw_line(canvas: Canvas, start: Point, end: Point) -> None:
     """A straight line; along the picture's border it is moved inside by half its width, so that it shows."""
     canvas.polyline([_on_picture(canvas, start), _on_picture(canvas, end)], YELLOW)
+
+
+def draw_strip(canvas: Canvas, points: Sequence[Point], width: float, colour: Colour = GREEN) -> None:
+    """What a tool of this width sweeps from the first point straight to the last [px]: tinted, its edge dashed."""
+    if width <= 0 or len(points) < 2 or math.dist(points[0], points[-1]) < 1e-6:
+        return
+    (xa, ya), (xb, yb) = points[0], points[-1]
+    length = math.dist(points[0], points[-1])
+    ox, oy = -(yb - ya) / length * width / 2, (xb - xa) / length * width / 2
+    corners = [(xa + ox, ya + oy), (xb + ox, yb + oy), (xb - ox, yb - oy), (xa - ox, ya - oy)]
+    canvas.polygon(corners, colour, 0.3)
+    canvas.dashes(corners, colour, width_px=max(1, canvas.stroke_px - 1))
 
 
 def draw_path(canvas: Canvas, points: Sequence[Point], colour: Colour = GREEN) -> None:

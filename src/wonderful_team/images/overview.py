@@ -9,8 +9,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from wonderful_team.core.actions import Action
 from wonderful_team.core.geometry import Box, Camera
 from wonderful_team.core.geometry.arrays import Array
+from wonderful_team.core.motions import Slide
 from wonderful_team.core.pictures import BoxStyle, Picture, Point, TurnMark
 from wonderful_team.core.text import spoken
 from wonderful_team.core.values import GroundedTarget, KeepOut, Limits, PlannedAction, View
@@ -28,7 +30,7 @@ from wonderful_team.images.canvas import (
     Colour,
 )
 from wonderful_team.images.cut import whole
-from wonderful_team.images.draw import candidate_radius, draw_box, point_reach
+from wonderful_team.images.draw import candidate_radius, draw_box, draw_strip, point_reach
 from wonderful_team.images.lettering import plain
 from wonderful_team.images.placing import PointLabel, label_box, label_points, paint_plates
 from wonderful_team.images.turn_marks import draw_turn, stays
@@ -45,6 +47,7 @@ def overview(
     names: Mapping[str, str] | None = None,
     arrows: Sequence[Sequence[Point]] = (),
     turns: Sequence[TurnMark] = (),
+    widths: Sequence[float] = (),
     keep_out: Sequence[KeepOut] = (),
     workspace: Limits | Box | None = None,
     camera: Camera | None = None,
@@ -57,6 +60,7 @@ def overview(
         names: What the instruction's pictures are called, where a target's words speak of one as {name}.
         arrows: Moves in order, each through two or more points; `action_arrows` makes them from actions.
         turns: Things that are turned, as `action_turns` makes them from actions.
+        widths: How wide a strip each of these moves sweeps, 0 for none; `swept_widths` computes them. None for all when left out.
         keep_out: Regions nothing may enter.
         workspace: Limits in metres, or a box in view px, to outline.
         camera: Turns metres into pixels when `shown` is a Picture; a View brings its own. Without one, outlines that
@@ -91,7 +95,14 @@ def overview(
     still = {
         turn.label for turn in turned for n, path in enumerate(paths, 1) if str(n) == turn.label and stays(path, turn)
     }
-    labels = _draw_arrows(canvas, {n: _arc(path) for n, path in enumerate(paths, 1) if str(n) not in still})
+    scale = 1 / float(picture.frame.T_view_picture[0, 0])
+    strips = [width * scale for width, arrow in zip(widths, arrows, strict=True) if len(arrow) > 1] if widths else []
+    for path, width in zip(paths, strips, strict=False):
+        draw_strip(canvas, path, width)
+    # What sweeps a strip goes straight; everything else bows, which leaves what lies between to be seen.
+    swept = dict(enumerate(strips, 1))
+    drawn = {n: path if swept.get(n) else _arc(path) for n, path in enumerate(paths, 1) if str(n) not in still}
+    labels = _draw_arrows(canvas, drawn)
     for turn in turned:
         labels += draw_turn(canvas, turn)
     for item, colour in found:
@@ -110,6 +121,30 @@ def action_arrows(actions: Iterable[PlannedAction]) -> tuple[tuple[Point, ...], 
     """One arrow per action that goes somewhere, through the pixels its numbers came from, in order [view px]."""
     paths = (tuple(source.point_px for source in action.sources) for action in actions)
     return tuple(path for path in paths if len(path) > 1)
+
+
+def swept_widths(actions: Iterable[PlannedAction], blade_m: float | None, camera: Camera | None) -> tuple[float, ...]:
+    """How wide a strip the tool sweeps in each of `action_arrows`, in order [view px]: 0 but for pushes of a known width."""
+    moves = (planned for planned in actions if len(planned.sources) > 1)
+    return tuple(swept_width(planned.action, blade_m, camera) for planned in moves)
+
+
+def swept_width(action: Action | None, blade_m: float | None, camera: Camera | None) -> float:
+    """How wide a strip one action sweeps, in the middle of its way [view px]; 0 where none is known."""
+    motion = None if action is None else action.motion(None)
+    if not isinstance(motion, Slide) or blade_m is None or camera is None:
+        return 0.0
+    start, end = motion.start_m, motion.end_m
+    way = (end - start)[:2]
+    if float(np.linalg.norm(way)) == 0:
+        return 0.0
+    across = np.array([-way[1], way[0], 0.0]) / np.linalg.norm(way) * blade_m / 2
+    middle = (start + end) / 2
+    try:
+        (xa, ya), (xb, yb) = camera.project(np.array([middle - across, middle + across]))
+    except ValueError:
+        return 0.0  # behind the camera
+    return float(math.hypot(xb - xa, yb - ya))
 
 
 class _Named(NamedTuple):

@@ -70,7 +70,7 @@ def stub_script() -> dict[str, Any]:
             "reasoning": "",
             "edges": [{"edge": edge, "inside": True, "outside": False} for edge in c.EDGES],
         },
-        "JudgeRevision": lambda _: {"reasoning": "", "decision": "take_after_stop"},
+        "JudgeRevision": lambda _: {"reasoning": "", "decision": "take_after_stop", "problem": ""},
         "MoveBox": lambda _: {
             "reasoning": "",
             "action": "move",

@@ -142,7 +142,7 @@ def ground_rotate(step: RotateGripperStep, places: Places, progress: MotionState
 
 
 def ground_follow(step: FollowStep, places: Places, progress: MotionState) -> tuple[PlannedAction, MotionState]:
-    """Follow a path: along the surface after the tool was moved down to something, else at the clearance."""
+    """Follow a path in the air, clear of everything, or on the surface: lowered at its first point, lifted after its last."""
     if step.function not in places.paths:
         known = ", ".join(places.paths) or "none"
         raise places.fail(f"there is no path for function {step.function!r}; paths: {known}")
@@ -161,14 +161,25 @@ def ground_follow(step: FollowStep, places: Places, progress: MotionState) -> tu
             spots.append(seen)
             continue
         x, y, surface = (float(value) for value in seen.position_m)
-        touching = progress.height == "at"
-        z = surface + hanging if touching else clear_z_m([surface, *_surfaces(places)], places.limits, hanging)
-        rule = "on the surface" if touching else "clear of everything"
-        spots.append(ResolvedPoint(px, np.array([x, y, z]), f"{seen.how}; z = {z:.3f} m, {rule}"))
+        clear = clear_z_m([surface, *_surfaces(places)], places.limits, hanging)
+        over = ResolvedPoint(px, np.array([x, y, clear]), f"{seen.how}; z = {clear:.3f} m, clear of everything")
+        low = step.contact == "surface" or (step.contact is None and progress.height == "at")
+        if not low:
+            spots.append(over)
+            continue
+        z = surface + hanging
+        on = ResolvedPoint(px, np.array([x, y, z]), f"{seen.how}; z = {z:.3f} m, on the surface")
+        first, last = number == 1, number == len(points)
+        spots += [on] if step.contact is None else [over, on] if first else [on, over] if last else [on]
     positions = [spot.position_m for spot in spots if spot.position_m is not None]
     action = Trajectory(np.array(positions)) if positions and len(positions) == len(spots) else None
     planned = PlannedAction(step, action, tuple(source("waypoint", step.function, spot) for spot in spots))
-    return planned, replace(progress, tool=spots[-1] if spots else progress.tool, over=None)
+    return planned, replace(
+        progress,
+        tool=spots[-1] if spots else progress.tool,
+        height="clear" if step.contact else progress.height,
+        over=None,
+    )
 
 
 def ground_home(step: HomeStep, places: Places, progress: MotionState) -> tuple[PlannedAction, MotionState]:

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 import numpy as np
 from shapely import LineString, Polygon
 
-from wonderful_team.core.actions import MoveTo, PickPlace, Push, Trajectory
+from wonderful_team.core.actions import FollowStep, MoveTo, PickPlace, Push, Trajectory
 from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.values import GroundedTarget, Limits, PlannedAction, View
 from wonderful_team.motion.deprojector import TABLE_Z_M, Deprojector
@@ -43,9 +43,12 @@ def _told(
         yield f"the tool goes to {_cm(float(action.pose.position_m[2]))} over the table"
     elif isinstance(action, Trajectory):
         heights = [float(point[2]) for point in action.waypoints_m]
+        if isinstance(planned.step, FollowStep) and planned.step.contact == "surface":
+            yield "lowered to the surface at its first point, lifted after its last"
+            heights = heights[1:-1] or heights
         low, high = min(heights), max(heights)
         between = _cm(low) if high - low < 0.001 else f"{_cm(low)} to {_cm(high)}"
-        yield f"{len(heights)} points, {between} over the table"
+        yield f"{len(heights)} points at {between} over the table"
     if any("a guess" in source.how for source in planned.sources):
         yield "it goes on from where an earlier push should leave the thing: a guess, no picture shows it"
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from wonderful_team.core.actions import PickPlace, PickPlaceStep
@@ -12,6 +14,9 @@ from wonderful_team.motion.places import TO_PICK, Places
 from wonderful_team.motion.sources import source
 from wonderful_team.motion.state import MotionState, Moved
 from wonderful_team.motion.turns import turned_m, turned_px, yaw_of
+
+SAME_PX = 0.5
+"""A tool that ends this close to where the thing's middle lands ends there [px]."""
 
 
 def ground_pick_place(step: PickPlaceStep, places: Places, progress: MotionState) -> tuple[PlannedAction, MotionState]:
@@ -35,7 +40,12 @@ def ground_pick_place(step: PickPlaceStep, places: Places, progress: MotionState
         action,
         (
             source("pick", step.pick, pick),
-            source("place", step.place.target, ResolvedPoint(goal.px, put.position_m, put.how + turned)),
+            source(
+                "place",
+                step.place.target,
+                ResolvedPoint(goal.px, put.position_m, put.how + turned),
+                put.px if math.dist(put.px, goal.px) >= SAME_PX else None,
+            ),
         ),
     )
     return planned, progress.with_move(step.pick, moved)

@@ -35,7 +35,7 @@ def ground_push(step: PushStep, places: Places, progress: MotionState) -> tuple[
         except ValueError as error:
             raise places.fail(f"push of {thing!r}: {error}") from error
         if start_px is None:
-            start_px, start_how = behind, f"behind {thing}'s box, away from the end"
+            start_px, start_how = behind, f"behind {thing}'s box, away from the end{progress.guessed(thing)}"
         if not end_is_tool:
             end_px, end_how = short, f"half of {thing}'s box short of {_named(step.end)}"
     assert start_px is not None
@@ -55,7 +55,7 @@ def ground_push(step: PushStep, places: Places, progress: MotionState) -> tuple[
         return planned, progress
     arrived = places.lift.at_height(centre_end, z_m, "pushed there")
     stood = places.lift.at_height(box.centre, z_m, f"centre of {thing}'s box")
-    moved = Moved(places.step, stood.px, arrived.px, stood.position_m, arrived.position_m)
+    moved = Moved(places.step, stood.px, arrived.px, stood.position_m, arrived.position_m, pushed=True)
     return planned, progress.with_move(thing, moved)
 
 

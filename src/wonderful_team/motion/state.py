@@ -22,6 +22,7 @@ class Moved:
     Attributes:
         start_m, end_m: Shape (3,) [m]; their heights are those of the support before and after; None without camera.
         step: Number of the step that moved it, from 1.
+        pushed: Where it ended was decided by friction: what follows from it is a guess.
     """
 
     step: int
@@ -30,10 +31,11 @@ class Moved:
     start_m: Array | None
     end_m: Array | None
     yaw_rad: float = 0.0
+    pushed: bool = False
 
     def carry(self, spot: ResolvedPoint, lift: Deprojector) -> ResolvedPoint:
         """Where a spot of the thing lies after the move."""
-        how = f"{spot.how}; moved along by step {self.step}"
+        how = f"{spot.how}; moved along by step {self.step}" + (", a guess: it was pushed" if self.pushed else "")
         if spot.position_m is not None and self.start_m is not None and self.end_m is not None:
             position = self.end_m + turned_m(spot.position_m - self.start_m, self.yaw_rad)
             return ResolvedPoint(lift.to_px(position), position, how)
@@ -95,6 +97,11 @@ class MotionState:
         for move in self.moved.get(target, ()):
             spot = move.carry(spot, lift)
         return spot
+
+    def guessed(self, target: str) -> str:
+        """What to add to a rule that starts from where a target lies now: that it is a guess, once it was pushed; else ""."""
+        pushes = [move.step for move in self.moved.get(target, ()) if move.pushed]
+        return f", where step {pushes[-1]} should leave it: a guess" if pushes else ""
 
     def turn_of(self, target: str) -> float:
         """How far a target was turned so far [rad]."""

@@ -29,6 +29,7 @@ def _rows(current: dict[str, Any]) -> list[dict[str, Any]]:
                 "role": source["role"].replace("_", " "),
                 "target": source["target"],
                 "px": "({:.1f}, {:.1f})".format(*source["point_px"]),
+                "tool": "({:.1f}, {:.1f})".format(*source["tool_px"]) if source.get("tool_px") else "",
                 "m": "({:.3f}, {:.3f}, {:.3f})".format(*source["position_m"])
                 if source["position_m"]
                 else "pixels only",

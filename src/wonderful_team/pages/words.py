@@ -5,11 +5,13 @@ from __future__ import annotations
 import difflib
 import json
 from collections.abc import Mapping
+from dataclasses import fields
 from typing import Any
 
 from markupsafe import Markup, escape
 
 from wonderful_team.core.actions import STEPS
+from wonderful_team.core.later import is_later
 
 
 def pretty(value: Any) -> str:
@@ -90,7 +92,9 @@ def step_words(step: dict[str, Any], names: Mapping[str, str] | None = None) -> 
     if kind is None:
         return pretty_name(step["type"])
     turn = step.get("rotate_deg") or 0
-    said = {name: _field_words(name, value, names) for name, value in step.items()}
+    # Steps of earlier releases lack the fields that came later.
+    later = {item.name: item.default for item in fields(kind) if is_later(item)}
+    said = {name: _field_words(name, value, names) for name, value in {**later, **step}.items()}
     named = isinstance(step.get("place"), dict) and step["place"].get("type") in ("Beside", "OriginOf")
     return (kind.words.shown or kind.words.told).format(
         **said, at="" if named else "at ", turned=f", turned {turn:g}° clockwise" if turn else ""
@@ -101,6 +105,8 @@ def _field_words(name: str, value: Any, names: Mapping[str, str] | None) -> str:
     match name:
         case "rotate_deg":
             return f"{value:g}° clockwise"
+        case "contact":
+            return {"surface": ", touching the surface", "air": ", in the air"}.get(value, "")
         case "tight":
             return ", tight" if value else ""
         case "pick":

@@ -11,6 +11,7 @@ from wonderful_team.core.actions import Step
 from wonderful_team.core.pictures import BoxMark, PathMark, Picture, Point, PointMark, TurnMark
 from wonderful_team.core.text import counted
 from wonderful_team.core.values import Critique, GroundedTarget, PlannedAction, View
+from wonderful_team.images import swept_width
 from wonderful_team.images.turn_marks import action_turns, stays
 from wonderful_team.motion import ground_actions
 from wonderful_team.motion.in_words import numbers_in_words
@@ -201,7 +202,7 @@ def overview_picture(
     paths = {str(number): _path(view, action) for number, action in enumerate(actions, start=1)}
     return mark_targets(view, scene.view, grounded).marked(
         *(
-            PathMark(path, label)
+            PathMark(path, label, _swept(scene, actions[int(label) - 1]))
             for label, path in paths.items()
             if len(path) >= 2 and not (label in turns and stays(path, turns[label]))
         ),
@@ -226,6 +227,12 @@ def mark_targets(picture: Picture, view: View, grounded: Mapping[str, GroundedTa
         elif item.points:
             marks.append(PointMark(picture.frame.point_to_picture(next(iter(item.points.values()))), name))
     return picture.marked(*marks)
+
+
+def _swept(scene: SceneShown, action: PlannedAction) -> float:
+    """How wide a strip the tool sweeps, in pixels of the shown view."""
+    width = swept_width(action.action, scene.limits.blade_m, scene.view.camera)
+    return width / float(scene.views[0].frame.T_view_picture[0, 0])
 
 
 def _path(picture: Picture, action: PlannedAction) -> tuple[Point, ...]:

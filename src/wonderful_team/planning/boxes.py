@@ -118,10 +118,13 @@ async def _move_until_right(job: Job, box: Box, problem: str, presence: Presence
             box = after
             lines.append(_move_line(move))
             continue
-        decision = await _judge_revision(job, box, after)
+        verdict = await _judge_revision(job, box, after)
+        decision = verdict.decision
         lines.append(f"{_move_line(move)}: {decision}")
         if decision != "keep_before":
+            # What was wrong with the box before need not be wrong with this one; what the Checker says now is.
             box, problem = after, ""
+        problem = verdict.problem or problem
         if decision == "take_after_stop":
             return "accepted", box
     job.tell("verdict", f"not settled after {job.session.config.bounds.refinements} revisions", box)
@@ -146,7 +149,7 @@ async def _propose(job: Job, box: Box, problem: str, lines: tuple[str, ...]) -> 
     return move, after
 
 
-async def _judge_revision(job: Job, before: Box, after: Box) -> str:
+async def _judge_revision(job: Job, before: Box, after: Box) -> RevisionVerdict:
     both = Box.bounding([*before.corners, *after.corners])
     shown = job.crop_with("after", both, after, "after")
     question = JudgeRevision(
@@ -159,8 +162,9 @@ async def _judge_revision(job: Job, before: Box, after: Box) -> str:
     verdict: RevisionVerdict = answer.value
     said = {"keep_before": "keep the box before", "take_after_go_on": "better, go on", "take_after_stop": "right, stop"}
     kept = before if verdict.decision == "keep_before" else after
-    job.tell("verdict", f"Checker: {said[verdict.decision]}", kept, provenance=answer.provenance)
-    return verdict.decision
+    text = f"Checker: {said[verdict.decision]}" + (f" - {verdict.problem}" if verdict.problem else "")
+    job.tell("verdict", text, kept, provenance=answer.provenance)
+    return verdict
 
 
 def _move_line(move: BoxMove, view_per_x: float = 1.0, view_per_y: float = 1.0) -> str:

@@ -15,7 +15,9 @@ from wonderful_team.planning.together import together
 async def propose(job: Job, purpose: Literal["centre", "place"]) -> list[Point]:
     """Independent proposals in view pixels; empty when most samples say that the target is not there."""
     view, said = job.with_rejected(job.scene.labelled)
-    question = LocatePoints(job.target, purpose, job.plan, view, job.scene.views[1:], job.examples, 1, said)
+    question = LocatePoints(
+        job.target, purpose, job.plan, view, job.scene.views[1:], job.examples, 1, said, job.instruction
+    )
     samples: list[Points] = await together(
         [
             job.session.ask(question, stage="ground", branch=job.target.id, sample=number)
@@ -43,7 +45,9 @@ async def choose(job: Job, proposals: list[Point], purpose: Literal["centre", "p
     view = job.scene.labelled
     marked = view.marked(Candidates(tuple(view.frame.point_to_picture(point) for point in proposals)))
     choice: MarkChoice = await job.session.ask(
-        ChooseMark(job.target, purpose, job.plan, marked, job.examples), stage="ground", branch=job.target.id
+        ChooseMark(job.target, purpose, job.plan, marked, job.examples, job.instruction),
+        stage="ground",
+        branch=job.target.id,
     )
     if choice.number is None:
         job.tell("chosen", "no proposal is on the target", points=tuple(proposals))
@@ -59,7 +63,7 @@ async def give_box(job: Job, centre: Point) -> Box | None:
     view, said = job.with_rejected(job.scene.labelled)
     marked = view.marked(PointMark(view.frame.point_to_picture(centre), "centre"))
     answer = await job.session.ask_whole(
-        GiveBox(job.target, job.plan, marked, job.examples, said), stage="ground", branch=job.target.id
+        GiveBox(job.target, job.plan, marked, job.examples, said, job.instruction), stage="ground", branch=job.target.id
     )
     given: BoxAnswer = answer.value
     if given.box is None:

@@ -126,7 +126,7 @@ async def read_scene(jobs: Sequence[Job]) -> tuple[SceneReading, Provenance]:
     # Where all targets are plain, the main view alone is enough to find them in.
     plain = session.config.sparing and not any(target.where or target.part for target in targets)
     context = () if plain else scene.views[1:]
-    question = ReadScene(targets, jobs[0].plan, view, context, scene.examples(targets))
+    question = ReadScene(targets, jobs[0].plan, view, context, scene.examples(targets), jobs[0].instruction)
     answer = await session.ask_whole(question, stage="ground")
     return answer.value, answer.provenance
 
@@ -218,7 +218,9 @@ async def ground_by_supervisor(jobs: Sequence[Job]) -> dict[str, GroundedTarget]
 async def _point_by_supervisor(job: Job) -> GroundedTarget:
     view, said = job.with_rejected(job.scene.labelled)
     purpose: Literal["centre", "place"] = "place" if job.target.kind == "area" else "centre"
-    question = LocatePoints(job.target, purpose, job.plan, view, job.scene.views[1:], job.examples, 1, said)
+    question = LocatePoints(
+        job.target, purpose, job.plan, view, job.scene.views[1:], job.examples, 1, said, job.instruction
+    )
     answer: Points = await job.session.ask(question, stage="ground", branch=job.target.id, role="supervisor")
     if not answer.points:
         job.tell("absent", "the Supervisor says it is not in the picture")

@@ -59,6 +59,11 @@ class Job:
     unsure: str = ""
 
     @property
+    def instruction(self) -> str:
+        """What the user wants, in words."""
+        return self.scene.instruction.text
+
+    @property
     def view_box(self) -> Box:
         return Box(0, 0, *self.scene.view.size_px)
 

@@ -73,7 +73,7 @@ async def _ask(
     if role in PUSHES and not fine:
         # A crop of the thing alone cannot say from which side it has to be pushed.
         whole = job.scene.views[0].marked(*_box_marks(job, job.scene.views[0], box, role, whole=True))
-    question = ChoosePoint(job.target, role, job.plan, marked, fine, job.examples, said, whole)
+    question = ChoosePoint(job.target, role, job.plan, marked, fine, job.examples, said, whole, job.instruction)
     choice: PointChoice = await job.session.ask(question, stage="ground", branch=job.target.id)
     return shown.frame.point_to_view(candidates[choice.number - 1])
 

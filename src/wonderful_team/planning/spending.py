@@ -108,6 +108,8 @@ def target_reason(target: Target, read: SceneTarget, box: Box, view_px: tuple[in
         return f"the Manager is not sure: {read.unsure}"
     if target.kind == "object" and target.where:
         return f"told apart by where it is: {target.where}"
+    if "push_start" in target.roles:
+        return "it is pushed"
     if target.kind == "object" and max(box.width, box.height) < SMALL_SHARE * max(view_px):
         return "small"
     return ""

@@ -20,7 +20,7 @@ from wonderful_team.core.protocols import Event
 from wonderful_team.core.text import counted, ending_words, picture_names, spoken, visible
 from wonderful_team.core.values import GateCheck, GateReport, Instruction, Limits, Observation, Plan, Request, Trial
 from wonderful_team.errors import ActionRefusedError, BudgetReached, FileNotWrittenError, WonderfulTeamError
-from wonderful_team.images import Ticks, action_arrows, action_turns, overview, to_png
+from wonderful_team.images import Ticks, action_arrows, action_turns, overview, swept_widths, to_png
 from wonderful_team.images.keep_out import outlines
 from wonderful_team.record import entries
 from wonderful_team.record.picture_store import DRAWING, PictureStore
@@ -246,6 +246,7 @@ class Recorder:
             names=picture_names(said.text, said.slots),
             arrows=action_arrows(plan.actions),
             turns=action_turns(plan.actions, plan.grounded, view),
+            widths=swept_widths(plan.actions, self._limits.blade_m if self._limits else None, view.camera),
             keep_out=plan.keep_out,
             workspace=self._limits,
         )

@@ -125,9 +125,11 @@ class NumberSource:
     Attributes:
         role: pick | place | push_start | push_end | waypoint.
         target: Target id.
-        point_px: Pixel of the main view.
+        point_px: Pixel of the main view. Of a place, it is where the middle of the thing lands (the middle of its box).
         position_m: What it became, base frame; None without a camera.
         how: The rule, in words ("T1 point, depth 0.482 m"; "origin of T1").
+        tool_px: Of a place: where the tool itself ends, which holds the thing at its pick point and not at its middle. A robot
+            that is sent to pixels goes here; position_m is the same point in metres. None where both are one.
     """
 
     role: str
@@ -135,6 +137,7 @@ class NumberSource:
     point_px: Point
     position_m: tuple[float, float, float] | None
     how: str
+    tool_px: Point | None = later(None)
 
 
 @dataclass(frozen=True, eq=False)
@@ -200,8 +203,8 @@ class Plan:
         """
         runs = {
             "scene": self.scene_hash if scene_hash is None else scene_hash,
-            "steps": to_jsonable(self.steps),
-            "actions": to_jsonable(self.actions),
+            "steps": to_jsonable(self.steps, later=False),
+            "actions": to_jsonable(self.actions, later=False),
             "points": {key: to_jsonable(dict(value.points)) for key, value in sorted(self.grounded.items())},
             "keep_out": to_jsonable(self.keep_out),
         }

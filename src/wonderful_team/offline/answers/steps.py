@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 
 from wonderful_team.contracts import StepList, WriteSteps, step_list_type
@@ -21,7 +22,9 @@ def answer_write_steps(question: WriteSteps) -> StepList:
     steps: list[dict[str, object]] = []
     for subgoal in _ordered(question.subgoals):
         if subgoal.id in question.functions and "follow" in question.step_kinds:
-            steps.append({"kind": "follow", "subgoal": subgoal.id, "function": subgoal.id})
+            touches = re.search(r"\b(draw|write|wipe|trace|paint|scrub)", f"{subgoal.text} {subgoal.function}".lower())
+            contact = "surface" if touches else "air"
+            steps.append({"kind": "follow", "subgoal": subgoal.id, "function": subgoal.id, "contact": contact})
             continue
         steps += steps_of_subgoal(subgoal, question.targets, question.step_kinds, eyes)
     kinds = ", ".join(dict.fromkeys(str(step["kind"]) for step in steps)) or "no steps"

@@ -66,6 +66,12 @@ class Misread:
 
     async def answer(self, request: Request) -> Answer:
         answer: Answer = await self.model.answer(request)
+        if request.contract == "DraftPlan":
+            goals = [
+                goal.model_copy(update={"move": goal.move.model_copy(update={"rotate_deg": goal.move.rotate_deg - 50})})
+                for goal in answer.value.subgoals
+            ]
+            return replace(answer, value=answer.value.model_copy(update={"subgoals": goals}))
         if request.contract != "WriteSteps":
             return answer
         steps = [step.model_copy(update={"rotate_deg": step.rotate_deg - 50}) for step in answer.value.steps]

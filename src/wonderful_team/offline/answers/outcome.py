@@ -12,11 +12,10 @@ from wonderful_team.errors import NotUnderstoodError
 from wonderful_team.offline.answers.roles import Task, tasks_of
 from wonderful_team.offline.description import Description
 from wonderful_team.offline.eyes import Eyes, eyes_of, eyes_of_task
-from wonderful_team.offline.goals.aims import Aim, Named
+from wonderful_team.offline.goals.aims import Aim
 from wonderful_team.offline.goals.deriving import already, derive
 from wonderful_team.offline.goals.instruction import read_task
-from wonderful_team.offline.goals.sweeps import sweep_by_numbers
-from wonderful_team.offline.pushing.sweeping import swept
+from wonderful_team.offline.pushing.sweeping import sweep_of, swept
 from wonderful_team.offline.vision import Thing, strip_presence
 from wonderful_team.offline.vision.things import covers
 from wonderful_team.offline.vision.turning import turned_deg
@@ -82,11 +81,8 @@ class _Judge:
     def _swept(self, aim: Aim, was: Thing) -> tuple[str, str]:
         """Whether a thing lies wholly in the place it was pushed to; alike things in there count once each."""
         name = aim.thing.words
-        parts = [
-            None if item is None else Named(item.description, self.after.number(item.description))
-            for item in (aim.to, aim.off, aim.limit)
-        ]
-        sweep = sweep_by_numbers(*parts)
+        of = self.after.number
+        sweep = None if aim.to is None else sweep_of(aim.to, aim.off, aim.limit, lambda item: of(item.description))
         if aim.to is None or sweep is None:
             return "unclear", f"where the {name} was pushed to does not show"
         like = [thing for thing in self.after.scene.things if _alike(was, thing)]

@@ -8,7 +8,7 @@ from wonderful_team.offline.description import Description, Way
 from wonderful_team.offline.eyes import Eyes, one_of, unique_words
 from wonderful_team.offline.goals.aims import Aim, Aims, Named
 from wonderful_team.offline.language import Command, render
-from wonderful_team.offline.pushing.sweeping import Sweep, choose, is_walled, swept
+from wonderful_team.offline.pushing.sweeping import choose, is_walled, sweep_of, swept
 
 
 def swept_aims(command: Command, what: Description, things: list[Named], eyes: Eyes, result: Aims) -> list[Aim] | None:
@@ -17,7 +17,7 @@ def swept_aims(command: Command, what: Description, things: list[Named], eyes: E
     Exactly so many are pushed as are asked for: those that lie there already count.
     """
     to, off, limit = (_named(item, eyes, result) for item in (what, command.off, command.limit))
-    sweep = sweep_by_numbers(to, off, limit)
+    sweep = None if to is None else sweep_of(to, off, limit, lambda item: item.number)
     if to is None or sweep is None or not is_walled(eyes.scene, sweep):
         return None
     named = {sweep.into, *sweep.lines}
@@ -53,16 +53,6 @@ def swept_aims(command: Command, what: Description, things: list[Named], eyes: E
         # Nothing can be reached: the plan says so where the place on the way is not found.
         aims += [replace(first, thing=words[number], others=free) for number in left[:count]]
     return aims
-
-
-def sweep_by_numbers(to: Named | None, off: Named | None, limit: Named | None) -> Sweep | None:
-    """The place and its lines in the picture; None when one does not show."""
-    if to is None or to.number is None:
-        return None
-    lines = [item.number for item in (off, limit) if item is not None]
-    if any(number is None for number in lines):
-        return None
-    return Sweep(to.number, tuple(number for number in lines if number is not None), limit is not None)
 
 
 def way_places(aim: Aim) -> list[Description]:

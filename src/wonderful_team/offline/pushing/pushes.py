@@ -37,11 +37,11 @@ BEFORE_MOUTH = 1.3
 ENOUGH = 0.7
 """Free space beyond which more is worth nothing."""
 WORTH_CLEAR, WORTH_DEEP, PUSH_COST = 6.0, 2.5, 30.0
-RISK = 200.0
-"""What it costs, as sides of way, that a lane is this much narrower than where a thing may lie asks for."""
+"""What free space beside a lane and distance from a line are worth, and what one more push costs, as sides of way."""
 WORTH_ROOM = 12.0
 """What distance from the open side is worth where others are to follow."""
-"""What free space beside a lane and distance from a line are worth, and what one more push costs, as sides of way."""
+RISK = 200.0
+"""What each side of free space costs that a lane lacks for where a thing may lie, as sides of way."""
 SHORTEST = 0.4
 HALF = 0.5
 STEP = 2 * ROOM_LEFT
@@ -227,7 +227,7 @@ def best_way(field: Field, number: int, *, clear_of: Sequence[Array] = (), deep:
     unsure = np.maximum(np.pi / 4 - (np.pi / 4 - off) * np.exp(pushed), 0.0)
     # A push ends half the thing's upright box short of its end; square to the tool, the thing is half its side before it.
     behind = (abs(np.cos(block.yaw_rad)) + abs(np.sin(block.yaw_rad)) - 1) / 2
-    both = first[:, None] + lanes.costs(stops, turned, goals, unsure, ASTRAY * off, behind) - worth
+    both = first[:, None] + lanes.costs(stops, turned, goals, (unsure, ASTRAY * off, behind)) - worth
     if not np.isfinite(both).any() or (straight is not None and straight.cost <= both.min()):
         return straight
     k, m = np.unravel_index(int(both.argmin()), both.shape)
@@ -321,23 +321,20 @@ class _Lanes:
         blocked = (_solid(field, block.number), field.line, field.shown)
         self.solid, self.line, self.shown = map(_distance, blocked)
 
-    def costs(
-        self, starts: Array, yaws: Array, ends: Array, unsure: Array | float = READ_RAD, astray: Array | float = 0.0,
-        behind: float = 0.0,
-    ) -> Array:  # fmt: skip
+    def costs(self, starts: Array, yaws: Array, ends: Array, pushed: tuple[Array, Array, float] | None = None) -> Array:
         """From each start, the thing turned by yaw there, to each end, shape (S, E).
 
-        After a push along `yaws` the yaw is known but for `unsure` [rad], and the thing lies up to `astray` aside of its
-        start and `behind` it (in sides); one each or shape (S,).
+        `pushed`, after a push along `yaws`: how far yaws are unsure [rad], how far the thing may lie aside, behind (in sides).
         """
+        unsure, astray, behind = pushed or (np.full(len(yaws), READ_RAD), np.zeros(len(yaws)), 0.0)
         count, side = len(starts) * len(ends), self.side
         start = np.repeat(starts, len(ends), axis=0)
         way = np.tile(ends, (len(starts), 1)) - start
         length = np.linalg.norm(way, axis=1)
         way = way / np.maximum(length, 1e-9)[:, None]
         turn = np.arctan2(way[:, 1], way[:, 0]) - np.repeat(yaws, len(ends))
-        off = np.minimum(_off_square(turn) + np.repeat(unsure + 0 * yaws, len(ends)), np.pi / 4)
-        aside = np.repeat(astray + 0 * yaws, len(ends)) + behind * np.abs(np.sin(turn))
+        off = np.minimum(_off_square(turn) + np.repeat(unsure, len(ends)), np.pi / 4)
+        aside = np.repeat(astray, len(ends)) + behind * np.abs(np.sin(turn))
         half = (np.cos(off) + np.sin(off)) / 2 + DRIFT
         clear = np.full(count, np.inf)
         seen_free = self._least(self.shown, ends, np.zeros_like(ends), 0.0, np.zeros(len(ends))) > FREE_NOW * side

@@ -9,7 +9,7 @@ import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import TypeAlias
+from typing import TypeAlias, TypeVar
 
 from wonderful_team.core.geometry import Box
 from wonderful_team.core.geometry.arrays import Array
@@ -22,6 +22,7 @@ from wonderful_team.offline.vision import Match, Scene
 
 Number: TypeAlias = Callable[[Description], int | None]
 """Who is meant by a description of one thing: its number in a scene, or None."""
+Meant = TypeVar("Meant")
 FLAT_M = 0.006
 """Walls that are no higher than this are only drawn on the table [m]."""
 LOOKS = 16
@@ -237,12 +238,13 @@ def find_place(place: Place, scene: Scene, number: Number, plan: Sequence[str]) 
     return [Match(None, Box.around(point, side, side), point, 1.0, 1.0, why)]
 
 
-def sweep_of(into: Description, off: Description | None, limit: Description | None, number: Number) -> Sweep | None:
+def sweep_of(
+    into: Meant, off: Meant | None, limit: Meant | None, number: Callable[[Meant], int | None]
+) -> Sweep | None:
     """A place and its lines by numbers; None when one of them does not show."""
-    numbers = [number(item) for item in (into, off, limit) if item is not None]
-    if any(item is None for item in numbers):
-        return None
-    return Sweep(numbers[0], tuple(item for item in numbers[1:] if item is not None), limit is not None)  # type: ignore[arg-type]
+    place, lines = number(into), [number(item) for item in (off, limit) if item is not None]
+    seen = tuple(item for item in lines if item is not None)
+    return None if place is None or len(seen) < len(lines) else Sweep(place, seen, limit is not None)
 
 
 def _orders(plan: Sequence[str], number: Number) -> tuple[Order, ...]:

@@ -51,7 +51,7 @@ def resolve(scene: Scene, description: Description, examples: Mapping[str, Examp
     for related in description.related:
         matches = _related(scene, matches, related.relation, related.to, examples)
     several = description.quantity != "one" and description.like_only is None
-    if description.like is not None and (several or description.superlative is not None):
+    if matches and description.like is not None and (several or description.superlative is not None):
         matches = _like_the_best(matches, textured=description.like_only != "shape")
     if description.superlative is not None:
         corner = " " in description.name
@@ -227,16 +227,10 @@ def _fitting(scene: Scene, description: Description, examples: Mapping[str, Exam
 
 def _like_the_best(matches: list[Match], *, textured: bool) -> list[Match]:
     """Those nearly as like an example as the best one, and like that one in texture: within one picture this shows better."""
-    best = max(matches, key=lambda match: match.score, default=None)
-    kept = []
-    for match in matches:
-        assert best is not None  # there are matches
-        shared = 1.0
-        if textured and best.thing is not None and match.thing is not None:
-            shared = alike_pattern(best.thing.look, match.thing.look) ** _TEXTURE
-        if match.score * shared >= NEAR_BEST * best.score:
-            kept.append(match)
-    return kept
+    looks = [(match, match.thing.look) for match in matches if match.thing is not None]
+    best, look = max(looks, key=lambda pair: pair[0].score)
+    likeness = [alike_pattern(look, own) ** _TEXTURE if textured else 1.0 for _, own in looks]
+    return [m for (m, _), same in zip(looks, likeness, strict=True) if m.score * same >= NEAR_BEST * best.score]
 
 
 def _point_on(scene: Scene, thing: Thing) -> Point:

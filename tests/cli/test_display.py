@@ -165,7 +165,7 @@ def test_what_became_of_a_trial_names_pictures_as_people_do() -> None:
     said = SimpleNamespace(text="Put {dragged_obj} in the bowl.", slots={"dragged_obj": None})
     verdict = SimpleNamespace(subgoal="G1", status="not_done", cause="the tallest {dragged_obj} is not at the bowl")
     trial = SimpleNamespace(
-        outcome="failure", stage="execution", reason="no replans left; G1 not done: the {dragged_obj} stayed",
+        outcome="failure", ending="failure", stage="execution", reason="no replans left; G1 not done: the {dragged_obj} stayed",
         verdicts=[verdict], plans=[SimpleNamespace(instruction=said)], reports=[],
     )  # fmt: skip
     text = "\n".join(trial_lines(cast(TrialResult, trial)))

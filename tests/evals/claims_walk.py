@@ -13,7 +13,8 @@ from tests.evals.runners import toy_plan
 from wonderful_team.core.caps import Caps
 from wonderful_team.evals.leases import LEASE_S, Owner, Surroundings
 from wonderful_team.evals.spending import CapReached
-from wonderful_team.evals.store import Claim, Store
+from wonderful_team.evals.store import Store
+from wonderful_team.evals.stored_rows import Claim
 from wonderful_team.evals.trials import TrialRow
 from wonderful_team.evals.workers import settle
 

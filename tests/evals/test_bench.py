@@ -12,71 +12,18 @@ import numpy as np
 import pytest
 
 import wonderful_team as wt
+from tests.evals.own_files import LENIENT, METHOD
 from wonderful_team import registry
 from wonderful_team.api.study import known_suites
-from wonderful_team.api.trial import make_scene, model_of, run_trial
+from wonderful_team.api.trial import model_of, run_trial
 from wonderful_team.api.trial_setup import reproduce
 from wonderful_team.cli.app import run
 from wonderful_team.core.caps import Caps
-from wonderful_team.core.protocols import World
 from wonderful_team.errors import ConfigError
-from wonderful_team.evals.perturb import perturbed
 from wonderful_team.evals.store import Store
 from wonderful_team.evals.trials import Condition, RunSettings, TrialSpec
 from wonderful_team.evals.workers import run_safely
 from wonderful_team.images import to_png
-
-METHOD = """
-import wonderful_team as wt
-
-
-class Pusher:
-    name = "pusher"
-
-    def decide(self, situation: wt.Situation) -> wt.Act | wt.Done:
-        if situation.executed:
-            return wt.Done("moved once")
-        low, high = situation.limits.low_m, situation.limits.high_m
-        middle = [(a + b) / 2 for a, b in zip(low, high)]
-        step = wt.PickPlaceStep("G1", pick="middle", place=wt.At("corner"))
-        return wt.Act((wt.PlannedAction(step, wt.PickPlace([*middle[:2], 0.0], [low[0] + 0.05, low[1] + 0.05, 0.0])),))
-"""
-
-LENIENT = '''
-"""A desk whose scorer calls everything a success, and whose seeds are all the same."""
-
-import numpy as np
-
-import wonderful_team as wt
-
-
-class Truth:
-    def score(self):
-        return wt.Score(True, None, "looks fine")
-
-    def truth(self):
-        return {}
-
-    def oracle(self):
-        return (wt.PickPlace(np.array([0.2, 0.2, 0.0]), np.array([0.3, 0.3, 0.0])),)
-
-
-class AgentSession:
-    vocabulary = wt.PICK_PLACE
-    limits = wt.Limits((0.0, 0.0, -0.01), (0.5, 0.5, 0.4))
-    instruction = wt.Instruction("tidy the desk")
-    privileged = Truth()
-
-    def __init__(self, seed: int = 0) -> None:
-        self.camera = wt.AffineCamera(np.array([[0, 400.0, 0, 0], [400.0, 0, 0, 0], [0, 0, -1, 1.0]]))
-
-    def observe(self):
-        rgb, depth_m = np.full((200, 200, 3), 150, np.uint8), np.full((200, 200), 1000.0)
-        return wt.Observation({"top": wt.View("top", "top", 0.0, rgb, depth_m, self.camera)})
-
-    def execute(self, action):
-        return wt.StepReport(action, True)
-'''
 
 
 def _bench(*words: str, store: Path) -> int:
@@ -367,50 +314,3 @@ def test_models_by_role_answer_for_their_roles_and_stand_in_the_label(
     assert not asked[0] & asked[1]
     assert not asked[1] & asked[2]
     assert keys[0] & keys[1], "controls ask no model: they are the same"
-
-
-def test_our_tabletop_makes_harder_scenes_and_other_worlds_change_their_pictures(tmp_path: Path) -> None:
-    def scene(tier: str, task: str = "tabletop/rotate") -> World:
-        return make_scene(TrialSpec(task, 7, Condition("team", "offline", perturb=tier)))
-
-    (tmp_path / "desk.py").write_text(LENIENT, encoding="utf-8")
-    own = f"{tmp_path / 'desk.py'}:AgentSession"
-    plain = scene("")
-    try:
-        before = plain.observe().main
-        for tier, physical in (("clutter=2", True), ("camera=2", True), ("lighting=3", True), ("paraphrase=1", False)):
-            harder = scene(tier)
-            try:
-                after = harder.observe().main
-                assert (after.rgb != before.rgb).any() == physical
-                things = len(harder.privileged.truth()["things"])  # type: ignore[attr-defined]
-                assert (things > len(plain.privileged.truth()["things"])) == tier.startswith("clutter")  # type: ignore[attr-defined]
-                if tier.startswith("camera"):
-                    spot = [(0.5, 0.1, 0.0)]
-                    assert abs(after.camera.project(spot) - before.camera.project(spot)).max() > 1.0  # type: ignore[union-attr]
-            finally:
-                harder.close()
-    finally:
-        plain.close()
-    assert (scene("lighting=2", own).observe().main.rgb != scene("", own).observe().main.rgb).any()
-    with pytest.raises(ConfigError, match="cannot put more things on its table; our tabletop can"):
-        wt.Study(own, perturb="clutter=1", store=tmp_path / "s.db")
-
-
-@pytest.mark.parametrize("words", ["lighting=2", "camera=3", "texture=2", "paraphrase=1"])
-def test_harder_tiers_change_what_is_seen_or_said_and_keep_the_truth(words: str) -> None:
-    plain = wt.make_world("tabletop/rotate", seed=1000)
-    harder = perturbed(plain, words, 1000)
-    try:
-        seen, before = harder.observe(), plain.observe()
-        if words.startswith("paraphrase"):
-            assert harder.instruction.text != plain.instruction.text
-            assert set(harder.instruction.slots) == set(plain.instruction.slots)
-        else:
-            assert seen.hash != before.hash
-            assert seen.hash == harder.observe().hash
-        for action in plain.privileged.oracle():  # type: ignore[attr-defined]
-            harder.execute(action)
-        assert harder.privileged.score().success is True  # type: ignore[attr-defined]
-    finally:
-        plain.close()

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from wonderful_team.cli.wording import action_line
-from wonderful_team.core.text import ending_words
+from wonderful_team.core.text import ending_words, recorded_names, spoken
 from wonderful_team.core.values import GroundedTarget, Plan
 
 LABEL_WIDTH = 14
@@ -85,7 +85,14 @@ def compare(one: tuple[Path, Mapping[str, Any]], two: tuple[Path, Mapping[str, A
         rows += _plan_rows(left, right)
     answers, same = _answer_rows(one[1], two[1])
     ids = [[plan.id for plan in made] for made in plans]
-    return Difference(tuple(_ends(one, two)), tuple(rows), tuple(answers), same, ids[0] == ids[1])
+    names = [recorded_names(record["planner"]["instruction"]) for _, record in (one, two)]
+    ends, rows, answers = ([_spoken(row, *names) for row in some] for some in (_ends(one, two), rows, answers))
+    return Difference(tuple(ends), tuple(rows), tuple(answers), same, ids[0] == ids[1])
+
+
+def _spoken(row: Row, left: Mapping[str, str], right: Mapping[str, str]) -> Row:
+    """The row with pictures called as people call them, each side by its own instruction."""
+    return Row(row.label, spoken(row.left, left), spoken(row.right, right))
 
 
 def _ends(one: tuple[Path, Mapping[str, Any]], two: tuple[Path, Mapping[str, Any]]) -> list[Row]:

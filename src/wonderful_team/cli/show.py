@@ -13,7 +13,7 @@ import click
 from wonderful_team.cli.options import PATH, read_models
 from wonderful_team.cli.output import finish
 from wonderful_team.cli.run_summary import shown_path
-from wonderful_team.core.text import counted, ending_words, picture_names, spoken, visible
+from wonderful_team.core.text import counted, ending_words, recorded_names, spoken, visible
 from wonderful_team.errors import UnknownNameError, reading
 
 
@@ -81,7 +81,9 @@ def _show(folder: Path, role: str | None, open_page: bool, as_json: bool) -> int
         if role not in roles:
             raise UnknownNameError("role in this run", role, roles)
         chosen = [request for request in requests if request["role"] == role]
-        text, result = "\n\n".join(_exchange(request) for request in chosen), {"requests": chosen}
+        names = recorded_names(record["planner"]["instruction"])
+        text = "\n\n".join(spoken(_exchange(request), names) for request in chosen)
+        result = {"requests": chosen}
     else:
         with reading(f"{folder}: the record"):
             text, result = "\n".join(_story(record)), record
@@ -164,7 +166,7 @@ def _story(content: Any) -> list[str]:
     planner, clock = content["planner"], content["clock"]
     outcome = content["outcome"] or {"outcome": content["state"], "stage": None, "reason": ""}
     said = planner["instruction"] or {"text": "", "slots": {}}
-    names = picture_names(said["text"], said["slots"])
+    names = recorded_names(said)
     stage = f" at {outcome['stage']}" if outcome.get("stage") else ""
     ending, reason = ending_words(str(outcome["outcome"]), outcome.get("reason"))
     lines = [said["text"], f"{ending.upper()}{stage}  {reason}".rstrip()]

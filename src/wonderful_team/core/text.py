@@ -6,7 +6,7 @@ import os
 import re
 from collections.abc import Iterable, Mapping
 from pathlib import Path
-from typing import TypeVar
+from typing import Any, TypeVar
 
 Text = TypeVar("Text", bound=str)
 
@@ -64,6 +64,11 @@ def picture_names(instruction: str, pictures: Iterable[str]) -> dict[str, str]:
     held = list(pictures)
     named = [name for name in dict.fromkeys(PLACEHOLDER.findall(instruction)) if name in held]
     return {name: f"picture {number}" for number, name in enumerate(dict.fromkeys([*named, *held]), start=1)}
+
+
+def recorded_names(instruction: Mapping[str, Any] | None) -> dict[str, str]:
+    """The same for an instruction as a record holds it; empty without one."""
+    return {} if instruction is None else picture_names(instruction["text"], instruction["slots"])
 
 
 def spoken(text: str, names: Mapping[str, str]) -> str:

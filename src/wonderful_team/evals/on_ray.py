@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING, Any
 from wonderful_team.errors import ConfigError, MissingExtraError
 from wonderful_team.evals.leases import RENEW_EVERY_S, Owner
 from wonderful_team.evals.spending import CapReached
-from wonderful_team.evals.store import Claim, Store
+from wonderful_team.evals.store import Store
+from wonderful_team.evals.stored_rows import Claim
 from wonderful_team.evals.trials import RunSettings, TrialRow, TrialRunner, TrialSpec
 from wonderful_team.evals.workers import POLL_S, Work, run_safely, settle, tighter
 

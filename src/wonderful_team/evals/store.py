@@ -22,14 +22,15 @@ from wonderful_team.errors import ConfigError, FileNotWrittenError, reading
 from wonderful_team.evals.leases import LEASE_S, Owner, Surroundings
 from wonderful_team.evals.names import NO_MODEL
 from wonderful_team.evals.schema import CONDITION, JSON, RESULT, SCHEMA_VERSION, SPEC, check_values, make_tables
-from wonderful_team.evals.spending import UNITS, Allowance, Costs, Likely, Spending, WaitForCost, allow
-from wonderful_team.evals.trials import Condition, Row, TrialRow, TrialSpec
+from wonderful_team.evals.spending import UNITS, Allowance, Likely, Spending, WaitForCost, allow
+from wonderful_team.evals.stored_rows import Claim, costs_of, result_of, spec_of, spec_values
+from wonderful_team.evals.trials import Row, TrialRow, TrialSpec
 from wonderful_team.redaction import redact_all
 
 CUT = "cut by the study's cap"
 """Why an attempt was discarded that had all it was allowed and wanted more."""
-_REQUEST, _RESULT = TypeAdapter(dict[str, Any]), TypeAdapter(TrialRow)
-"""What is read out of the file is of the types that it was written with."""
+_REQUEST = TypeAdapter(dict[str, Any])
+"""What is read out of the file is of the type that it was written with."""
 MAX_CRASHES = 3
 """A trial whose worker process died so often is written as an error, ours, and not tried again."""
 
@@ -119,7 +120,7 @@ class Store:
         with self._writing() as base:
             before = base.execute("SELECT COUNT(*) FROM trials").fetchone()[0]
             listed = list(specs)
-            base.executemany(f"INSERT OR IGNORE INTO trials({columns}) VALUES({marks})", map(_spec_values, listed))
+            base.executemany(f"INSERT OR IGNORE INTO trials({columns}) VALUES({marks})", map(spec_values, listed))
             base.executemany(
                 "INSERT OR IGNORE INTO wanted SELECT ?, id FROM trials WHERE key = ?", [(study, s.key) for s in listed]
             )
@@ -159,7 +160,7 @@ class Store:
                 "held_usd=? WHERE id=?",
                 (str(owner), *self._leases(), *allowance.held, row["id"]),
             )
-        return Claim(int(row["id"]), _spec(row), allowance.caps)
+        return Claim(int(row["id"]), spec_of(row), allowance.caps)
 
     def check_caps(self, study: str, caps: Caps) -> None:
         """Whether the next trial may be begun, once nothing is in flight.
@@ -196,7 +197,7 @@ class Store:
             "SELECT allowed_calls, allowed_tokens, allowed_usd FROM discarded WHERE trial=? AND why=? ORDER BY rowid DESC LIMIT 1",
             (row["id"], CUT),
         ).fetchone()
-        return Likely(_costs(own), _costs(others), (0, 0, 0.0) if cut is None else tuple(cut))
+        return Likely(costs_of(own), costs_of(others), (0, 0, 0.0) if cut is None else tuple(cut))
 
     def _next(self, base: sqlite3.Connection, study: str) -> sqlite3.Row | None:
         mine = "SELECT t.* FROM trials t JOIN wanted w ON w.trial = t.id AND w.study = ?"
@@ -270,7 +271,7 @@ class Store:
         with self._writing() as base:
             held = "SELECT * FROM trials WHERE state='claimed' AND owner LIKE ?"
             for row in base.execute(held, (f"{host}|{pid}|%",)).fetchall():
-                scenes.append(_spec(row).scene)
+                scenes.append(spec_of(row).scene)
                 crashes = row["crashes"] + (not ended_by_us)
                 _lose(base, row, ended_by_us or "its process died")
                 base.execute("UPDATE trials SET crashes=? WHERE id=?", (crashes, row["id"]))
@@ -352,7 +353,7 @@ class Store:
         )
         with reading(f"store {str(self.path)!r}", "a store that bench wrote and nothing changed"):
             found: Sequence[sqlite3.Row] = self._base.execute(query, {"study": study}).fetchall()
-            return [Row(_spec(row), _result(row) if row["state"] == "done" else None, row["lost"]) for row in found]
+            return [Row(spec_of(row), result_of(row) if row["state"] == "done" else None, row["lost"]) for row in found]
 
 
 def _lose(base: sqlite3.Connection, row: sqlite3.Row, why: str) -> None:
@@ -375,36 +376,6 @@ def _correct(base: sqlite3.Connection, trial: int, owner: Owner, spent: TrialRow
         "(SELECT MAX(rowid) FROM discarded WHERE trial=? AND owner=?)",
         (spent.calls, spent.tokens, spent.usd, spent.reason, trial, str(owner)),
     )
-
-
-class Claim:
-    """A trial that this process may run.
-
-    Attributes:
-        left: What the caps of the study leave for this trial; None per cap that is not set.
-    """
-
-    def __init__(self, trial: int, spec: TrialSpec, left: Caps) -> None:
-        self.trial, self.spec, self.left = trial, spec, left
-
-
-def _costs(taken: sqlite3.Row) -> Costs:
-    """The dearest of each unit; unknown where nothing was taken yet."""
-    return (taken[1], taken[2], taken[3]) if taken[0] else (None, None, None)
-
-
-def _spec_values(spec: TrialSpec) -> tuple[Any, ...]:
-    return (spec.key, spec.task, spec.seed, spec.repeat, *spec.condition.values)
-
-
-def _spec(row: sqlite3.Row) -> TrialSpec:
-    condition = Condition(*(row[name] for name in CONDITION))
-    return TrialSpec(row["task"], row["seed"], condition, row["repeat"])
-
-
-def _result(row: sqlite3.Row) -> TrialRow:
-    values = {name: json.loads(row[name]) if name in JSON else row[name] for name in RESULT}
-    return _RESULT.validate_python(values)
 
 
 def _now() -> str:

@@ -21,7 +21,8 @@ from wonderful_team.core.interrupts import in_thread
 from wonderful_team.errors import FileNotWrittenError, WonderfulTeamError
 from wonderful_team.evals.leases import RENEW_EVERY_S, Owner
 from wonderful_team.evals.spending import CapReached
-from wonderful_team.evals.store import CUT, Claim, Store
+from wonderful_team.evals.store import CUT, Store
+from wonderful_team.evals.stored_rows import Claim
 from wonderful_team.evals.trials import RunSettings, TrialRow, TrialRunner, TrialSpec
 from wonderful_team.redaction import redacted_streams
 

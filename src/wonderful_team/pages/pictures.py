@@ -10,7 +10,7 @@ from typing import Any
 
 from markupsafe import Markup, escape
 
-from wonderful_team.core.text import PLACEHOLDER
+from wonderful_team.core.text import PLACEHOLDER, recorded_names
 from wonderful_team.images import OWN_FORMATS, open_picture
 
 MOST_BYTES = 3_600_000
@@ -113,10 +113,10 @@ def text_in_svg(x: float, y: float, text: str, css: str, size: float) -> Markup:
 def pictured(text: str | Markup, record: dict[str, Any], album: Album) -> Markup:
     """A text with the instruction's pictures in the place of their names, small enough for a line."""
     said = record["planner"]["instruction"]
-    slots = said["slots"] if said is not None else {}
+    slots, names = said["slots"] if said is not None else {}, recorded_names(said)
 
     def shown(name: str) -> str | None:
         slot = slots.get(name)
-        return None if slot is None else album.image(next(iter(slot["views"].values())), f"picture {name}", "inline")
+        return None if slot is None else album.image(next(iter(slot["views"].values())), names[name], "inline")
 
     return Markup(PLACEHOLDER.sub(lambda found: shown(found[1]) or found[0], str(escape(text))))  # noqa: S704  escaped

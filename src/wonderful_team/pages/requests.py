@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
 from markupsafe import Markup
 
+from wonderful_team.core.text import recorded_names, spoken
 from wonderful_team.pages.pictures import Album
 
 
@@ -27,6 +29,7 @@ class Asked:
         number: From 1, in order of sending.
         sent_s, answered_s: Since the start of the run; answered_s None when no answer came.
         pictures: Hashes of the pictures, as drawn.
+        exact: The words to the letter, where the page shows the instruction's pictures in the place of their names.
     """
 
     number: int
@@ -35,6 +38,7 @@ class Asked:
     pictures: tuple[str, ...]
     sent_s: float
     answered_s: float | None
+    exact: str = ""
 
     @property
     def anchor(self) -> str:
@@ -91,22 +95,29 @@ class Asked:
 def in_order(record: dict[str, Any], album: Album) -> tuple[Asked, ...]:
     """All requests, first sent first."""
     times = record["clock"]["requests"]
+    names = recorded_names(record["planner"]["instruction"])
 
     def sent(entry: dict[str, Any]) -> float:
         return float(times.get(entry["key"], {}).get("sent_s", 0.0))
 
     asked = []
     for number, entry in enumerate(sorted(record["planner"]["requests"], key=sent), start=1):
-        parts = tuple(_part(part, album) for part in entry["parts"])
+        parts = tuple(_part(part, album, names) for part in entry["parts"])
         drawn = tuple(part["drawn"] for part in entry["parts"] if "drawn" in part)
         answered = times.get(entry["key"], {}).get("answered_s")
-        asked.append(Asked(number, entry, parts, drawn, sent(entry), answered))
+        words = "\n\n".join(_sent_words(part) for part in entry["parts"])
+        exact = words if spoken(words, names) != words else ""
+        asked.append(Asked(number, entry, parts, drawn, sent(entry), answered, exact))
     return tuple(asked)
 
 
-def _part(part: dict[str, Any], album: Album) -> Part:
+def _sent_words(part: dict[str, Any]) -> str:
+    return str(part["words"]) if "words" in part else f"[picture] {part['picture']}"
+
+
+def _part(part: dict[str, Any], album: Album, names: Mapping[str, str]) -> Part:
     if "words" in part:
         return Part(words=part["words"])
     width, height = part["size_px"]
-    caption = f"{part['picture']}, {width} × {height} px as sent"
+    caption = f"{spoken(part['picture'], names)}, {width} × {height} px as sent"
     return Part(picture=album.image(part["drawn"], caption), caption=caption)

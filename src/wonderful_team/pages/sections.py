@@ -8,7 +8,7 @@ from typing import Any
 
 from markupsafe import Markup, escape
 
-from wonderful_team.core.text import counted, ending_words, picture_names, spoken
+from wonderful_team.core.text import counted, ending_words, recorded_names, spoken
 from wonderful_team.pages import cost
 from wonderful_team.pages.look_up import grounded_plan, last_plan, main_key, scene_of
 from wonderful_team.pages.pictures import Album
@@ -67,7 +67,7 @@ def title(record: dict[str, Any]) -> str:
 
 def _text(record: dict[str, Any]) -> str:
     said = record["planner"]["instruction"]
-    return spoken(said["text"], picture_names(said["text"], said["slots"])) if said else "a run without an instruction"
+    return spoken(said["text"], recorded_names(said)) if said else "a run without an instruction"
 
 
 def _outcome(record: dict[str, Any]) -> dict[str, Any]:
@@ -154,14 +154,15 @@ def instruction(record: dict[str, Any], album: Album) -> Markup:
     if said is None:
         return Markup("")
     pieces: list[Markup] = []
+    names = recorded_names(said)
     for piece in re.split(r"(\{\w+\})", said["text"]):
         slot = said["slots"].get(piece[1:-1]) if piece.startswith("{") else None
         if slot is None:
             pieces.append(escape(piece))
             continue
-        name = piece[1:-1]
+        name = names[piece[1:-1]]
         key = next(iter(slot["views"].values()))
-        picture = album.image(key, f"instruction picture {name}", "slot")
+        picture = album.image(key, f"{name} of the instruction", "slot")
         pieces.append(Markup('<span class="slot-box">{}<span class="slot-name">{}</span></span>').format(picture, name))
     return Markup("").join(pieces)
 

@@ -7,7 +7,7 @@ from typing import Any
 
 from markupsafe import Markup
 
-from wonderful_team.core.text import counted
+from wonderful_team.core.text import counted, recorded_names
 from wonderful_team.pages.figures import (
     arrow_layer,
     box_layer,
@@ -163,12 +163,15 @@ def _box_words(box: dict[str, float] | None) -> str:
 def _examples(target: dict[str, Any], record: dict[str, Any], album: Album) -> list[dict[str, Any]]:
     """The instruction's pictures that show what the target looks like."""
     said = record["planner"]["instruction"]
+    names = recorded_names(said)
     found = []
     for name in target["like"]:
         slot = said["slots"].get(name) if said is not None else None
         if slot is not None:
-            picture = album.image(next(iter(slot["views"].values())), f"instruction picture {name}", "wide example")
-            found.append({"what": "looks like", "text": name, "provenance": "", "tone": "", "drawing": picture})
+            picture = album.image(
+                next(iter(slot["views"].values())), f"{names[name]} of the instruction", "wide example"
+            )
+            found.append({"what": "looks like", "text": names[name], "provenance": "", "tone": "", "drawing": picture})
     return found
 
 

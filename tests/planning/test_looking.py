@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from wonderful_team.core.actions import At, PickPlaceStep, PushStep
 from wonderful_team.core.protocols import Act
-from wonderful_team.core.values import Instruction, Plan, Subgoal
+from wonderful_team.core.values import Instruction, Plan, Subgoal, Target
 from wonderful_team.offline import OfflineModel
 from wonderful_team.planning import TeamPolicy
 from wonderful_team.planning.looking import done_lines, first_part, is_uncertain
@@ -25,7 +25,9 @@ def test_only_plans_of_pushes_are_cut() -> None:
     assert first.steps == PUSHES[:1]
     assert first.id != PLAN.id
     (line,) = done_lines(first)
-    assert "push the block into the frame" in line
+    assert line == "push from T1 to T2, for 'push the block into the frame'"
+    named = replace(first, targets=(Target("T1", "object", "red block"), Target("T2", "area", "open side")))
+    assert done_lines(named) == ("push from the red block to the open side, for 'push the block into the frame'",)
 
 
 class Watched(TeamPolicy):

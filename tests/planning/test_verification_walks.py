@@ -155,5 +155,10 @@ def test_the_strip_of_a_push_and_the_room_beside_it_are_said_in_words() -> None:
     assert "the strip crosses the box of T4" in line
     assert "T5" not in line
     assert "a guess, no picture shows it" in line
+    spot = replace(grounded["T4"], target=Target("T4", "area", "spot"))
+    assert "T4" not in numbers_in_words([planned], {**grounded, "T4": spot}, view(), LIMITS)[0]
+    again = replace(planned, sources=(source("push_start", "T3", (20, 100)), planned.sources[1]))
+    assert "T3" in numbers_in_words([planned, planned], grounded, view(), LIMITS)[1]
+    assert "T1" not in numbers_in_words([planned, again], grounded, view(), LIMITS)[1]
     (unknown,) = numbers_in_words([planned], grounded, view(), replace(LIMITS, blade_m=None))
     assert "how wide the tool is, is not known" in unknown

@@ -47,7 +47,8 @@ Point at the target in the picture that is named for the answer.
 - Wanted a place: give points at which the middle of something can come to lie, in the middle of the container, surface or
   free space that is meant. See it as it will be once the earlier subgoals are done: what leaves before does not count,
   so do not move into a corner to avoid it. Stay clear of what remains, of the edges, and of regions that nothing may
-  enter.
+  enter. A place that the picture of a scene defines has the same position there, if both pictures are taken from the
+  same point of view; else find it by what stands round it.
 - Points that are labelled on the picture as rejected were wrong: choose elsewhere, and not on the thing that was
   rejected there. What was said of them tells why.
 - found is false, without points, when you cannot see the target or no such space exists. Do not guess.
@@ -82,6 +83,8 @@ Find every target in the picture that is named for the answer: for each one a bo
   into a corner to avoid it. Never in a region that nothing may enter.
 - push_start: where the front of the tool comes down, beside the thing, on the side away from where it should go.
   push_end: where the front of the tool stops; the thing then lies before it.
+- A place that the picture of a scene defines: find it by what stands round it in both pictures; where both are taken from
+  the same point of view, its position is the same.
 - Two targets are the same spot only if the plan means the same thing.
 - found is false, with a null box and no points, when a target is not in the picture. Do not guess.
 - unsure: what makes you doubt that this is the right thing or the right outline, such as another one that fits the words

@@ -37,7 +37,7 @@ KINDS = """
 - collision: carried out as written, something would hit, push over or bury something that it must not, or enter a region
   that nothing may enter. Several things that go into one container may lie on each other.
 - physical_constraint: it cannot be done like that: closed, covered, too large for the place, too narrow for the tool,
-  out of reach, or not among the listed actions.
+  out of reach, or beyond what the robot can do.
 - missing_prerequisite: something must be true first that neither the picture nor an earlier subgoal provides. A place
   that is taken until a later subgoal clears it is such a case.
 - missing_subgoal: the instruction asks for something that no subgoal brings about.

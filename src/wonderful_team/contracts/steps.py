@@ -74,7 +74,7 @@ def _hint_of(item: dataclasses.Field[Any], hint: Any) -> Any:
     if not is_later(item) or item.default is not None:
         return hint
     solid: tuple[Any, ...] = tuple(kind for kind in get_args(hint) if kind is not type(None))
-    hidden: Any = Annotated[None, SkipJsonSchema()]
+    hidden: Any = Annotated[None, cast(Any, SkipJsonSchema)()]
     return reduce(or_, (*solid, hidden))
 
 

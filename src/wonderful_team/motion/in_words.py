@@ -21,15 +21,24 @@ def numbers_in_words(
 ) -> tuple[str, ...]:
     """One line for each step that goes somewhere; lengths in cm, heights over the table."""
     lines = []
+    standing = {name: item for name, item in grounded.items() if item.target.kind == "object"}
     for number, planned in enumerate(actions, start=1):
-        said = "; ".join(_told(planned, grounded, Deprojector(view), limits))
+        said = "; ".join(_told(planned, standing, Deprojector(view), limits))
         if said:
             lines.append(f"step {number}: {said}")
+        # What was moved stands no longer where the picture shows it.
+        standing = {name: item for name, item in standing.items() if name != _moved(planned)}
     return tuple(lines)
 
 
+def _moved(planned: PlannedAction) -> str | None:
+    """The target that an action moves, if it is one that carries or pushes."""
+    moves = isinstance(planned.action, PickPlace | Push) and planned.sources
+    return planned.sources[0].target if moves else None
+
+
 def _told(
-    planned: PlannedAction, grounded: Mapping[str, GroundedTarget], lift: Deprojector, limits: Limits
+    planned: PlannedAction, standing: Mapping[str, GroundedTarget], lift: Deprojector, limits: Limits
 ) -> Iterator[str]:
     action = planned.action
     if action is None:
@@ -38,7 +47,7 @@ def _told(
     elif isinstance(action, PickPlace):
         yield from _carried(action, planned, lift, limits)
     elif isinstance(action, Push):
-        yield from _pushed(action, planned, grounded, lift, limits)
+        yield from _pushed(action, planned, standing, lift, limits)
     elif isinstance(action, MoveTo):
         yield f"the tool goes to {_cm(float(action.pose.position_m[2]))} over the table"
     elif isinstance(action, Trajectory):
@@ -66,14 +75,14 @@ def _carried(action: PickPlace, planned: PlannedAction, lift: Deprojector, limit
 
 
 def _pushed(
-    action: Push, planned: PlannedAction, grounded: Mapping[str, GroundedTarget], lift: Deprojector, limits: Limits
+    action: Push, planned: PlannedAction, standing: Mapping[str, GroundedTarget], lift: Deprojector, limits: Limits
 ) -> Iterator[str]:
     start, end = action.start_m[:2], action.end_m[:2]
     z_m, blade_m = float(action.start_m[2]), limits.blade_m
     yield f"{_cm(float(np.linalg.norm(end - start)))} along the surface at {_cm(z_m)}"
     boxes = {
         name: lift.camera.on_plane(np.array(target.box.corners), z_m)[:, :2]
-        for name, target in grounded.items()
+        for name, target in standing.items()
         if target.box is not None and lift.camera is not None
     }
     thing = planned.sources[0].target

@@ -6,6 +6,7 @@ A thing that was picked lies where it was put, so plans of picking and placing r
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 
 from wonderful_team.agents import step_words
@@ -26,4 +27,13 @@ def first_part(plan: Plan) -> Plan:
 def done_lines(plan: Plan) -> tuple[str, ...]:
     """What the Supervisor is told of what ran before a new picture, one line per step."""
     subgoals = {subgoal.id: subgoal.text for subgoal in plan.subgoals}
-    return tuple(f"{step_words(step)} (for '{subgoals.get(step.subgoal, step.subgoal)}')" for step in plan.steps)
+    return tuple(
+        f"{_named(step_words(step).partition('] ')[2], plan)}, for '{subgoals.get(step.subgoal, step.subgoal)}'"
+        for step in plan.steps
+    )
+
+
+def _named(text: str, plan: Plan) -> str:
+    """A step with its targets in words: a new plan has ids of its own."""
+    words = {target.id: f"the {target.words}" for target in plan.targets}
+    return re.sub(r"\b\w+\b", lambda match: words.get(match.group(), match.group()), text)

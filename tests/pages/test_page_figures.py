@@ -51,6 +51,25 @@ def test_the_cross_of_left_of_a_thing_lies_beside_the_thing() -> None:
     assert middles == [(80.0, 60.0)]
 
 
+def test_a_turn_is_an_arc_with_its_degrees() -> None:
+    step = {"type": "PickPlaceStep", "rotate_deg": -90}
+    ends = [{"target": "T1", "point_px": [20, 20]}, {"target": "T1", "point_px": [100, 60]}]
+    content = {
+        "subgoals": [1],
+        "scene_hash": "s",
+        "grounded": {"T1": grounded("T1", (10, 10, 30, 30), "pick")},
+        "actions": [{"step": step, "sources": ends}],
+    }
+    record = {"planner": {"plans": [{"id": "p", "plan": content}], "observations": [SCENE], "outlines": []}}
+    overview = overviews(record, Album())[0]  # type: ignore[arg-type]
+    assert overview["turns"] == 1
+    assert "90° anticlockwise" in str(overview["drawing"])
+    content["actions"] = [{"step": {**step, "rotate_deg": 0}, "sources": ends}]
+    still = overviews(record, Album())[0]  # type: ignore[arg-type]
+    assert still["turns"] == 0
+    assert "°" not in str(still["drawing"])
+
+
 def test_the_number_of_a_short_arrow_covers_neither_its_line_nor_its_head() -> None:
     for end in ((60.0, 50.0), (50.0, 41.0), (44.0, 57.0)):
         start, size = (50.0, 50.0), 6.0

@@ -8,6 +8,7 @@ from typing import Any
 
 from markupsafe import Markup
 
+from wonderful_team.images.turn_marks import arc_points
 from wonderful_team.pages.pictures import Album, text_in_svg
 
 Corner = Sequence[float]
@@ -106,6 +107,16 @@ def arrow_layer(points: Sequence[Corner], number: int, size: float) -> Markup:
     return Markup(
         '<path d="{0}" class="arrow-rim"/><path d="{0}" class="arrow"/><path d="{1}" class="arrow-head"/>{2}'
     ).format(path, head, point_layer(beside, 0.75 * size, "move", str(number)))
+
+
+def turn_layer(at: Corner, clockwise_deg: float, size: float) -> Markup:
+    """A turn where something is put down: an arc through its whole angle, with a head and its degrees."""
+    arc = arc_points((at[0], at[1]), 2.2 * size, clockwise_deg)
+    path = "M" + "L".join(f"{x:.2f} {y:.2f}" for x, y in arc)
+    text = f"{abs(clockwise_deg):.0f}° {'clockwise' if clockwise_deg >= 0 else 'anticlockwise'}"
+    return Markup(
+        '<path d="{0}" class="arrow-rim"/><path d="{0}" class="arrow"/><path d="{1}" class="arrow-head"/>{2}'
+    ).format(path, _head(arc[-2], arc[-1], 0.9 * size), tag_layer(at[0] + 2.6 * size, at[1], text, size, "turned"))
 
 
 def _outward(start: Corner, end: Corner) -> Corner:

@@ -18,6 +18,7 @@ from wonderful_team.pages.figures import (
     point_layer,
     shade,
     tag_layer,
+    turn_layer,
     view_drawing,
     window_round,
 )
@@ -51,6 +52,14 @@ def _overview(
     layers += [
         box_layer(item["box"], shade(position)) for position, item in enumerate(grounded) if item["box"] is not None
     ]
+    turns = [
+        planned for planned in (current["actions"] if current else []) if planned.get("step", {}).get("rotate_deg")
+    ]
+    layers += [
+        turn_layer(planned["sources"][-1]["point_px"], planned["step"]["rotate_deg"], size)
+        for planned in turns
+        if planned["sources"]
+    ]
     layers += [
         arrow_layer([source["point_px"] for source in sources], number, size)
         for number, sources in enumerate(moves, start=1)
@@ -80,6 +89,7 @@ def _overview(
         "drawing": view_drawing(album, main_key(scene), alt, layers, "overview"),
         "legend": legend,
         "moves": len(moves),
+        "turns": len(turns),
         "kinds": sorted({item["kind"] for item in record["planner"]["outlines"]}),
     }
 

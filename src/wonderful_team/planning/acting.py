@@ -12,7 +12,7 @@ from wonderful_team.core.pictures import BoxMark, PathMark, Picture, Point, Poin
 from wonderful_team.core.values import Critique, GroundedTarget, PlannedAction, View
 from wonderful_team.motion import ground_actions
 from wonderful_team.planning.notes import steps_note
-from wonderful_team.planning.plan_loop import PlanState, remember_doubt, resolve
+from wonderful_team.planning.plan_loop import PlanState, remember_doubt, resolve, told
 from wonderful_team.planning.scene import SceneShown
 from wonderful_team.planning.session import AgentSession
 from wonderful_team.planning.spending import inferred_turns, steps_said
@@ -82,7 +82,10 @@ async def check_steps(
         answer = await session.ask_whole(question, stage="act")
         review: PlanReview = answer.value
         if review.doubt is None:
-            return (state if state.reviewed else replace(state, verified=True)), steps, actions
+            if not state.reviewed:
+                state = replace(state, verified=True)
+                session.stage("checked", f"plan and steps together: {told(state)}")
+            return state, steps, actions
         if len(state.questions) >= session.config.bounds.questions:
             what = "steps" if state.reviewed else "plan and its steps"
             session.warn(f"Verification still doubts the {what}: {review.doubt.question}")

@@ -68,7 +68,7 @@ def test_events_arrive_while_the_team_works(desk: wt.Observation) -> None:
 
     seen = Seen()
     wt.Team(subscribers=[seen]).plan(desk, WANTED)
-    assert seen.stages == ["draft", "checked", "grounded", "actions"]
+    assert seen.stages == ["draft", "grounded", "checked", "actions", "not asked"]
 
 
 def test_grounding_alone(desk: wt.Observation) -> None:

@@ -33,7 +33,7 @@ def test_cache_only_without_an_answer_ends_with_exit_code_3(desk, tmp_path, caps
     again = capsys.readouterr()
     assert again.out.splitlines()[0] == first
     assert "0 calls, 0 pictures" in again.err
-    assert "10 answers from the cache" in again.err
+    assert "4 answers from the cache" in again.err
 
 
 def test_cache_shows_and_clears_what_is_kept(desk, tmp_path, capsys, monkeypatch):
@@ -45,9 +45,9 @@ def test_cache_shows_and_clears_what_is_kept(desk, tmp_path, capsys, monkeypatch
     capsys.readouterr()
     assert run(["cache", "--json"]) == 0
     result = json.loads(capsys.readouterr().out)["result"]
-    assert (result["by_model"], result["answers"]) == ({"offline": 10}, 10)
+    assert (result["by_model"], result["answers"]) == ({"offline": 4}, 4)
     assert run(["cache", "clear"]) == 0
-    assert "10 answers dropped" in capsys.readouterr().out
+    assert "4 answers dropped" in capsys.readouterr().out
     file.write_bytes(b"notes " * 1000)
     assert run(["cache", "clear"]) == 2
     assert file.read_bytes() == b"notes " * 1000

@@ -164,7 +164,7 @@ class Chatting(OfflineModel):
 
     def answer(self, request):
         self.sent.append((request, request.messages(self.pictures)))
-        if request.contract == "ReviewPlan" and request.attempt == 0:
+        if request.contract == "ReviewSteps" and request.attempt == 0:
             return '{"reasoning": 3}'
         return super().answer(request)
 

@@ -19,7 +19,7 @@ from wonderful_team.planning.functions import write_functions
 from wonderful_team.planning.grounding import ENDS, ground_again
 from wonderful_team.planning.jobs import Job
 from wonderful_team.planning.notes import steps_note
-from wonderful_team.planning.plan_loop import PlanState, remember_doubt, resolve, settled_lines
+from wonderful_team.planning.plan_loop import PlanState, remember_doubt, resolve, settled_lines, told
 from wonderful_team.planning.scene import SceneShown
 from wonderful_team.planning.session import AgentSession
 from wonderful_team.planning.spending import inferred_turns, steps_said
@@ -110,7 +110,10 @@ async def check_steps(
         answer = await session.ask_whole(question, stage="act")
         review: PlanReview | WalkedReview = answer.value
         if review.doubt is None:
-            return Acted(state if state.reviewed else replace(state, verified=True), steps, grounded, actions)
+            if not state.reviewed:
+                state = replace(state, verified=True)
+                session.stage("checked", f"plan and steps together: {told(state)}")
+            return Acted(state, steps, grounded, actions)
         about, kind, said = review.doubt.about, review.doubt.kind, review.doubt.question
         of_target = kind in GROUNDING_KINDS
         if len(state.questions) >= session.config.bounds.questions or (of_target and looks == 0):
@@ -171,7 +174,7 @@ def _review_question(
     shown: Picture,
     grounded: Mapping[str, GroundedTarget],
     actions: Sequence[PlannedAction],
-    told: Sequence[str],
+    turns_told: Sequence[str],
 ) -> ReviewSteps:
     task = scene.task
     if session.config.sparing:
@@ -183,7 +186,7 @@ def _review_question(
         state.targets,
         steps,
         shown,
-        checked=(*told, *settled_lines(state.questions)),
+        checked=(*turns_told, *settled_lines(state.questions)),
         numbers=numbers_in_words(actions, grounded, scene.view, scene.limits),
         plan_checked=state.reviewed,
         step_kinds=() if state.reviewed else scene.vocabulary.step_kinds,

@@ -151,7 +151,7 @@ async def verify(session: AgentSession, scene: SceneShown, state: PlanState) -> 
         overruled = not answered.changed
         passed = set() if answered.changed else passed | ({under_check} if under_check else set())
     state = replace(state, reviewed=True)
-    session.stage("checked", _told(state))
+    session.stage("checked", told(state))
     return state
 
 
@@ -226,7 +226,8 @@ def _count(state: PlanState) -> str:
     return text if state.subgoals else "nothing to do: the instruction is already fulfilled"
 
 
-def _told(state: PlanState) -> str:
+def told(state: PlanState) -> str:
+    """How Verification's check of a plan went, in one line."""
     if not state.questions:
         return "approved at once" if state.verified else "not approved"
     last = state.questions[-1]

@@ -23,7 +23,7 @@ TOOL_HALF = 0.8
 BEHIND = 1.15
 """How far behind the thing's middle the tool comes down, its own thickness included."""
 DRIFT = 0.06
-"""How far a thing may wander sideways under a push."""
+"""How far a thing may wander sideways under a push; this and ASTRAY from 1,300 pushes of blocks on the tabletop."""
 ASTRAY = 0.3
 """How much farther from where it was pushed to a thing may lie for each radian that it stood off square before."""
 READ_RAD = np.radians(3)

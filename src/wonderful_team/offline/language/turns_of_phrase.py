@@ -29,6 +29,9 @@ _OFF_PLACE = (
 _SPOKEN = (
     *_SHORT,
     (r"\b(?:i|we) (?:think|guess|reckon|suppose|believe|figure)\b(?: that\b)?", " "),
+    (r"\b(?:i|we) (?:want|need|would (?:like|ask)) you to\b(?! have\b)|\b(?:(?:your|the) )?(?:task|job|goal|aim) is to\b|\bwhat (?:i|we|you) (?:want|need|should do|have to do) is(?: to)?\b", " "),
+    (r"\b(?:it |that |i )?would be (?:nice|great|good|happy|glad) if you(?: (?:could|would|can))?\b|\b(?:is it|would it be) possible to\b|\bhelp me(?: to)?\b|\b(?:do me a favou?r|be a dear|be so kind) and\b", " "),
+    (r"\b(?:(?:i|we|it) )?(?:do(?:es)? not (?:care|mind|matter)|no matter) which(?: one)?\b|\bany(?: one)? will do\b", " "),
     (r"\b(?:(?:i|we) )?would not mind (?:having|seeing|getting)\b", "i want"),
     (r"\b(?:would|do) you mind\b|\bwhy (?:do(?:es)? not you|do not we|not)\b|\bwhy do not you\b", " "),
     (r"\bwhy (?:is|are) not (?P<what>[^?.;{}]+)\?", r"\g<what>."),

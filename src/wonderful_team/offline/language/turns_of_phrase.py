@@ -48,6 +48,7 @@ _SPOKEN = (
 """How things are said in passing, put as they are written."""
 _TURNS = (
     (r"\b(left|right)[ -]hand\b(?= side)", r"\1"),
+    (r"\b(?:slide|scoot) (?P<what>[^.,;]+?) over\b", r"move \g<what>"),
     (r"\bover\b(?=\s*(?:[,.;!?]|$|(?:to|on|onto|and|so|by|near|next|beside|towards) ))", ""),
     (r"(?:\b(?:on|at|to|towards|in) )(?P<what>(?:the |\{)[^,.;:'\u2019]+?)['\u2019]s (?P<side>left|right)(?: (?:hand )?side)?\b", r"to the \g<side> of \g<what>"),
     (rf"^\s*(?:out of|from|of|among|amongst) (?:all )?(?:of )?(?P<what>(?:the |these |those )?[a-z ]+?)\s*,\s*(?P<rest>.*?)\bthe (?:one (?:that is )?)?{_WHICH}(?: ones?)?\b", r"\g<rest>the \g<which> of the \g<what>"),

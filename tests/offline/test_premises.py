@@ -39,15 +39,22 @@ def read_premises(name: str) -> list[tuple[str, str]]:
 def shown(scene: str) -> ShownTask:
     """A scene of the tables, without an instruction."""
     kind, *rest = scene.split()
-    if kind == "tabletop":
+    if kind in ("tabletop", "photo"):
         world = make_world(rest[0], seed=int(rest[1]))
         try:
+            if kind == "photo":
+                return _photo(np.array(next(iter(world.observe().views.values())).rgb))
             return replace(
                 SceneShown(world.observe(), world.instruction, world.vocabulary, world.limits).task, slots=()
             )
         finally:
             world.close()
     rgb = {"desk": lambda: cv2.imread(str(DESK))[..., ::-1].copy(), "blank": _blank, "noise": _noise}[kind]()
+    return _photo(rgb)
+
+
+def _photo(rgb: Array) -> ShownTask:
+    """A picture without depth."""
     return ShownTask("", (whole(View("top", "top", 0.0, rgb), "top view"),), ())
 
 

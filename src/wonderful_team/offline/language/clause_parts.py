@@ -145,6 +145,11 @@ def _noun_phrase(clause: Sequence[Token], at: int, apart: frozenset[str]) -> tup
         two = [token.kind for token in clause[end - 1 : end + 1]] == ["SLOT", "SLOT"] and end > at
         if (
             kind in apart
+            or (
+                kind in ("IT", "THEY")
+                and end > at
+                and clause[end - 1].kind in ("NOUN", "SHAPE", "LETTER", "SLOT", "ONE")
+            )
             or (two and clause[at - 1].kind in PLACES)
             or not (kind in _IN_NOUN or looks or inside or joins or (told and _is_relative(clause, end)))
         ):

@@ -159,15 +159,10 @@ def _with_superlative(text: str, word: str, meaning: str) -> str:
 
 
 def _of_several(text: str, *superlatives: str) -> str:
-    """The words "of the two {x}, the tallest one", "the {x} that is tallest", "which {x} is tallest?" as "the tallest {x}"."""
+    """The words "of the two {x}, the tallest one" and "there are two {x}; the one that is tallest" as "the tallest {x}"."""
     best = rf"(?P<best>{'|'.join(superlatives)})"
     thing = r"(?P<thing>\{[^{}]+\})"
     one = rf"(?:the\s+)?(?:{best}\s+(?:one|object|thing)\b(?:\s+of (?:them|these|the two))?|one\s+(?:that|which)\s+is\s+(?:the\s+)?(?P<best2>{'|'.join(superlatives)}))"
-    text = re.sub(
-        rf"\b{best}\s+(?:one\s+)?(?:of|among)\s+(?:the\s+)?(?:two|several|both)\s+(?:of\s+)?(?:the\s+)?{thing}",
-        r"\g<best> \g<thing>",
-        text,
-    )
     found = re.search(
         rf"(?:there\s+(?:are|is)\s+(?:two|several|more than one)\s+(?:of\s+)?(?:the\s+)?{thing}\s*[.:;,]|\bof\s+(?:the\s+)?(?:two|both|several)\s+(?:of\s+)?(?:the\s+)?(?P<thing2>\{{[^{{}}]+\}})\s*,)",
         text,
@@ -182,19 +177,7 @@ def _of_several(text: str, *superlatives: str) -> str:
             flags=re.IGNORECASE,
         )
         text = text[: found.start()] + " " + after
-    text = re.sub(
-        rf"\bwhich\s+(?:of the two\s+)?{thing}\s+is\s+(?:the\s+)?{best}\s*[?.](?P<rest>.*?)\b(?:that one|it|this one|that)\b",
-        r"\g<rest> the \g<best> \g<thing>",
-        text,
-        flags=re.IGNORECASE,
-    )
-    text = re.sub(
-        rf"\b(?:whichever|whatever)\s+{thing}\s+is\s+(?:the\s+)?{best}",
-        r"the \g<best> \g<thing>",
-        text,
-        flags=re.IGNORECASE,
-    )
-    return re.sub(rf"{thing}\s+(?:that|which)\s+is\s+(?:the\s+)?{best}", r"\g<best> \g<thing>", text, flags=re.IGNORECASE)  # fmt: skip
+    return text
 
 
 def _lower(text: str) -> str:

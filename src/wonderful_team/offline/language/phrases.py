@@ -123,21 +123,15 @@ _LISTED: dict[Entry, str] = {
     belongs; should sit; should lie; must lie; should rest; to rest; to sit; to lie; to become; rest; rests; sit; sits;
     to stand""",
     ("SKIP", "skip"): """
-    i want you to; i would like you to; i d like you to; your task is to; task is to; you should; you must; i need you
-    to; we want you to; we need you to; your job is to; goal is to; your goal is to; you need to; you have to; in place;
-    on spot; where it is; where it stands; where it lies; at its place; in its place; at its current position; help me
-    to; help me; go ahead and; try to; be so kind as to; be so kind and; it is time to; as follows; what i want is to;
-    aim is to; make it so that; if you can; if possible; if you please; of your choice; as it is; out of way; and let
-    go; without moving it; without lifting it; without changing its position; keeping it in place; without moving it
-    away; keeping its position; together; what about; how about; d be happy if you; d be glad if you; would be happy if
-    you; would be glad if you; it would be nice if you; it would be nice to have; it would be good if you; would be nice
-    if; shall we; would you be so kind as to; would be great if you; it would be great if you; i d appreciate it if you;
-    i would appreciate it if you; i d ask you to; time to; what i need is; what i want is; what you should do is; what
-    you have to do is; is it possible to; would it be possible to; do me favour and; do me favor and; be dear and; in
-    end; at end; as first step; as last step; to start with; to begin with; as first thing; as last thing; task; for me;
-    on its own; for now; right now; at once; if you would; if you like; one after other; one after another; one by one;
-    in any order; following; as it stands; over there; i do not care which; do not care which; does not matter which; no matter which;
-    it does not matter which; any will do; any one will do; do not mind which; i do not mind which""",
+    you should; you must; you need to; you have to; in place; on spot; where it is; where it stands; where it lies;
+    at its place; in its place; at its current position; go ahead and; try to; be so kind as to; it is time to;
+    as follows; make it so that; if you can; if possible; if you please; of your choice; as it is; out of way;
+    and let go; without moving it; without lifting it; without changing its position; keeping it in place;
+    without moving it away; keeping its position; together; what about; how about; it would be nice to have;
+    would be nice if; shall we; would you be so kind as to; i d appreciate it if you; i would appreciate it if you;
+    time to; in end; at end; as first step; as last step; to start with; to begin with; as first thing; as last thing;
+    task; for me; on its own; for now; right now; at once; if you would; if you like; one after other;
+    one after another; one by one; in any order; following; as it stands; over there""",
     ("BY", "by"): "by angle of; through angle of; by total of",
     ("ROTATE", "rotate"): "change orientation of; re orient; turn around; turn round; rotate around; spin around",
     ("NOUN", ("area", "", False)): "sheet of paper; piece of paper; patch of paper",

@@ -192,18 +192,12 @@ def _with_scenes_together(units: list[Unit], scenes: set[str]) -> list[Unit]:
         before = out[-1] if out else None
         names = set(SLOT.findall(before.text)) if before is not None else set()
         words = _words(unit.text)
-        if (
-            before is not None
-            and names
-            and names <= scenes
-            and not SLOT.search(unit.text)
-            and _words(before.text) <= _ARRANGING
-        ):
-            points = bool(words & _ARRANGE_CUES) and bool(words & _LIKE_SHOWN)
-            if words <= _ARRANGING and points:
-                out[-1] = Unit(_joined([before, unit]), before.then, before.mark)
-                continue
-        out.append(unit)
+        points = words <= _ARRANGING and words & _ARRANGE_CUES and words & _LIKE_SHOWN
+        alone = before is not None and names and names <= scenes and _words(before.text) <= _ARRANGING
+        if before is not None and alone and points and not SLOT.search(unit.text):
+            out[-1] = Unit(_joined([before, unit]), before.then, before.mark)
+        else:
+            out.append(unit)
     return out
 
 

@@ -68,12 +68,8 @@ def _with_fruits(pieces: list[str]) -> list[str]:
 
 
 def _is_adjective(piece: str) -> bool:
-    return piece in ("the", "a", "this", "that", "of") or WORDS.get(piece, ("",))[0] in (
-        *_BEFORE_HEAD,
-        "EACH",
-        "ONE",
-        "ANY",
-    )
+    kind = WORDS.get(piece, ("",))[0]
+    return piece in ("the", "a", "this", "that", "of") or kind in (*_BEFORE_HEAD, "EACH", "ONE", "ANY")
 
 
 def _with_choices(tokens: list[Token]) -> list[Token]:
@@ -84,10 +80,10 @@ def _with_choices(tokens: list[Token]) -> list[Token]:
     for at, token in enumerate(tokens):
         if token.kind == "ANY":
             end = next((k for k in range(at + 1, len(tokens)) if tokens[k].kind in _ENDS_CHOICE), len(tokens))
-            rest = tokens[end:]
-            many = end < len(tokens) and isinstance(tokens[end].value, tuple) and bool(tokens[end].value[-1])
-            told = [item.kind for item in rest[1:]]
-            limited = bool({*told[:1], *told[1:2]} & _LIMITS)
+            value = tokens[end].value if end < len(tokens) else ()
+            many = isinstance(value, tuple) and bool(value and value[-1])
+            told = [item.kind for item in tokens[end + 1 :]]
+            limited = bool({*told[:2]} & _LIMITS)
             rule = not any(item.kind in _VERBS_OF_CHOICE for item in tokens[:at]) and "AUX" in told
             if tokens[at + 1 : at + 2] and tokens[at + 1].kind == "NUMBER":
                 continue

@@ -29,6 +29,9 @@ _OFF_PLACE = (
 _SPOKEN = (
     *_SHORT,
     (r"\b(?:i|we) (?:think|guess|reckon|suppose|believe|figure)\b(?: that\b)?", " "),
+    (r"\b(?:i|we) (?:want|need|would (?:like|ask)) you to\b(?! have\b)|\b(?:(?:your|the) )?(?:task|job|goal|aim) is to\b|\bwhat (?:i|we|you) (?:want|need|should do|have to do) is(?: to)?\b", " "),
+    (r"\b(?:it |that |i )?would be (?:nice|great|good|happy|glad) if you(?: (?:could|would|can))?\b|\b(?:is it|would it be) possible to\b|\bhelp me(?: to)?\b|\b(?:do me a favou?r|be a dear|be so kind) and\b", " "),
+    (r"\b(?:(?:i|we|it) )?(?:do(?:es)? not (?:care|mind|matter)|no matter) which(?: one)?\b|\bany(?: one)? will do\b", " "),
     (r"\b(?:(?:i|we) )?would not mind (?:having|seeing|getting)\b", "i want"),
     (r"\b(?:would|do) you mind\b|\bwhy (?:do(?:es)? not you|do not we|not)\b|\bwhy do not you\b", " "),
     (r"\bwhy (?:is|are) not (?P<what>[^?.;{}]+)\?", r"\g<what>."),
@@ -37,6 +40,7 @@ _SPOKEN = (
     (r"^\s*if (?:it|something|a thing|an object) (?P<what>(?:is|has|looks) [^,.;]+), (?P<rest>[^.;]*?)\b(?:it|that)\b", r"\g<rest>everything that \g<what>"),
     (r"^\s*(?:(?:you|do you) )?(?:can )?see (?P<where>(?:the |this )?\{[^{}]+\})\s*[?.:;,](?P<rest>[^.;]*?)\bfrom (?:there|it)\b", r"\g<rest>from \g<where>"),
     (r"\ba (?:bit|little|tad)\b(?=[ ,]+(?:say |about |by )*\d+ ?(?:deg|°))|\b(?:say|roughly|about|approximately)\b,?(?= \d+ ?(?:deg|°))", " "),
+    (r"\ban? (?P<what>[a-z ]+?)\b(?P<rest>[^.;]*?), any (?P=what)\b", r"any \g<what>\g<rest>"),
     (r"\b(?P<it>it|them) (?:a)?round\b", r"\g<it>"),
     (r"[.;,]?\s*(?:(?:but|and|just|please) )*\bleave (?P<what>the [a-z ]+?) out\b(?: of (?:it|this|that))?", r" except \g<what>"),
     (r",? \b(?:bar|minus) (?=the\b)", " except "),
@@ -44,6 +48,7 @@ _SPOKEN = (
 """How things are said in passing, put as they are written."""
 _TURNS = (
     (r"\b(left|right)[ -]hand\b(?= side)", r"\1"),
+    (r"\b(?:slide|scoot) (?P<what>[^.,;]+?) over\b", r"move \g<what>"),
     (r"\bover\b(?=\s*(?:[,.;!?]|$|(?:to|on|onto|and|so|by|near|next|beside|towards) ))", ""),
     (r"(?:\b(?:on|at|to|towards|in) )(?P<what>(?:the |\{)[^,.;:'\u2019]+?)['\u2019]s (?P<side>left|right)(?: (?:hand )?side)?\b", r"to the \g<side> of \g<what>"),
     (rf"^\s*(?:out of|from|of|among|amongst) (?:all )?(?:of )?(?P<what>(?:the |these |those )?[a-z ]+?)\s*,\s*(?P<rest>.*?)\bthe (?:one (?:that is )?)?{_WHICH}(?: ones?)?\b", r"\g<rest>the \g<which> of the \g<what>"),
@@ -52,7 +57,8 @@ _TURNS = (
     (r"\bput (?P<a>[^,.;]+?) where (?P<b>[^,.;]+?) (?:is|stands|lies|was)(?: now| right now| currently)?\s*,? and (?:vice[ -]versa|(?:put )?(?P=b) where (?P=a) (?:is|stands|lies|was)(?: now)?)\b", r"swap \g<a> and \g<b>"),
     (rf"^[^,.;:{{}}]*? (?:the|all|all the) (?P<what>[a-z ]+?) by {_PUTTING} (?:each|every|all)(?: one)?(?: of (?:them|these))?\b", r"put all \g<what>"),
     (r"\bthe (?P<what>[a-z]+), the (?P<look>[a-z]+(?: [a-z]+)?) one,(?! and\b| the\b)", r"the \g<look> \g<what>"),
-    (r"(?:^|(?<=[.;!?]))\s*which(?:ever)? (?P<what>[^?{}]+?) (?P<is>is|are) (?P<where>[^?]+?)[?,](?P<rest>[^.;!?]*?)\b(?:it|that one|this one|them|those)\b", r"\g<rest> the \g<what> that \g<is> \g<where>"),
+    (r"(?:^|(?<=[.;!?]))\s*which(?:ever)? (?:of the two )?(?P<what>[^?]+?) (?P<is>is|are) (?P<where>[^?.]+?)[?,.](?P<rest>[^.;!?]*?)\b(?:it|that one|this one|them|those)\b", r"\g<rest> the \g<what> that \g<is> \g<where>"),
+    (r"\b(?:whichever|whatever) (?P<what>\{[^{}]+\}|[a-z]+(?: [a-z]+)?) is (?P<best>(?:the )?[a-z]+(?:est|most))\b", r"the \g<what> that is \g<best>"),
     (rf"\b(?:after|once|when|as soon as) (?!(?:there|it|they|you|such|an?|one|this|that)\b)(?P<a>[^,;.]+?) (?:is|are|lies|sits|was|(?:has|have) (?:been|landed))(?: put| placed| set| moved)? (?P<w>{_PLACE}) (?P<b>[^,;.]+?)\s*,", r"put \g<a> \g<w> \g<b>, then "),
     (r",?\s*\bbefore (?:it )?(?:going|returning|being (?:put|brought|taken)|(?:goes|is (?:put|brought|taken))) (?=back|to (?:its|the) (?:own|original|old))", ", then goes "),
     (r"\b(?P<go>(?:go|belong)(?:es|s)?|should|must|need|are) both\b|\bboth (?=(?:go|belong|should|must|need|are|have)\b)", r"\g<go> "),

@@ -8,32 +8,20 @@ from wonderful_team.offline.description import Description
 from wonderful_team.offline.vision.things import Look, Scene, Thing
 
 FRUITS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
-    "apple": (("red", "green"), ("round",)),
-    "apricot": (("orange",), ("round",)),
-    "avocado": (("green", "olive", "brown"), ("oval",)),
-    "banana": (("yellow",), ("crescent", "long")),
-    "blackberry": (("black", "purple"), ("round",)),
-    "blueberry": (("blue", "purple", "black"), ("round",)),
-    "cherry": (("red",), ("round",)),
-    "coconut": (("brown",), ("round",)),
-    "fig": (("purple", "brown"), ("round", "oval")),
-    "grape": (("purple", "green"), ("round", "oval")),
+    "apple": (("red", "green"), ("round",)), "apricot": (("orange",), ("round",)),
+    "avocado": (("green", "olive", "brown"), ("oval",)), "banana": (("yellow",), ("crescent", "long")),
+    "blackberry": (("black", "purple"), ("round",)), "blueberry": (("blue", "purple", "black"), ("round",)),
+    "cherry": (("red",), ("round",)), "coconut": (("brown",), ("round",)),
+    "fig": (("purple", "brown"), ("round", "oval")), "grape": (("purple", "green"), ("round", "oval")),
     "grapefruit": (("orange", "pink", "yellow"), ("round",)),
-    "kiwi": (("brown", "green", "olive"), ("oval", "round")),
-    "lemon": (("yellow",), ("oval", "round")),
-    "lime": (("green",), ("oval", "round")),
-    "mandarin": (("orange",), ("round",)),
-    "mango": (("orange", "yellow", "green", "red"), ("oval",)),
-    "melon": (("green", "yellow"), ("round", "oval")),
-    "orange": (("orange",), ("round",)),
-    "peach": (("orange", "pink"), ("round",)),
-    "pear": (("green", "yellow", "olive"), ("tapered",)),
-    "plum": (("purple", "blue"), ("round", "oval")),
-    "strawberry": (("red",), ("round", "heart", "triangle", "oval")),
-    "tangerine": (("orange",), ("round",)),
-    "tomato": (("red",), ("round",)),
-    "watermelon": (("green",), ("round", "oval")),
-}
+    "kiwi": (("brown", "green", "olive"), ("oval", "round")), "lemon": (("yellow",), ("oval", "round")),
+    "lime": (("green",), ("oval", "round")), "mandarin": (("orange",), ("round",)),
+    "mango": (("orange", "yellow", "green", "red"), ("oval",)), "melon": (("green", "yellow"), ("round", "oval")),
+    "orange": (("orange",), ("round",)), "peach": (("orange", "pink"), ("round",)),
+    "pear": (("green", "yellow", "olive"), ("tapered",)), "plum": (("purple", "blue"), ("round", "oval")),
+    "strawberry": (("red",), ("round", "heart", "triangle", "oval")), "tangerine": (("orange",), ("round",)),
+    "tomato": (("red",), ("round",)), "watermelon": (("green",), ("round", "oval")),
+}  # fmt: skip
 """Everyday looks of fruit: colours and outlines."""
 
 
@@ -64,7 +52,7 @@ def named_score(thing: Thing, description: Description) -> float:
     own_form, other_form = _CONTAINERS.get(name, ((), ()))
     shapes = thing.look.shapes
     if own_form and max(shapes[form] for form in own_form) < max(shapes[form] for form in other_form) - CLEARLY:
-        return 0.4
+        return 0.3
     return 1.0
 
 
@@ -128,6 +116,8 @@ GLYPH = 1.3
 """What fits a letter so many times as well as any other shape is a letter and holds nothing."""
 BENT = 0.3
 """Fit of a crescent from which a thing is no block."""
+SLIM = 6.0
+"""A thing so many times as long as wide is a line and no block."""
 BLOCKS = 4.0
 """A round object more than so many times the smallest of its table is no block."""
 
@@ -168,6 +158,7 @@ def kind_score(thing: Thing, description: Description) -> float:
             return container_score(thing)
         case "object" | "block" | "toy":
             bent = look.shapes["crescent"] > BENT or look.shapes["oval"] >= max(look.shapes.values())
+            bent |= look.outline.aspect > SLIM
             return 0.3 if thing.flat or (bent and description.noun == "block" and not description.shape) else 1.0
         case _:
             return 0.8 if thing.flat else 1.0

@@ -176,16 +176,11 @@ def _aliases(name: str, dark: bool | None) -> tuple[tuple[str, float], ...]:
         "pink": (("purple", 0.7 if dark else 0.15), ("red", 0.4 if dark else 0.1)),
         "purple": (("pink", 0.15), ("blue", 0.12)),
         "red": (("brown", 0.5 if dark else 0.15), ("pink", 0.15)),
-        "cyan": (("blue", 0.2), ("green", 0.2)),
         "blue": (("cyan", 0.2), ("purple", 0.1)),
-        "green": (("olive", 0.2), ("cyan", 0.2)),
-        "olive": (("green", 0.2), ("yellow", 0.2), ("brown", 0.2)),
-        "brown": (("orange", 0.2), ("red", 0.2), ("olive", 0.2)),
-        "grey": (("white", 0.2), ("black", 0.2)),
-        "white": (("grey", 0.2),),
-        "black": (("grey", 0.2),),
     }
-    return ((name, 1.0), *near.get(name, ()))
+    even = {"cyan": "blue green", "green": "olive cyan", "olive": "green yellow brown", "brown": "orange red olive",
+            "grey": "white black", "white": "grey", "black": "grey"}  # fmt: skip
+    return ((name, 1.0), *near.get(name, tuple((alias, 0.2) for alias in even.get(name, "").split())))
 
 
 def _shade_fit(look: Look, name: str, dark: bool | None) -> float:

@@ -61,7 +61,7 @@ def height_checks(stage: Stage, limits: Limits, measured: bool) -> list[GateChec
             if under is None:
                 continue
             off = abs(float(point[2]) - under)
-            value = f"{point[2]:.3f} m, where the surface is at {under:.3f} m"
+            value = f"{point[2]:.3f} m, where the surface is at {round(under, 3) + 0.0:.3f} m"
             limit = f"within {AGREE_M:.3f} m"
             checks.append(GateCheck(None, f"{role} height", off <= AGREE_M, value, limit, f"{AGREE_M - off:+.3f} m"))
     return checks

@@ -6,6 +6,8 @@ import math
 import re
 from types import SimpleNamespace
 
+import pytest
+
 from wonderful_team.pages.cost import waterfall
 from wonderful_team.pages.figures import arrow_layer
 from wonderful_team.pages.planted import sentence
@@ -83,6 +85,17 @@ def test_the_number_of_a_short_arrow_covers_neither_its_line_nor_its_head() -> N
             for t in (k / 20 for k in range(21))
         ]
         assert min(math.dist((x, y), point) for point in line) > r
+
+
+@pytest.mark.parametrize("end", [(50.0, 50.0), (51.0, 50.5), (54.0, 50.0), (50.0, 42.0)])
+def test_the_head_of_an_arrow_is_no_longer_than_the_move(end: tuple[float, float]) -> None:
+    start, size = (50.0, 50.0), 6.0
+    drawn = str(arrow_layer([start, end], 1, size))
+    head = re.search(r'd="(M[^"]*Z)" class="arrow-head"', drawn)
+    assert head is not None
+    numbers = [float(number) for number in re.findall(NUMBER, head[1])]
+    corners = list(zip(numbers[::2], numbers[1::2], strict=True))
+    assert max(math.dist(corner, end) for corner in corners) <= min(math.dist(start, end), 1.1 * size) + 0.02
 
 
 def test_steps_say_what_the_targets_are() -> None:

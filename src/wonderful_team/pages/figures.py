@@ -102,7 +102,8 @@ def arrow_layer(points: Sequence[Corner], number: int, size: float) -> Markup:
         path = f"M{start[0]:.2f} {start[1]:.2f}Q{before[0]:.2f} {before[1]:.2f} {end[0]:.2f} {end[1]:.2f}"
     else:
         path = "M" + "L".join(f"{x:.2f} {y:.2f}" for x, y in points)
-    head = _head(before, end, 1.1 * size)
+    # A turn on the spot has no way that a head of full size could stand on.
+    head = _head(before, end, min(1.1 * size, math.dist(start, end)) if len(points) == 2 else 1.1 * size)
     beside = (middle[0] + 1.25 * size * outward[0], middle[1] + 1.25 * size * outward[1])
     return Markup(
         '<path d="{0}" class="arrow-rim"/><path d="{0}" class="arrow"/><path d="{1}" class="arrow-head"/>{2}'

@@ -9,6 +9,7 @@ from typing import Any
 from markupsafe import Markup, escape
 
 from wonderful_team.core.text import counted, ending_words, recorded_names, spoken
+from wonderful_team.core.values import refusal_words
 from wonderful_team.pages import cost
 from wonderful_team.pages.look_up import grounded_plan, last_plan, main_key, scene_of
 from wonderful_team.pages.pictures import Album
@@ -232,7 +233,8 @@ def _motion_events(record: dict[str, Any]) -> list[tuple[float, str, str, str]]:
 
 
 def _refusals(refused: Sequence[dict[str, Any]]) -> str:
-    reasons = [f"{check['name']}: {check['value']}" for gate in refused for check in gate["checks"] if not check["ok"]]
+    failed = (check for gate in refused for check in gate["checks"] if not check["ok"])
+    reasons = [refusal_words(check["name"], check["value"], check["limit"]) for check in failed]
     return "refused: " + "; ".join(reasons)
 
 

@@ -143,7 +143,6 @@ def targets(record: dict[str, Any], album: Album, asked: Sequence[Asked]) -> lis
 def _strips(
     record: dict[str, Any], current: dict[str, Any], album: Album, asked: Sequence[Asked]
 ) -> list[dict[str, Any]]:
-    scene = scene_of(record, current)
     strips = []
     for position, (name, item) in enumerate(current["grounded"].items()):
         target = item["target"]
@@ -159,7 +158,7 @@ def _strips(
                 "points": [
                     f"{role.replace('_', ' ')} ({x:.1f}, {y:.1f}) px" for role, (x, y) in item["points"].items()
                 ],
-                "frames": _frames(record, item, scene, album, position),
+                "frames": _frames(record, current, item, album, position),
                 "asked": [one for one in asked if name in one.entry["targets"] and len(one.entry["targets"]) == 1],
             }
         )
@@ -170,13 +169,12 @@ def _box_words(box: dict[str, float] | None) -> str:
     return "" if box is None else "box ({x0:.0f}, {y0:.0f}) to ({x1:.0f}, {y1:.0f}) px".format(**box)
 
 
-def _examples(target: dict[str, Any], record: dict[str, Any], album: Album) -> list[dict[str, Any]]:
+def _examples(target: dict[str, Any], said: dict[str, Any], album: Album) -> list[dict[str, Any]]:
     """The instruction's pictures that show what the target looks like."""
-    said = record["planner"]["instruction"]
     names = recorded_names(said)
     found = []
     for name in target["like"]:
-        slot = said["slots"].get(name) if said is not None else None
+        slot = said["slots"].get(name)
         if slot is not None:
             picture = album.image(
                 next(iter(slot["views"].values())), f"{names[name]} of the instruction", "wide example"
@@ -189,14 +187,17 @@ def history_frames(
     record: dict[str, Any], plan: dict[str, Any], item: dict[str, Any], album: Album, position: int
 ) -> list[dict[str, Any]]:
     """How one target's box and points came about, picture by picture."""
-    return _frames(record, item, scene_of(record, plan), album, position)
+    return _frames(record, plan, item, album, position)
 
 
 def _frames(
-    record: dict[str, Any], item: dict[str, Any], scene: dict[str, Any] | None, album: Album, position: int
+    record: dict[str, Any], plan: dict[str, Any], item: dict[str, Any], album: Album, position: int
 ) -> list[dict[str, Any]]:
     """The history as pictures; every one shows the same window, so that changes can be seen."""
-    frames = _examples(item["target"], record, album)
+    scene, said = scene_of(record, plan), record["planner"]["instruction"]
+    # A plan that was read for another instruction was made from other pictures, which this record does not hold.
+    own = said is not None and plan["instruction"]["text"] == said["text"]
+    frames = _examples(item["target"], said, album) if own else []
     if scene is None:
         return frames
     history = list(item["history"])

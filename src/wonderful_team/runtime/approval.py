@@ -102,11 +102,11 @@ def approval_checks(
         required: Refuse without consent.
     """
     if approval is None:
-        return [_check("approval", False, "none", f"for plan {wanted_id[:12]}")] if required else []
+        return [_check("approval", False, "none", f"given for plan {wanted_id[:12]}")] if required else []
     if isinstance(approval, Declined):
         said = "declined" + (f" by {approval.by}" if approval.by else "")
         said += f", because {approval.because}" if approval.because else ""
-        return [_check("approval", False, said, f"for plan {wanted_id[:12]}")]
+        return [_check("approval", False, said, f"given for plan {wanted_id[:12]}")]
     by = approval.by.strip()
     left_s = approval.expires_s - time.time()
     shown = f"{left_s:.0f} s left" if left_s > 0 else f"expired {-left_s:.0f} s ago" if approval.expires_s else "no end"
@@ -115,7 +115,7 @@ def approval_checks(
             "approval",
             approval.plan_id == wanted_id and bool(by),
             f"plan {approval.plan_id[:12] or 'none'} by {by or 'nobody'}",
-            f"for plan {wanted_id[:12]}, by a named person",
+            f"given for plan {wanted_id[:12]}, by a named person",
         ),
         _same("approved picture", approval.picture, picture),
         _same("approved page", approval.page, page),

@@ -61,7 +61,7 @@ def height_checks(stage: Stage, limits: Limits, measured: bool) -> list[GateChec
             if under is None:
                 continue
             off = abs(float(point[2]) - under)
-            value = f"{point[2]:.3f} m, where the surface is at {under:.3f} m"
+            value = f"{point[2]:z.3f} m, where the surface is at {under:z.3f} m"
             limit = f"within {AGREE_M:.3f} m"
             checks.append(GateCheck(None, f"{role} height", off <= AGREE_M, value, limit, f"{AGREE_M - off:+.3f} m"))
     return checks
@@ -154,7 +154,7 @@ def free_checks(
     heights = np.sort(relief.xyz_m[under, 2])[::-1]
     top = float(heights[specks]) if len(heights) > specks else z_m
     room = z_m + PROUD_M - top
-    value = "free" if len(heights) <= specks else f"{top:.3f} m is the highest there"
+    value = "free" if len(heights) <= specks else f"{top:z.3f} m is the highest there"
     limit = f"at most {z_m + PROUD_M:.3f} m"
     checks = [GateCheck(None, "place is free", room >= 0, value, limit, f"{room:+.3f} m")]
     if level:
@@ -177,7 +177,7 @@ def _drop(placed: Array, z_m: float, relief: Relief, others: Array) -> list[Gate
         return []
     top = float(heights.max())
     room = top + AGREE_M - z_m
-    value = f"let go at {z_m:.3f} m, where {top:.3f} m is the highest"
+    value = f"let go at {z_m:z.3f} m, where {top:z.3f} m is the highest"
     return [GateCheck(None, "drop", room >= 0, value, f"at most {top + AGREE_M:.3f} m", f"{room:+.3f} m")]
 
 
@@ -228,7 +228,7 @@ def _over(name: str, path: Array, reach_m: float, low_m: float, relief: Relief, 
     heights = np.sort(relief.xyz_m[found, 2])[::-1]
     top = float(heights[min(LEAST_SPECKS, len(heights) - 1)]) if len(heights) else -np.inf
     room = low_m - PROUD_M - top
-    value = "nothing seen" if not len(heights) else f"{top:.3f} m is the highest there"
+    value = "nothing seen" if not len(heights) else f"{top:z.3f} m is the highest there"
     return GateCheck(None, name, room >= 0, value, f"below {low_m - PROUD_M:.3f} m", f"{room:+.3f} m")
 
 
@@ -244,7 +244,7 @@ def _pushed(slide: Slide, stage: Stage, relief: Relief, tool_radius_m: float) ->
     heights = np.sort(relief.xyz_m[lands, 2])[::-1]
     top = float(heights[LEAST_SPECKS]) if len(heights) > LEAST_SPECKS else float(slide.start_m[2])
     room = float(slide.start_m[2]) + PUSHED_M - top
-    value = f"{top:.3f} m is the highest there"
+    value = f"{top:z.3f} m is the highest there"
     limit = f"at most {float(slide.start_m[2]) + PUSHED_M:.3f} m"
     return [GateCheck(None, "push starts on free ground", room >= 0, value, limit, f"{room:+.3f} m")]
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
@@ -76,7 +77,7 @@ async def check_steps(
     """
     settled = await settle_turns(session, scene, steps, grounded)
     steps, grounded, checked = settled.steps, settled.grounded, list(settled.told)
-    looks = session.config.bounds.regrounds
+    looks: Counter[str] = Counter()
     while True:
         actions = compute(scene, steps, grounded, paths)
         if not session.members.verification:
@@ -89,16 +90,14 @@ async def check_steps(
         if review.doubt is None:
             return Acted(state, steps, grounded, actions)
         about, kind, question = review.doubt.about, review.doubt.kind, review.doubt.question
-        of_target = kind in GROUNDING_KINDS
-        if len(state.questions) >= session.config.bounds.questions or (of_target and looks == 0):
-            bound = (
-                f" after it was looked for {counted(session.config.bounds.regrounds, 'time')} more" if of_target else ""
-            )
+        of_target, most = kind in GROUNDING_KINDS, session.config.bounds.regrounds
+        if len(state.questions) >= session.config.bounds.questions or (of_target and looks[about] >= most):
+            bound = f" after it was looked for {counted(looks[about], 'time')} more" if of_target else ""
             session.warn(f"Verification still doubts {about if of_target else 'the steps'}{bound}: {question}")
             return Acted(replace(state, verified=False), steps, grounded, actions)
         doubt = Critique(about if of_target else f"step {about}", kind, question, provenance=answer.provenance)
         if of_target:
-            looks -= 1
+            looks[about] += 1
             grounded, doubt = await _look_again(jobs, grounded, doubt)
             if grounded[about].status != "found":
                 return Acted(replace(state, questions=(*state.questions, doubt)), steps, grounded, None)

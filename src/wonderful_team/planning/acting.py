@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
@@ -100,7 +101,7 @@ async def check_steps(
     """
     settled = await settle_turns(session, scene, steps, grounded)
     steps, grounded = settled.steps, settled.grounded
-    looks = session.config.bounds.regrounds
+    looks: Counter[str] = Counter()
     while True:
         actions = compute(scene, steps, grounded, paths)
         if not session.members.verification:
@@ -115,12 +116,10 @@ async def check_steps(
                 session.stage("checked", f"plan and steps together: {told(state)}")
             return Acted(state, steps, grounded, actions)
         about, kind, said = review.doubt.about, review.doubt.kind, review.doubt.question
-        of_target = kind in GROUNDING_KINDS
-        if len(state.questions) >= session.config.bounds.questions or (of_target and looks == 0):
+        of_target, most = kind in GROUNDING_KINDS, session.config.bounds.regrounds
+        if len(state.questions) >= session.config.bounds.questions or (of_target and looks[about] >= most):
             what = about if of_target else "the steps" if state.reviewed else "the plan and its steps"
-            bound = (
-                f" after it was looked for {counted(session.config.bounds.regrounds, 'time')} more" if of_target else ""
-            )
+            bound = f" after it was looked for {counted(looks[about], 'time')} more" if of_target else ""
             session.warn(f"Verification still doubts {what}{bound}: {said}")
             return Acted(replace(state, verified=False), steps, grounded, actions)
         if not of_target and about in {"plan", *(subgoal.id for subgoal in state.subgoals)}:
@@ -131,7 +130,7 @@ async def check_steps(
             continue
         doubt = Critique(about if of_target else f"step {about}", kind, said, provenance=answer.provenance)
         if of_target:
-            looks -= 1
+            looks[about] += 1
             grounded, doubt = await _look_again(jobs, grounded, doubt)
             if grounded[about].status != "found":
                 return Acted(replace(state, questions=(*state.questions, doubt)), steps, grounded, None)

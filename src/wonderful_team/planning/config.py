@@ -58,7 +58,7 @@ class Bounds:
         refinements: Revisions of one box.
         new_centres: Fresh starts for one target after its box was rejected or its revisions ran out.
         returns: How often a target that is not there sends the plan back to the Supervisor.
-        regrounds: How often a doubt about a point or a box sends a target back to grounding, over one plan.
+        regrounds: How often a doubt about its point or box sends one target back to grounding.
         functions: Versions of one helper function.
         samples: Independent proposals of a centre or a spot.
     """
@@ -67,7 +67,7 @@ class Bounds:
     refinements: int = 5
     new_centres: int = 3
     returns: int = 2
-    regrounds: int = 3
+    regrounds: int = 2
     functions: int = 5
     samples: int = 3
 

@@ -195,8 +195,6 @@ async def ground_by_supervisor(jobs: Sequence[Job]) -> dict[str, GroundedTarget]
 
 
 def _end(job: Job, status: Fate, box: Box | None, points: Mapping[str, Point] | None = None) -> GroundedTarget:
-    # What was tried on the way is stale now.
-    job.session.notebooks.forget(job.target.id)
     return GroundedTarget(job.target, status, job.scene.view.id, box, points or {}, tuple(job.history))
 
 

@@ -27,6 +27,8 @@ FINE_SIDE_PX = 640
 
 async def choose_points(job: Job, box: Box) -> dict[str, Point]:
     """The point for each role of the target, in view pixels; roles are asked at once."""
+    # The box is settled: what was tried before is stale.
+    job.session.notebooks.forget(job.target.id)
     roles = job.target.roles
     points = await together([_choose(job, box, role) for role in roles])
     return dict(zip(roles, points, strict=True))

@@ -181,7 +181,8 @@ def _with_subgoal(plan: PlanDraft, number: int, subgoal: SubgoalDraft) -> PlanDr
     return plan.model_copy(update={"subgoals": [*plan.subgoals[:number], subgoal, *plan.subgoals[number + 1 :]]})
 
 
-def _spoil(right: PlanDraft, where: Scene, rng: np.random.Generator, kinds: list[str]) -> tuple[str, PlanDraft] | None:
+def spoil(right: PlanDraft, where: Scene, rng: np.random.Generator, kinds: list[str]) -> tuple[str, PlanDraft] | None:
+    """The first kind of fault that this plan and scene allow, and the plan with it; None when none does."""
     for kind in kinds:
         plan = PLAN_FAULTS[kind](right, where, rng)
         if plan is not None:
@@ -203,7 +204,7 @@ async def check_plans(n: int, first: int) -> dict[str, Confusion]:
         except WonderfulTeamError as error:
             print(f"    {where.task} seed {where.seed}: no draft to spoil: {error}")
             continue
-        spoiled = _spoil(right, where, rng, kinds)
+        spoiled = spoil(right, where, rng, kinds)
         if spoiled is None:
             continue
         # The kind that was used goes to the end, so that all kinds come up as often as the scenes allow.

@@ -28,7 +28,9 @@ def test_verification_sees_the_injected_plan_and_its_doubt_is_recorded():
 
     better = draft(subgoal("G1"))
     model = scripted(
-        ReviewPlan=review, RevisePlan={"reasoning": "", "decision": "revise", "answer": "Yes.", "plan": better}
+        ReviewPlan=review,
+        ReviewSteps=review,
+        RevisePlan={"reasoning": "", "decision": "revise", "answer": "Yes.", "plan": better},
     )
     planted = Injecting(model, [Injection(("DraftPlan",), wrong_way_round, "a plan the wrong way round")])
     plan = plan_with(planted, TeamConfig(mode="lean"))

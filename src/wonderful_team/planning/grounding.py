@@ -254,8 +254,6 @@ async def ground_again(job: Job, before: GroundedTarget, doubt: Critique) -> Gro
 
 
 def _end(job: Job, status: Fate, box: Box | None, points: Mapping[PointRole, Point] | None = None) -> GroundedTarget:
-    # What was tried on the way is stale now.
-    job.session.notebooks.forget(job.target.id)
     chosen: dict[str, Point] = {role: point for role, point in (points or {}).items()}
     return GroundedTarget(job.target, status, job.scene.view.id, box, chosen, tuple(job.history))
 

@@ -34,6 +34,8 @@ ONWARD = "on to where it goes"
 
 async def choose_points(job: Job, box: Box, roles: Sequence[PointRole] = ()) -> dict[PointRole, Point]:
     """The point for each of these roles (all of the target when none is named), in view pixels; asked at once."""
+    # The box is settled: what was tried before is stale.
+    job.session.notebooks.forget(job.target.id)
     asked = tuple(roles) or job.target.roles
     points = await together([_choose(job, box, role) for role in asked])
     return dict(zip(asked, points, strict=True))

@@ -1,0 +1,71 @@
+"""Wrong plans planted into the whole lean team: how often Verification objects, and how often to right ones.
+
+    python -m benchmarks.planted_plans [--n 100] [--first 1000]
+
+The faults are those of `planted_faults`, which asks Verification about the plan alone. Here a plain plan is checked once,
+with its steps, drawn over the picture, as the lean team does. `--thorough` has every plan checked by itself as well.
+"""
+
+from __future__ import annotations
+
+import argparse
+import asyncio
+
+import numpy as np
+
+from benchmarks.planted_faults import PLAN_FAULTS, desk_for, scenes, show, spoil
+from wonderful_team.contracts import DraftPlan, PlanDraft
+from wonderful_team.core.actions import PICK_PLACE
+from wonderful_team.errors import WonderfulTeamError
+from wonderful_team.evals import Confusion
+from wonderful_team.models.wrappers import Injecting, Injection
+from wonderful_team.offline import OfflineModel
+from wonderful_team.offline.answers.moves import with_moves
+from wonderful_team.planning import TeamConfig, TeamPolicy
+
+
+async def check_plans_in_team(n: int, first: int, config: TeamConfig) -> dict[str, Confusion]:
+    """Half of the plans are spoiled; counted is whether anything was objected before actions came of it."""
+    rng = np.random.default_rng(first)
+    by_kind: dict[str, Confusion] = {}
+    done, kinds = 0, list(PLAN_FAULTS)
+    for where in scenes(first):
+        if done >= n:
+            return by_kind
+        session = desk_for(where.shown)
+        try:
+            right: PlanDraft = await session.ask(DraftPlan(where.shown.task, PICK_PLACE.step_kinds, True), stage="plan")
+        except WonderfulTeamError as error:
+            print(f"    {where.task} seed {where.seed}: no draft to spoil: {error}")
+            continue
+        spoiled = spoil(right, where, rng, kinds)
+        if spoiled is None:
+            continue
+        kinds.sort(key=lambda kind: kind == spoiled[0])
+        for kind, plan in (("none", right), spoiled):
+            # A wrong plan states the moves of what it says: nothing in it contradicts itself.
+            drafted = with_moves(plan, where.shown.task, PICK_PLACE.step_kinds)
+            injection = Injection(("DraftPlan",), lambda value, request, drafted=drafted: drafted, f"plan: {kind}")
+            team = TeamPolicy(Injecting(OfflineModel(), [injection]), config)
+            made = await team.make_plan(where.world.observe(), where.world.instruction, PICK_PLACE, where.world.limits)
+            objected = bool(made.questions) or made.status != "planned"
+            by_kind[kind] = by_kind.get(kind, Confusion()).add(bad=kind != "none", objected=objected)
+            done += 1
+            if (kind != "none") != objected:
+                print(f"    {where.task} seed {where.seed}, fault {kind}: {made.status}, approved {made.verified}")
+    return by_kind
+
+
+def main() -> None:
+    """Parse arguments, run and print."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--n", type=int, default=100, help="plans, half of them bad")
+    parser.add_argument("--first", type=int, default=1000, help="first seed")
+    parser.add_argument("--thorough", action="store_true", help="every question is asked")
+    options = parser.parse_args()
+    config = TeamConfig(mode="lean", thorough=options.thorough)
+    show("Verification in the lean team", asyncio.run(check_plans_in_team(options.n, options.first, config)))
+
+
+if __name__ == "__main__":
+    main()

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
@@ -13,6 +12,7 @@ from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.pictures import BoxStyle, Picture, Point
 from wonderful_team.core.text import spoken
 from wonderful_team.core.values import GroundedTarget, KeepOut, Limits, PlannedAction, View
+from wonderful_team.images.arrows import bows, draw_arrows, start_label, step_colour
 from wonderful_team.images.canvas import (
     BLUE,
     GREEN,
@@ -33,7 +33,6 @@ from wonderful_team.images.placing import PointLabel, label_box, label_points, p
 
 TARGET_COLOURS: tuple[Colour, ...] = (ORANGE, SKY, YELLOW, PURPLE, GREEN, VERMILLION)
 """Taken in turn by the targets of a plan."""
-_ARC = 0.14  # how far an arrow bows out, as a share of its length
 
 
 def overview(
@@ -79,11 +78,12 @@ def overview(
             draw_box(canvas, box.corners, "target", colour)
             named.append(_Named(box, _name(item, names), colour, INK))
     paths = [_points(picture, arrow) for arrow in arrows if len(arrow) > 1]
-    labels = _draw_arrows(canvas, [_arc(path) for path in paths])
+    canvas.things += [picture.frame.box_to_picture(item.box).as_tuple for item, _ in found if item.box is not None]
+    labels = _draw_arrows(canvas, paths)
     for item, colour in found:
         labels += _draw_points(canvas, picture, item, colour, _name(item, names), bool(paths))
-    for path in paths:
-        canvas.cross(path[-1], point_reach(canvas), GREEN)
+    for number, path in enumerate(paths, start=1):
+        canvas.cross(path[-1], point_reach(canvas), step_colour(number))
     paint_plates(canvas, label_points(canvas, labels))
     for entry in named:
         label_box(canvas, entry.box, plain(entry.text), back=entry.back, colour=entry.colour)
@@ -124,18 +124,9 @@ def _regions(
 
 
 def _draw_arrows(canvas: Canvas, paths: Sequence[Sequence[Point]]) -> list[PointLabel]:
-    """All arrows; returns their numbers, to be placed beside the middle of each, off the line and its head."""
-    for path in paths:
-        canvas.polyline(path, GREEN, width_px=canvas.stroke_px + 1, halo=WHITE)
-        canvas.arrow_head(path[-2], path[-1], GREEN, 6.5 * canvas.stroke_px)
-        for point in path:
-            canvas.keep_clear(point, 1.5 * canvas.stroke_px)
-        canvas.keep_clear(path[-1], 6.5 * canvas.stroke_px)
-    middles = [
-        path[len(path) // 2] if len(path) > 2 else ((path[0][0] + path[1][0]) / 2, (path[0][1] + path[1][1]) / 2)
-        for path in paths
-    ]
-    return [PointLabel(at, str(number), 2.0 * canvas.stroke_px, GREEN) for number, at in enumerate(middles, start=1)]
+    """All arrows, a colour for each; returns their numbers, to be placed where they start."""
+    draw_arrows(canvas, bows(paths, canvas.size_px, [True] * len(paths)))
+    return [start_label(canvas, path, str(number), step_colour(number)) for number, path in enumerate(paths, start=1)]
 
 
 def _name(item: GroundedTarget, names: Mapping[str, str] | None) -> str:
@@ -177,24 +168,3 @@ def _outline(region: KeepOut, camera: Camera | None, z_m: float) -> tuple[Point,
 
 def _points(picture: Picture, points: Sequence[Point]) -> list[Point]:
     return [(float(x), float(y)) for x, y in picture.frame.to_picture(np.asarray(points, dtype=np.float64))]
-
-
-def _arc(points: Sequence[Point]) -> list[Point]:
-    """Two points become a gentle bow, which leaves what lies between them to be seen; longer paths stay."""
-    if len(points) != 2:
-        return list(points)
-    (xa, ya), (xb, yb) = points
-    dx, dy = xb - xa, yb - ya
-    if math.hypot(dx, dy) < 1e-6:
-        return list(points)
-    # Bow upwards in the picture, whichever way the arrow goes.
-    side = -1.0 if dx < 0 else 1.0
-    control = ((xa + xb) / 2 + dy * _ARC * 2 * side, (ya + yb) / 2 - dx * _ARC * 2 * side)
-    steps = np.linspace(0.0, 1.0, 25)
-    return [
-        (
-            float((1 - t) ** 2 * xa + 2 * t * (1 - t) * control[0] + t**2 * xb),
-            float((1 - t) ** 2 * ya + 2 * t * (1 - t) * control[1] + t**2 * yb),
-        )
-        for t in steps
-    ]

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from wonderful_team.contracts import PlanReview, ReviewSteps, StepList, WriteSteps
-from wonderful_team.core.actions import Step
+from wonderful_team.core.actions import PickPlaceStep, Step
 from wonderful_team.core.pictures import BoxMark, PathMark, Picture, Point, PointMark
 from wonderful_team.core.values import Critique, GroundedTarget, PlannedAction, View
 from wonderful_team.motion import ground_actions
@@ -77,9 +77,10 @@ def overview_picture(
     scene: SceneShown, grounded: Mapping[str, GroundedTarget], actions: Sequence[PlannedAction]
 ) -> Picture:
     """The main view with every target's box and label, and the steps as numbered arrows."""
-    return mark_targets(scene.views[0], scene.view, grounded).marked(
+    plain = scene.views[0]
+    return mark_targets(replace(plain, name=f"{plain.name} with the plan"), scene.view, grounded).marked(
         *(
-            PathMark(path, str(number))
+            PathMark(path, str(number), bowed=isinstance(action.step, PickPlaceStep))
             for number, action in enumerate(actions, start=1)
             if len(path := _path(scene.views[0], action)) >= 2
         )

@@ -31,9 +31,10 @@ def make_jobs(
     session: AgentSession, scene: SceneShown, targets: Sequence[Target], subgoals: Sequence[Subgoal]
 ) -> list[Job]:
     """One job per target."""
-    lines = plan_lines(subgoals)
+    lines, ticks = plan_lines(subgoals), session.config.axes
     return [
-        Job(session, scene, target, number, lines, scene.examples([target])) for number, target in enumerate(targets)
+        Job(session, scene, target, number, lines, scene.examples([target], ticks))
+        for number, target in enumerate(targets)
     ]
 
 
@@ -91,7 +92,7 @@ async def read_scene(jobs: Sequence[Job]) -> tuple[SceneReading, Provenance]:
     session, scene = jobs[0].session, jobs[0].scene
     targets = tuple(job.target for job in jobs)
     view = scene.labelled if session.config.axes else scene.views[0]
-    question = ReadScene(targets, jobs[0].plan, view, scene.views[1:], scene.examples(targets))
+    question = ReadScene(targets, jobs[0].plan, view, scene.views[1:], scene.examples(targets, session.config.axes))
     answer = await session.ask_whole(question, stage="ground")
     return answer.value, answer.provenance
 

@@ -20,6 +20,9 @@ FINE_MARGIN = 0.15
 FINE_SIDE_PX = 640
 """The second round shows the box closer, so that its nine candidates stand apart."""
 
+MARK_SHARE = 0.015
+"""A numbered mark reaches this far from its point, as a share of the picture's longer side."""
+
 
 async def choose_points(job: Job, box: Box) -> dict[str, Point]:
     """The point for each role of the target, in view pixels; roles are asked at once."""
@@ -34,18 +37,29 @@ async def _choose(job: Job, box: Box, role: PointRole) -> Point:
     candidates = inside_points(shown_box, GRID, GRID)
     if role in ("push_start", "push_end"):
         beside = beside_points(shown_box, BESIDE_SHARE * max(shown_box.width, shown_box.height))
-        candidates = (*candidates, *(point for point in beside if shown.frame.valid.contains(point)))
+        candidates = (*candidates, *_whole_marks(shown, beside))
     coarse = await _ask(job, shown, shown_box, candidates, role, fine=False)
     cell = Box.around(coarse, box.width * FINE_SHARE, box.height * FINE_SHARE)
-    near = crop(job.scene.view, box, "crop", margin=FINE_MARGIN, min_side_px=FINE_SIDE_PX)
-    fine_points = tuple(
-        point
-        for point in inside_points(near.frame.box_to_picture(cell), GRID, GRID)
-        if near.frame.valid.contains(point)
+    near = crop(
+        job.scene.view,
+        box,
+        "crop",
+        margin=FINE_MARGIN,
+        min_side_px=FINE_SIDE_PX,
+        also=(cell.scaled(1 + 2 * FINE_MARGIN),),
     )
+    fine_points = _whole_marks(near, inside_points(near.frame.box_to_picture(cell), GRID, GRID))
     chosen = await _ask(job, near, near.frame.box_to_picture(box), fine_points, role, fine=True)
     job.tell("point", f"{role.replace('_', ' ')} point chosen", box, (chosen,))
     return chosen
+
+
+def _whole_marks(shown: Picture, points: tuple[Point, ...]) -> tuple[Point, ...]:
+    """The points that lie so far inside the view that their marks are not cut off; those inside it where none does."""
+    room = MARK_SHARE * max(shown.size_px)
+    valid = shown.frame.valid
+    inside = tuple(point for point in points if valid.contains(point))
+    return tuple(point for point in inside if valid.grown(-room, -room, -room, -room).contains(point)) or inside
 
 
 async def _ask(

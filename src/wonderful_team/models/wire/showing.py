@@ -12,7 +12,18 @@ import numpy as np
 
 from wonderful_team.core.geometry import Box, Frame
 from wonderful_team.core.geometry.arrays import Array
-from wonderful_team.core.pictures import Axes, BoxMark, Candidates, LineMark, Mark, PathMark, Picture, Point, PointMark
+from wonderful_team.core.pictures import (
+    Axes,
+    BoxMark,
+    Candidates,
+    LineMark,
+    Mark,
+    PathMark,
+    Picture,
+    Point,
+    PointMark,
+    RegionMark,
+)
 from wonderful_team.images import Ticks, draw
 from wonderful_team.images.canvas import Canvas
 from wonderful_team.models.conventions import PIXELS, Convention, Size
@@ -163,6 +174,8 @@ def _scaled_mark(mark: Mark, sx: float, sy: float) -> Mark:
             return replace(mark, points=tuple(at(point) for point in mark.points))
         case LineMark():
             return LineMark(at(mark.start), at(mark.end))
+        case RegionMark():
+            return replace(mark, corners=tuple(at(point) for point in mark.corners))
         case Axes():
             return mark
 

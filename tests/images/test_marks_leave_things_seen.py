@@ -49,6 +49,11 @@ def test_numbers_of_guesses_close_together_leave_a_small_target_seen() -> None:
     assert covered.sum() > 500  # the plates stand farther out
 
 
+@pytest.mark.parametrize("count", [1, 3])
+def test_guesses_on_the_very_same_point_are_drawn(count: int) -> None:
+    assert changed(flat((150, 150, 150), Candidates(((300.0, 150.0),) * count))).any()
+
+
 def test_numbers_inside_a_small_box_stand_outside_it_and_in_a_large_one_inside() -> None:
     small, large = Box(280, 130, 340, 190), Box(120, 20, 400, 300)
     for box, outside in ((small, True), (large, False)):

@@ -140,11 +140,11 @@ def _crowd(canvas: Canvas, numbered: Sequence[tuple[Point, str]], radius: float)
     tall = canvas.plate_size("0")[1]
     if canvas.things:
         return min(min(x1 - x0, y1 - y0) for x0, y0, x1, y1 in canvas.things) < _SMALL_BOX * tall
-    spread = Box.bounding([point for point, _ in numbered])
-    if len(numbered) < 2 or max(spread.width, spread.height) > _SMALL_BOX * tall:  # noqa: PLR2004  one point is no crowd
+    xs, ys = ([point[axis] for point, _ in numbered] for axis in (0, 1))
+    if len(numbered) < 2 or max(max(xs) - min(xs), max(ys) - min(ys)) > _SMALL_BOX * tall:  # noqa: PLR2004  one is no crowd
         return False
     room = 1.5 * tall + radius
-    canvas.things.append(spread.grown(room, room, room, room).as_tuple)
+    canvas.things.append((min(xs) - room, min(ys) - room, max(xs) + room, max(ys) + room))
     return True
 
 

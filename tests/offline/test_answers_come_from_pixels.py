@@ -83,8 +83,9 @@ def test_a_right_box_is_accepted_and_the_same_words_over_other_pixels_are_not(sh
 
 def test_points_and_boxes_follow_the_pixels(shown, true_box):
     view, examples = shown.labelled, shown.examples([TARGET])
+    true_box = view.frame.box_to_picture(true_box)
     # Towards the side with more room, so that the thing stays whole.
-    shift = 60 if true_box.centre[0] < 320 else -60
+    shift = 120 if true_box.centre[0] < view.size_px[0] / 2 else -120
     moved = rolled(view, shift)
     for picture, expected in ((view, 0), (moved, shift)):
         point = ask(shown, LocatePoints(TARGET, "centre", (), picture, (), examples)).points[0]

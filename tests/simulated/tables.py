@@ -54,6 +54,10 @@ class Set:
         rows, columns = mask.any(axis=1).nonzero()[0], mask.any(axis=0).nonzero()[0]
         return Box(columns[0], rows[0], columns[-1] + 1, rows[-1] + 1)
 
+    def shown_box(self, name: str) -> Box:
+        """The same in pixels of the main view as it is shown."""
+        return self.scene.views[0].frame.box_to_picture(self.thing_box(name))
+
     def look(self) -> None:
         """Look again, at the table as it is now."""
         self.scene = SceneShown(self.world.observe(), self.world.instruction, self.world.vocabulary, self.world.limits)

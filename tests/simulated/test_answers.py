@@ -104,8 +104,8 @@ def test_every_target_is_found_in_one_answer(table: Set, names: tuple[str, str])
     reading = table.ask(ReadScene(targets, (), table.scene.views[0]))
     for item, name in zip(reading.targets, names, strict=True):
         assert item.found
-        assert item.box.as_box.iou(table.thing_box(name)) > 0.97
-    grasp = reading.targets[0].points[0].point.as_tuple
+        assert item.box.as_box.iou(table.shown_box(name)) > 0.97
+    grasp = table.scene.views[0].frame.point_to_view(reading.targets[0].points[0].point.as_tuple)
     assert table.truth.masks()[names[0]][int(grasp[1]), int(grasp[0])]
     unseen = table.ask(ReadScene(targets, (), table.scene.views[0]), blind(table))
     assert not any(item.found for item in unseen.targets)
@@ -115,11 +115,11 @@ def test_points_marks_and_boxes_on_the_whole_view(table: Set) -> None:
     target, view = table.targets()[0], table.scene.labelled
     found = table.ask(LocatePoints(target, "centre", (), view))
     point = found.points[0].as_tuple
-    assert table.thing_box(target.words).contains(point)
+    assert table.shown_box(target.words).contains(point)
     marked = view.marked(Candidates(((5.0, 5.0), (point[0] + 3, point[1]), point)))
     assert table.ask(ChooseMark(target, "centre", (), marked)).number == 3
     boxed = table.ask(GiveBox(target, (), view.marked(PointMark(point))))
-    assert boxed.box.as_box.iou(table.thing_box(target.words)) > 0.97
+    assert boxed.box.as_box.iou(table.shown_box(target.words)) > 0.97
     assert not table.ask(LocatePoints(target, "centre", (), view), blind(table)).found
     assert table.ask(ChooseMark(target, "centre", (), marked), blind(table)).number is None
     assert table.ask(GiveBox(target, (), view.marked(PointMark(point))), blind(table)).box is None
@@ -225,7 +225,7 @@ def test_what_became_of_a_plan_is_told_from_before_and_after() -> None:
         task, subgoals, targets = table.scene.task, _subgoals(table), tuple(table.targets())
         assert len(subgoals) == 3
         marks = tuple(
-            BoxMark(table.thing_box(target.words), "target", target.id) for target in targets if target.kind == "object"
+            BoxMark(table.shown_box(target.words), "target", target.id) for target in targets if target.kind == "object"
         )
         before = replace(task, views=(task.main.marked(*marks), *task.views[1:]))
         table.world.execute(table.truth.oracle()[0])
@@ -263,6 +263,6 @@ def test_words_of_others_are_understood(table: Set, names: tuple[str, str]) -> N
         examples = tuple(slot for slot in slots if slot.name in like)
         (item,) = table.ask(ReadScene((target,), (), view, examples=examples)).targets
         assert item.found, words
-        assert item.box.as_box.iou(table.thing_box(name)) > 0.97, words
+        assert item.box.as_box.iou(table.shown_box(name)) > 0.97, words
     missing = Target("T1", "object", "silver teapot", use=("place",))
     assert not table.ask(ReadScene((missing,), (), view)).targets[0].found

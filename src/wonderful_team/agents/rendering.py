@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
+from dataclasses import replace
 
 from wonderful_team.contracts import ShownSlot, ShownTask
 from wonderful_team.core.actions import STEPS
@@ -16,11 +17,14 @@ from wonderful_team.core.pictures import (
     PathMark,
     Picture,
     PointMark,
+    RegionMark,
     Tiles,
     TurnMark,
 )
 from wonderful_team.core.values import Note, Part, Subgoal, Target, Words
 from wonderful_team.images.captions import axes_words, size_words
+from wonderful_team.images.cut import MARKED_SIDE_PX
+from wonderful_team.images.panels import side_by_side, width_px
 
 _BOX_STYLES = {
     "target": "the box",
@@ -97,18 +101,22 @@ def mark_words(mark: Mark) -> str:
             )
         case LineMark():
             return "a line where the box's edge lies"
+        case RegionMark():
+            return "a region that nothing may enter" + (f" labelled {mark.label}" if mark.label else "")
 
 
 def caption(picture: Picture, about: str = "") -> str:
     """The line that announces a picture: name, size, what it is, what is drawn on it."""
     line = f'Picture "{picture.name}" ({size_words(picture.size_px)})' + (f", {about}" if about else "")
     marks = list(dict.fromkeys(mark_words(mark) for mark in picture.marks))
+    padded = not picture.panels and picture.frame.valid.as_tuple != picture.frame.whole_box.as_tuple
+    line += "; what is striped grey lies outside the view" if padded else ""
     return line + (f"; drawn on it: {', '.join(marks)}" if marks else "") + ":"
 
 
 def picture_parts(picture: Picture, about: str = "") -> list[Part]:
     """A caption and the picture."""
-    return [Words(caption(picture, about), "caption", picture), picture]
+    return [Words(caption(picture, about), "caption", picture, about), picture]
 
 
 def answer_in(picture: Picture) -> list[Part]:
@@ -128,7 +136,9 @@ def view_parts(title: str, views: Sequence[Picture], first: str = "the main view
     """Views of a scene; the first one is the main view."""
     parts = words(f"{title}:") if views else []
     for number, view in enumerate(views):
-        parts += picture_parts(view, first if number == 0 else "another view, for understanding only")
+        announced, shown = picture_parts(view, first if number == 0 else "another view, for understanding only")
+        assert isinstance(announced, Words)
+        parts += [replace(announced, about=f"{title[:1].lower()}{title[1:]}, {announced.about}"), shown]
     return parts
 
 
@@ -138,13 +148,83 @@ def slot_about(slot: ShownSlot) -> str:
     return f"{{{slot.name}}}: {_SLOT_KINDS[slot.kind]}{place}"
 
 
-def slot_parts(slots: Iterable[ShownSlot]) -> list[Part]:
-    """The pictures of slots, each announced."""
-    parts: list[Part] = []
-    for slot in slots:
-        for picture in slot.pictures:
-            parts += picture_parts(picture, slot_about(slot))
-    return parts
+def slot_parts(slots: Sequence[ShownSlot]) -> list[Part]:
+    """The pictures of slots, each announced; what belongs together stands side by side in one picture."""
+    return [part for group in slot_groups(slots) for part in _group_parts(group)]
+
+
+def slot_groups(slots: Sequence[ShownSlot]) -> list[tuple[ShownSlot, ...]]:
+    """Which slots share a picture: single things one after the other as far as it grows no wider than a whole view, and a
+    thing before and after.
+    """
+    groups: list[tuple[ShownSlot, ...]] = []
+    left = list(slots)
+    while left:
+        group: tuple[ShownSlot, ...] = (left.pop(0),)
+        end = next((other for other in left if _is_pair(group[0], other)), None)
+        if end is not None:
+            left.remove(end)
+            group = (*group, end)
+        elif _is_single(group[0]):
+            while following := next((other for other in left if _is_single(other)), None):
+                if width_px(tuple((slot.name, slot.pictures) for slot in (*group, following))) > MARKED_SIDE_PX:
+                    break
+                left.remove(following)
+                group = (*group, following)
+        groups.append(group)
+    return groups
+
+
+def _is_single(slot: ShownSlot) -> bool:
+    """Whether a slot shows one thing, cut out."""
+    return slot.kind == "object" and bool(slot.pictures) and all(_cut_words((item,)) for item in slot.pictures)
+
+
+def _is_pair(slot: ShownSlot, other: ShownSlot) -> bool:
+    """Whether two slots show one thing before and after, in the same window."""
+    ends = (slot.kind, other.kind, slot.index) == ("before", "after", other.index)
+    if not ends or not slot.pictures or not other.pictures or slot.pictures[0].marks or other.pictures[0].marks:
+        return False
+    first, second = slot.pictures[0].frame, other.pictures[0].frame
+    return first.size_px == second.size_px and bool((first.T_view_picture == second.T_view_picture).all())
+
+
+def _group_parts(group: tuple[ShownSlot, ...]) -> list[Part]:
+    """One group of slots, in one picture where that is possible."""
+    first = group[0]
+    if _is_single(first):
+        return _side_by_side(tuple((slot, slot.pictures) for slot in group))
+    if len(group) > 1:
+        parts = _side_by_side(tuple((slot, slot.pictures[:1]) for slot in group))
+        return parts + [
+            part for slot in group for item in slot.pictures[1:] for part in picture_parts(item, slot_about(slot))
+        ]
+    return [part for picture in first.pictures for part in picture_parts(picture, slot_about(first))]
+
+
+def _side_by_side(shown: tuple[tuple[ShownSlot, tuple[Picture, ...]], ...]) -> list[Part]:
+    """Pictures of slots in one, and what stands where in it."""
+    named = tuple((f"{{{slot.name}}}", pictures) for slot, pictures in shown)
+    sheet = side_by_side(named, ", ".join(name for name, _ in named))
+    kinds = "; ".join(f"{slot_about(slot)}{_cut_words(pictures)}" for slot, pictures in shown)
+    cameras = tuple(dict.fromkeys(_cameras(slot, pictures) for slot, pictures in shown))
+    views = f"; of each the {cameras[0]}" if len(cameras) == 1 and cameras[0] else ""
+    if len(cameras) > 1:
+        views = "; " + "; ".join(f"{{{slot.name}}}: {_cameras(slot, held)}" for slot, held in shown)
+    return picture_parts(sheet, f"each over its name, {kinds}{views}")
+
+
+def _cameras(slot: ShownSlot, pictures: Sequence[Picture]) -> str:
+    """The cameras of a thing's pictures, from left to right; empty for a single one."""
+    names = [f"{picture.name.removeprefix(f'{{{slot.name}}} ')} view" for picture in pictures]
+    return f"{', '.join(names[:-1])} (left) and {names[-1]} (right)" if len(names) > 1 else ""
+
+
+def _cut_words(pictures: Sequence[Picture]) -> str:
+    """That pictures were cut out and enlarged; empty for whole ones."""
+    if not any(picture.frame.T_view_picture[:2, 2].any() for picture in pictures):
+        return ""
+    return f", {pictures[0].frame.scale:.2g} times as large as in the views"
 
 
 def example_parts(slots: Sequence[ShownSlot]) -> list[Part]:
@@ -155,20 +235,26 @@ def example_parts(slots: Sequence[ShownSlot]) -> list[Part]:
 def instruction_parts(task: ShownTask) -> list[Part]:
     """The instruction between its tags, each slot's pictures where its name first stands."""
     tag = safe_tag("instruction", task.instruction)
-    unshown = {slot.name: slot for slot in task.slots}
+    named = sorted(task.slots, key=lambda slot: _first_named(task.instruction, slot.name))
+    unshown = {group[0].name: group for group in slot_groups(named)}
     parts: list[Part] = []
     text = f"<{tag}>\n"
     for piece in re.split(r"(\{[^{}]*\})", task.instruction):
         text += piece
-        slot = unshown.pop(piece[1:-1], None) if piece.startswith("{") else None
-        if slot is not None:
-            parts += [Words(text), *slot_parts([slot])]
+        group = unshown.pop(piece[1:-1], None) if piece.startswith("{") else None
+        if group is not None:
+            parts += [Words(text), *_group_parts(group)]
             text = ""
     # Pictures that the words never name still belong to the instruction.
     if unshown:
-        parts += [*words(text), *slot_parts(unshown.values())]
+        parts += [*words(text), *(part for group in unshown.values() for part in _group_parts(group))]
         text = ""
     return [*parts, Words(f"{text}\n</{tag}>")]
+
+
+def _first_named(instruction: str, name: str) -> int:
+    at = instruction.find(f"{{{name}}}")
+    return at if at >= 0 else len(instruction)
 
 
 def task_parts(task: ShownTask, title: str = "The scene now") -> list[Part]:

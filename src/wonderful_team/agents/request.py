@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from wonderful_team.agents.prompts import ROLES, Prompts
 from wonderful_team.agents.rendering import note_parts
+from wonderful_team.agents.repeats import without_repeats
 from wonderful_team.agents.role import Role
 from wonderful_team.contracts import Question
 from wonderful_team.core.values import Note, Part, Request, Words
@@ -23,7 +24,7 @@ def build_request(
     """Render a question as a request.
 
     The question's own content comes first, then the notes, then the words of the ask: requests of one role about one
-    task so share a long prefix, and the ask stands next to the answer.
+    task so share a long prefix, and the ask stands next to the answer. A picture whose pixels another one shows is not sent.
 
     Args:
         question: What is asked; every field of it is shown, and nothing else.
@@ -51,7 +52,7 @@ def build_request(
         stage=stage,
         role=asker.name,
         question=question,
-        parts=tuple(parts),
+        parts=without_repeats(parts),
         output=question.output(),
         system=texts.system(asker.name),
         notes=notes,

@@ -110,15 +110,17 @@ class Candidates:
 
 @dataclass(frozen=True)
 class PathMark:
-    """A path through points, drawn with an arrow at its end.
+    """A path through points, drawn with an arrow at its end and its label where it starts.
 
     Attributes:
         width: Of the strip that a tool sweeps along it, drawn under the line [px of the picture]; 0 for none.
+        bowed: Only its two ends count, as of a thing that is carried: it is drawn as a bow, which no other one covers.
     """
 
     points: tuple[Point, ...]
     label: str = ""
     width: float = 0.0
+    bowed: bool = False
 
 
 @dataclass(frozen=True)
@@ -163,7 +165,23 @@ class TurnMark:
     label: str = ""
 
 
-Mark: TypeAlias = Axes | BoxMark | PointMark | Candidates | PathMark | LineMark | Tiles | TurnMark
+@dataclass(frozen=True)
+class RegionMark:
+    """A region that nothing may enter, by its corners; a camera at a slant makes a rectangle on the table any quadrangle."""
+
+    corners: tuple[Point, ...]
+    label: str = ""
+
+
+Mark: TypeAlias = Axes | BoxMark | PointMark | Candidates | PathMark | LineMark | Tiles | TurnMark | RegionMark
+
+
+@dataclass(frozen=True, eq=False)
+class Panel:
+    """A picture that stands inside a larger one, and where its top-left corner lies there [px]."""
+
+    picture: Picture
+    origin_px: tuple[int, int]
 
 
 @dataclass(frozen=True, eq=False)
@@ -176,6 +194,8 @@ class Picture:
         frame: Maps this picture's pixels to the view it was cut from.
         depth_m: Distance along the optical axis [m], shape (H, W); None without depth.
         marks: What is to be drawn on it, in pixels of this picture.
+        panels: The pictures that stand side by side in it, from left to right; () for a picture of one view. Its frame is
+            then that of the first panel.
     """
 
     name: str
@@ -183,6 +203,7 @@ class Picture:
     frame: Frame
     depth_m: Array | None = None
     marks: tuple[Mark, ...] = field(default=())
+    panels: tuple[Panel, ...] = field(default=())
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "rgb", checked_rgb(self.rgb))

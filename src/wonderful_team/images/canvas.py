@@ -45,11 +45,13 @@ class Canvas:
         rgb: Shape (H, W, 3), uint8; owned by the canvas.
         taken: Plates and marks placed so far (x0, y0, x1, y1), which later plates keep clear of.
         named: Points that plates stand for; a plate should be nearest to its own.
+        things: Where the things that are looked at lie; plates that can stand elsewhere keep off them.
     """
 
     rgb: Array
     taken: list[Rectangle] = field(default_factory=list)
     named: list[Point] = field(default_factory=list)
+    things: list[Rectangle] = field(default_factory=list)
 
     @classmethod
     def over(cls, rgb: Array) -> Canvas:
@@ -100,6 +102,13 @@ class Canvas:
         fixed = _fixed_lines(lines)
         for colour_now, width_now in ((halo, width + 2 + width // 3), (colour, width)):
             cv2.polylines(self.rgb, fixed, closed, colour_now, width_now, cv2.LINE_AA, _SHIFT)
+
+    def outline(self, corners: Sequence[Point], colour: Colour) -> None:
+        """A closed stroke that shows on every ground, its own colour too: dark outside, light within, colour in the middle."""
+        fixed = _fixed_lines([corners])
+        even = self.stroke_px + self.stroke_px % 2  # cv2 draws odd widths a pixel wider
+        for colour_now, width in ((INK, even + 5), (WHITE, even + 3), (colour, self.stroke_px)):
+            cv2.polylines(self.rgb, fixed, True, colour_now, width, cv2.LINE_AA, _SHIFT)
 
     def dashes(
         self, points: Sequence[Point], colour: Colour, *, width_px: int | None = None, halo: Colour = INK

@@ -26,8 +26,11 @@ MAX_SIDE_PX = 1568
 """Longest side sent: above this, common vision-language models shrink a picture themselves."""
 MIN_WINDOW_PX = 32
 """Smallest side of a crop's window [view px]: less context says nothing."""
-MAX_OVERHANG = 0.25
-"""How much of a crop may be padding: this share of the box's longer side past each edge of the view."""
+RIM_SHARE = 0.02
+"""A crop shows padding only beside a box that comes this near to the view's edge, so that the line along it can be seen: this
+share of the box's longer side. Elsewhere its window is moved into the view."""
+MARKED_SIDE_PX = 1280
+"""Long side that whole views have at least when marks or tick labels are drawn on them."""
 MAX_ASPECT = 3.0
 """Crops of long thin boxes get more margin across, up to this ratio of their sides."""
 STRIP_SHARE, STRIP_MIN_PX = 0.25, 4
@@ -43,8 +46,9 @@ def whole(
     marks: Sequence[Mark] = (),
     min_side_px: int = MIN_SIDE_PX,
     max_side_px: int = MAX_SIDE_PX,
+    long_side_px: int = 0,
 ) -> Picture:
-    """The whole view; doubled until it is large enough when small, shrunk when huge.
+    """The whole view; enlarged when small, shrunk when huge.
 
     Args:
         view: What to show.
@@ -52,13 +56,18 @@ def whole(
         marks: In pixels of the picture.
         min_side_px: Double until the short side has at least this many pixels, as far as the long side allows.
         max_side_px: Shrink until the long side has at most this many pixels.
+        long_side_px: Enlarge until the long side has at least this many pixels, by a whole factor where one fits.
     """
     short, long = min(view.size_px), max(view.size_px)
     if long > max_side_px:
         frame = Frame.whole(view.id, view.size_px, max_side_px / long)
     else:
         doublings = max(0, math.ceil(math.log2(min_side_px / short)))
-        frame = Frame.whole(view.id, view.size_px, min(2**doublings, int(max_side_px / long)))
+        zoom: float = min(2**doublings, int(max_side_px / long))
+        if zoom * long < long_side_px:
+            factor = math.ceil(long_side_px / long)
+            zoom = factor if factor * long <= max_side_px else long_side_px / long
+        frame = Frame.whole(view.id, view.size_px, zoom)
     return replace(picture_of(view, frame, name), marks=tuple(marks))
 
 
@@ -122,16 +131,7 @@ def crop_frame(
     longer = max(box.width, box.height) * (1 + 2 * margin)
     width = max(box.width * (1 + 2 * margin), longer / MAX_ASPECT, MIN_WINDOW_PX)
     height = max(box.height * (1 + 2 * margin), longer / MAX_ASPECT, MIN_WINDOW_PX)
-    window = Box.around(box.centre, width, height)
-    overhang = MAX_OVERHANG * max(box.width, box.height)
-    window = whole_pixels(
-        Box(
-            max(window.x0, min(box.x0, -overhang)),
-            max(window.y0, min(box.y0, -overhang)),
-            min(window.x1, max(box.x1, bounds.x1 + overhang)),
-            min(window.y1, max(box.y1, bounds.y1 + overhang)),
-        )
-    )
+    window = _into_view(Box.around(box.centre, width, height), box, bounds)
     return _window_frame(view, window, min_side_px, max_side_px)
 
 
@@ -195,6 +195,22 @@ def _strip_frame(view: View, window: Box) -> Frame:
     return Frame.window(view.id, view.size_px, window, size)
 
 
+def _into_view(window: Box, box: Box, bounds: Box) -> Box:
+    """The window moved, and cut where it is larger, to lie in the view; a rim stays beside a box at the view's edge."""
+    rim = max(RIM_SHARE * max(box.width, box.height), 1.0)
+    spans = []
+    for low, high, first, last, end in (
+        (window.x0, window.x1, box.x0, box.x1, bounds.x1),
+        (window.y0, window.y1, box.y0, box.y1, bounds.y1),
+    ):
+        least = min(first, -rim if first < rim else 0.0)
+        most = max(last, end + rim if last > end - rim else end)
+        moved = max(least - low, 0.0) or min(most - high, 0.0)
+        spans.append((max(low + moved, least), min(high + moved, most)))
+    (x0, x1), (y0, y1) = spans
+    return whole_pixels(Box(x0, y0, x1, y1))
+
+
 def _window_frame(view: View, window: Box, min_side_px: int, max_side_px: int) -> Frame:
     short, long = min(window.width, window.height), max(window.width, window.height)
     zoom = max_side_px / long if long > max_side_px else _zoom(short, long, min_side_px, max_side_px)
@@ -203,5 +219,5 @@ def _window_frame(view: View, window: Box, min_side_px: int, max_side_px: int) -
 
 
 def _zoom(short: float, long: float, min_side_px: int, max_side_px: int) -> int:
-    """The whole factor that brings the short side to `min_side_px` without the long side passing `max_side_px`."""
-    return max(1, min(math.ceil(min_side_px / short), int(max_side_px / long)))
+    """The whole factor, two at least, that brings the short side to `min_side_px`, as far as the long side allows."""
+    return max(1, min(max(math.ceil(min_side_px / short), 2), int(max_side_px / long)))

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from typing import TypeVar
 
+from wonderful_team.core.geometry import Box
 from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.pictures import (
     Axes,
@@ -12,17 +14,19 @@ from wonderful_team.core.pictures import (
     BoxStyle,
     Candidates,
     LineMark,
+    Mark,
     PathMark,
     Picture,
     Point,
     PointMark,
+    RegionMark,
     Tiles,
     TurnMark,
 )
+from wonderful_team.images.arrows import bows, draw_arrows, start_label, step_colour
 from wonderful_team.images.axes import Ticks, draw_axes
 from wonderful_team.images.canvas import (
     BLUE,
-    GREEN,
     INK,
     ORANGE,
     SKY,
@@ -44,6 +48,11 @@ BOX_COLOURS: dict[BoxStyle, Colour] = {
     "workspace": WHITE,
 }
 """Colour of each box style; before, keep_out and workspace are dashed as well, so colour never carries meaning alone."""
+M = TypeVar("M", bound=Mark)
+_THINGS: frozenset[BoxStyle] = frozenset({"target", "before", "after"})
+_SMALL_BOX = 7.0
+"""A box whose shorter side is less than so many heights of a plate is hidden by the plates of points inside it."""
+_LEAST_RADIUS = 2.2  # of a numbered dot, in the canvas's unit
 DASHED: frozenset[BoxStyle] = frozenset({"before", "keep_out", "workspace"})
 
 
@@ -61,34 +70,33 @@ def draw(picture: Picture, ticks: Ticks = Ticks.PIXELS) -> Array:
         A new image of the same size, shape (H, W, 3), uint8.
     """
     canvas = Canvas.over(picture.rgb)
-    boxes = [mark for mark in picture.marks if isinstance(mark, BoxMark)]
-    lines = [mark for mark in picture.marks if isinstance(mark, LineMark)]
-    paths = [mark for mark in picture.marks if isinstance(mark, PathMark)]
-    points = [mark for mark in picture.marks if isinstance(mark, PointMark)]
-    choices = [mark for mark in picture.marks if isinstance(mark, Candidates)]
-    for box in sorted(boxes, key=lambda mark: mark.style not in ("workspace", "keep_out")):
-        draw_box(canvas, box.box.corners, box.style)
-    for line in lines:
+    boxes, regions = _of(BoxMark, picture), _of(RegionMark, picture)
+    paths = [path for path in _of(PathMark, picture) if path.points]
+    _draw_boxes(canvas, boxes, regions)
+    for line in _of(LineMark, picture):
         draw_line(canvas, line.start, line.end)
-    for path in paths:
-        draw_strip(canvas, path.points, path.width)
-        draw_path(canvas, path.points)
-    turned = [label for mark in picture.marks if isinstance(mark, TurnMark) for label in draw_turn(canvas, mark)]
-    radius, reach = candidate_radius(canvas), point_reach(canvas)
+    for number, path in enumerate(paths, start=1):
+        draw_strip(canvas, path.points, path.width, step_colour(number))
+    ways = bows([path.points for path in paths], canvas.size_px, [path.bowed for path in paths])
+    draw_arrows(canvas, ways)
+    turned = [label for mark in _of(TurnMark, picture) for label in draw_turn(canvas, mark)]
+    choices, points = _of(Candidates, picture), _of(PointMark, picture)
+    radius, reach = _choice_radius(canvas, choices), point_reach(canvas)
     numbered = [(point, str(k)) for choice in choices for k, point in enumerate(choice.points, start=1)]
+    crowd = _crowd(canvas, numbered, radius)
     for point, _ in numbered:
         canvas.keep_clear(point, radius - 1)
     for mark in points:
         canvas.keep_clear(mark.point, reach * 0.8)
     canvas.named += [point for point, _ in numbered] + [mark.point for mark in points]
-    for axes in (mark for mark in picture.marks if isinstance(mark, Axes)):
+    for axes in _of(Axes, picture):
         draw_axes(canvas, picture.frame, axes, ticks)
-    labels = [PointLabel(point, text, radius, BLUE) for point, text in numbered]
+    labels = [PointLabel(point, text, radius, BLUE, off_things=crowd) for point, text in numbered]
     labels += [PointLabel(mark.point, plain(mark.label), reach * 0.8, INK) for mark in points if mark.label]
     labels += [
-        PointLabel(path.points[len(path.points) // 2], plain(path.label), canvas.stroke_px * 1.5, GREEN)
-        for path in paths
-        if path.label and path.points
+        start_label(canvas, path.points, plain(path.label), step_colour(number))
+        for number, path in enumerate(paths, start=1)
+        if path.label
     ]
     placed = label_points(canvas, [*labels, *turned])
     for point, _ in numbered:
@@ -96,16 +104,60 @@ def draw(picture: Picture, ticks: Ticks = Ticks.PIXELS) -> Array:
     for mark in points:
         canvas.cross(mark.point, reach, WHITE)
     paint_plates(canvas, placed)
-    for box in boxes:
-        if box.label:
-            label_box(canvas, box.box, plain(box.label), back=BOX_COLOURS[box.style])
-    number_tiles(canvas, [box for mark in picture.marks if isinstance(mark, Tiles) for box in mark.boxes])
+    named = [(box.box, box.label, box.style) for box in boxes]
+    for outline, label, style in (*named, *((_round(region), region.label, "keep_out") for region in regions)):
+        if label:
+            label_box(canvas, outline, plain(label), back=BOX_COLOURS[style])
+    number_tiles(canvas, [box for mark in _of(Tiles, picture) for box in mark.boxes])
     return canvas.rgb
 
 
 def line_width_px(picture: Picture) -> int:
     """How wide a box's line is drawn on a picture [px of it]."""
     return Canvas.over(picture.rgb).stroke_px
+
+
+def _of(kind: type[M], picture: Picture) -> list[M]:
+    """The marks of one kind, in order."""
+    return [mark for mark in picture.marks if isinstance(mark, kind)]
+
+
+def _round(region: RegionMark) -> Box:
+    return Box.bounding(region.corners)
+
+
+def _draw_boxes(canvas: Canvas, boxes: Sequence[BoxMark], regions: Sequence[RegionMark]) -> None:
+    """Regions first, then boxes; what targets' boxes hold is kept clear of plates."""
+    for region in regions:
+        draw_box(canvas, region.corners, "keep_out")
+    for box in sorted(boxes, key=lambda mark: mark.style not in ("workspace", "keep_out")):
+        draw_box(canvas, box.box.corners, box.style)
+    canvas.things += [box.box.as_tuple for box in boxes if box.style in _THINGS]
+
+
+def _choice_radius(canvas: Canvas, choices: Sequence[Candidates]) -> float:
+    """Radius of the dots of numbered points [px]: smaller where they stand close, so that what lies under them shows."""
+    points = [point for choice in choices for point in choice.points]
+    gaps = [math.dist(one, two) for k, one in enumerate(points) for two in points[:k]]
+    return max(_LEAST_RADIUS * canvas.unit, min([candidate_radius(canvas), *(0.2 * gap for gap in gaps)]))
+
+
+def _crowd(canvas: Canvas, numbered: Sequence[tuple[Point, str]], radius: float) -> bool:
+    """Whether the plates of numbered points would hide the thing they stand on: then it is kept clear of them.
+
+    That is so for a box that is small beside a plate, and without a box for points that stand close together.
+    """
+    if not numbered:
+        return False
+    tall = canvas.plate_size("0")[1]
+    if canvas.things:
+        return min(min(x1 - x0, y1 - y0) for x0, y0, x1, y1 in canvas.things) < _SMALL_BOX * tall
+    xs, ys = ([point[axis] for point, _ in numbered] for axis in (0, 1))
+    if len(numbered) < 2 or max(max(xs) - min(xs), max(ys) - min(ys)) > _SMALL_BOX * tall:  # noqa: PLR2004  one is no crowd
+        return False
+    room = 1.5 * tall + radius
+    canvas.things.append((min(xs) - room, min(ys) - room, max(xs) + room, max(ys) + room))
+    return True
 
 
 def draw_box(canvas: Canvas, corners: Sequence[Point], style: BoxStyle, colour: Colour | None = None) -> None:
@@ -121,7 +173,7 @@ def draw_box(canvas: Canvas, corners: Sequence[Point], style: BoxStyle, colour: 
         else:
             canvas.dashes(held, stroke, width_px=thin if style == "workspace" else None)
     else:
-        canvas.polyline(held, stroke, closed=True)
+        canvas.outline(held, stroke)
 
 
 def draw_line(canvas: Canvas, start: Point, end: Point) -> None:
@@ -129,7 +181,7 @@ def draw_line(canvas: Canvas, start: Point, end: Point) -> None:
     canvas.polyline([_on_picture(canvas, start), _on_picture(canvas, end)], YELLOW)
 
 
-def draw_strip(canvas: Canvas, points: Sequence[Point], width: float, colour: Colour = GREEN) -> None:
+def draw_strip(canvas: Canvas, points: Sequence[Point], width: float, colour: Colour) -> None:
     """What a tool of this width sweeps from the first point straight to the last [px]: tinted, its edge dashed."""
     if width <= 0 or len(points) < 2 or math.dist(points[0], points[-1]) < 1e-6:
         return
@@ -139,21 +191,6 @@ def draw_strip(canvas: Canvas, points: Sequence[Point], width: float, colour: Co
     corners = [(xa + ox, ya + oy), (xb + ox, yb + oy), (xb - ox, yb - oy), (xa - ox, ya - oy)]
     canvas.polygon(corners, colour, 0.3)
     canvas.dashes(corners, colour, width_px=max(1, canvas.stroke_px - 1))
-
-
-def draw_path(canvas: Canvas, points: Sequence[Point], colour: Colour = GREEN) -> None:
-    """A path with small dots at its inner points and an arrow head at its end."""
-    if not points:
-        return
-    if len(points) == 1:
-        canvas.disc(points[0], canvas.stroke_px * 1.6, colour, WHITE)
-        return
-    canvas.polyline(points, colour, width_px=canvas.stroke_px + 1, halo=WHITE)
-    for point in points:
-        canvas.keep_clear(point, canvas.stroke_px * 2.0)
-    for point in points[:-1]:
-        canvas.disc(point, canvas.stroke_px * 1.4, colour, WHITE)
-    canvas.arrow_head(points[-2], points[-1], colour, 6.0 * canvas.stroke_px)
 
 
 def candidate_radius(canvas: Canvas) -> float:

@@ -16,6 +16,7 @@ from wonderful_team.core.motions import Slide
 from wonderful_team.core.pictures import BoxStyle, Picture, Point, TurnMark
 from wonderful_team.core.text import spoken
 from wonderful_team.core.values import GroundedTarget, KeepOut, Limits, PlannedAction, View
+from wonderful_team.images.arrows import bows, draw_arrows, start_label, step_colour
 from wonderful_team.images.canvas import (
     BLUE,
     GREEN,
@@ -37,7 +38,6 @@ from wonderful_team.images.turn_marks import draw_turn, stays
 
 TARGET_COLOURS: tuple[Colour, ...] = (ORANGE, SKY, YELLOW, PURPLE, GREEN, VERMILLION)
 """Taken in turn by the targets of a plan."""
-_ARC = 0.14  # how far an arrow bows out, as a share of its length
 
 
 def overview(
@@ -97,20 +97,19 @@ def overview(
     }
     scale = 1 / float(picture.frame.T_view_picture[0, 0])
     strips = [width * scale for width, arrow in zip(widths, arrows, strict=True) if len(arrow) > 1] if widths else []
-    for path, width in zip(paths, strips, strict=False):
-        draw_strip(canvas, path, width)
+    for number, (path, width) in enumerate(zip(paths, strips, strict=False), start=1):
+        draw_strip(canvas, path, width, step_colour(number))
+    canvas.things += [picture.frame.box_to_picture(item.box).as_tuple for item, _ in found if item.box is not None]
     # What sweeps a strip goes straight; everything else bows, which leaves what lies between to be seen.
-    swept = dict(enumerate(strips, 1))
-    drawn = {n: path if swept.get(n) else _arc(path) for n, path in enumerate(paths, 1) if str(n) not in still}
-    labels = _draw_arrows(canvas, drawn)
+    bowed = [not width for width in strips] or [True] * len(paths)
+    ways = {n: way for n, way in enumerate(bows(paths, canvas.size_px, bowed), 1) if str(n) not in still}
+    labels = _draw_arrows(canvas, ways)
     for turn in turned:
         labels += draw_turn(canvas, turn)
     for item, colour in found:
         labels += _draw_points(canvas, picture, item, colour, _name(item, names), bool(paths))
-    for n, path in enumerate(paths, start=1):
-        if str(n) in still:
-            continue
-        canvas.cross(path[-1], point_reach(canvas), GREEN)
+    for number in ways:
+        canvas.cross(paths[number - 1][-1], point_reach(canvas), step_colour(number))
     paint_plates(canvas, label_points(canvas, labels))
     for entry in named:
         label_box(canvas, entry.box, plain(entry.text), back=entry.back, colour=entry.colour)
@@ -174,22 +173,10 @@ def _regions(
         yield item, "keep_out", item.name, 0.0
 
 
-def _draw_arrows(canvas: Canvas, arrows: Mapping[int, Sequence[Point]]) -> list[PointLabel]:
-    """All arrows by their numbers; returns these, to be placed beside the middle of each, off the line and its head."""
-    paths = list(arrows.values())
-    for path in paths:
-        canvas.polyline(path, GREEN, width_px=canvas.stroke_px + 1, halo=WHITE)
-        canvas.arrow_head(path[-2], path[-1], GREEN, 6.5 * canvas.stroke_px)
-        for point in path:
-            canvas.keep_clear(point, 1.5 * canvas.stroke_px)
-        canvas.keep_clear(path[-1], 6.5 * canvas.stroke_px)
-    middles = [
-        path[len(path) // 2] if len(path) > 2 else ((path[0][0] + path[1][0]) / 2, (path[0][1] + path[1][1]) / 2)
-        for path in paths
-    ]
-    return [
-        PointLabel(at, str(number), 2.0 * canvas.stroke_px, GREEN) for number, at in zip(arrows, middles, strict=True)
-    ]
+def _draw_arrows(canvas: Canvas, ways: Mapping[int, Sequence[Point]]) -> list[PointLabel]:
+    """All arrows by the numbers of their steps, a colour for each; returns the numbers, to be placed where they start."""
+    draw_arrows(canvas, list(ways.values()), list(ways))
+    return [start_label(canvas, path, str(number), step_colour(number)) for number, path in ways.items()]
 
 
 def _name(item: GroundedTarget, names: Mapping[str, str] | None) -> str:
@@ -231,24 +218,3 @@ def _outline(region: KeepOut, camera: Camera | None, z_m: float) -> tuple[Point,
 
 def _points(picture: Picture, points: Sequence[Point]) -> list[Point]:
     return [(float(x), float(y)) for x, y in picture.frame.to_picture(np.asarray(points, dtype=np.float64))]
-
-
-def _arc(points: Sequence[Point]) -> list[Point]:
-    """Two points become a gentle bow, which leaves what lies between them to be seen; longer paths stay."""
-    if len(points) != 2:
-        return list(points)
-    (xa, ya), (xb, yb) = points
-    dx, dy = xb - xa, yb - ya
-    if math.hypot(dx, dy) < 1e-6:
-        return list(points)
-    # Bow upwards in the picture, whichever way the arrow goes.
-    side = -1.0 if dx < 0 else 1.0
-    control = ((xa + xb) / 2 + dy * _ARC * 2 * side, (ya + yb) / 2 - dx * _ARC * 2 * side)
-    steps = np.linspace(0.0, 1.0, 25)
-    return [
-        (
-            float((1 - t) ** 2 * xa + 2 * t * (1 - t) * control[0] + t**2 * xb),
-            float((1 - t) ** 2 * ya + 2 * t * (1 - t) * control[1] + t**2 * yb),
-        )
-        for t in steps
-    ]

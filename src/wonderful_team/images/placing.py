@@ -30,6 +30,7 @@ class PointLabel:
         radius: The mark's own radius [px]; the plate stays off it.
         back: Colour of the plate.
         colour: Colour of the letters.
+        off_things: The plate keeps off the things on the canvas, with a leader line where it stands away.
     """
 
     point: Point
@@ -37,6 +38,7 @@ class PointLabel:
     radius: float
     back: Colour
     colour: Colour = WHITE
+    off_things: bool = False
 
 
 def label_points(canvas: Canvas, labels: Sequence[PointLabel]) -> list[tuple[PointLabel, Rectangle]]:
@@ -48,7 +50,8 @@ def label_points(canvas: Canvas, labels: Sequence[PointLabel]) -> list[tuple[Poi
     placed: list[tuple[PointLabel, Rectangle]] = []
     leaders: dict[Colour, list[list[Point]]] = {}
     for label in labels:
-        spot, ring = _place_round(canvas, label.point, canvas.plate_size(label.text), label.radius + 2)
+        off = canvas.things if label.off_things else ()
+        spot, ring = _place_round(canvas, label.point, canvas.plate_size(label.text), label.radius + 2, off)
         canvas.taken.append(spot)
         placed.append((label, spot))
         if ring > 0:
@@ -78,17 +81,23 @@ def label_box(canvas: Canvas, box: Box, text: str, *, back: Colour, colour: Colo
     for rank, (x, y) in enumerate(corners):
         option = _held_inside((round(x), round(y), round(x) + width, round(y) + height), canvas.size_px)
         moved = abs(option[0] - x) + abs(option[1] - y)
-        cost = _overlap(option, canvas.taken) / (width * height) + moved / (width + height) + 0.01 * rank
+        cost = (
+            _overlap(option, [*canvas.taken, *canvas.things]) / (width * height)
+            + moved / (width + height)
+            + 0.01 * rank
+        )
         if cost < lowest:
             best, lowest = option, cost
     canvas.plate(text, int(best[0]), int(best[1]), back=back, colour=colour, alpha=0.92)
 
 
-def _place_round(canvas: Canvas, point: Point, size: tuple[int, int], radius: float) -> tuple[Rectangle, int]:
+def _place_round(
+    canvas: Canvas, point: Point, size: tuple[int, int], radius: float, off: Sequence[Rectangle] = ()
+) -> tuple[Rectangle, int]:
     """The best free spot round a point, and in which ring it lies (0: touching the mark)."""
     width, height = size
     clear = radius - 0.75  # plates stand on whole pixels, so they may come this much nearer than they were asked to
-    taken = [*canvas.taken, (point[0] - clear, point[1] - clear, point[0] + clear, point[1] + clear)]
+    taken = [*canvas.taken, *off, (point[0] - clear, point[1] - clear, point[0] + clear, point[1] + clear)]
     best, best_ring, lowest = (0.0, 0.0, float(width), float(height)), 0, math.inf
     for ring, factor in enumerate(_RINGS):
         for rank, (dx, dy) in enumerate(_DIRECTIONS if ring == 0 else _OBLIQUE):

@@ -11,6 +11,7 @@ from wonderful_team.core.pictures import Picture
 from wonderful_team.core.values import View
 
 _PAD_LIGHT, _PAD_DARK = 150, 118  # the two greys of the padding's stripes
+_ROUNDS = 2  # of giving a pixel its colour back that enlarging took
 _PAD_PERIOD_PX = 16  # width of a light and a dark stripe together
 
 
@@ -82,14 +83,24 @@ def _cut(image: Array, frame: Frame) -> tuple[Array, float, float]:
 
 
 def _enlarged(cut: Array, size: tuple[int, int]) -> Array:
-    """Cubic enlargement held between the darkest and lightest neighbour, so that edges get no false halo."""
-    if (cut.shape[1], cut.shape[0]) == size:
+    """Cubic enlargement held between the darkest and lightest neighbour, so that edges get no false halo.
+
+    By a whole factor, what becomes of a pixel keeps its colour on average: shrunk again, the picture is the cut.
+    """
+    height, width = cut.shape[:2]
+    if (width, height) == size:
         return cut
     smooth = cv2.resize(cut, size, interpolation=cv2.INTER_CUBIC)
     around = np.ones((3, 3), np.uint8)
     low = cv2.resize(cv2.erode(cut, around), size, interpolation=cv2.INTER_NEAREST_EXACT)
     high = cv2.resize(cv2.dilate(cut, around), size, interpolation=cv2.INTER_NEAREST_EXACT)
-    return np.asarray(np.clip(smooth, low, high))
+    if size[0] % width or size[1] % height:
+        return np.asarray(np.clip(smooth, low, high))
+    image = np.clip(smooth, low, high).astype(np.float32)
+    for _ in range(_ROUNDS):
+        gap = cut - cv2.resize(image, (width, height), interpolation=cv2.INTER_AREA)
+        image = np.clip(image + cv2.resize(gap, size, interpolation=cv2.INTER_NEAREST_EXACT), low, high)
+    return np.asarray(np.rint(image).astype(np.uint8))
 
 
 def _padding(size: tuple[int, int]) -> Array:

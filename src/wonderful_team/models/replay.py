@@ -8,7 +8,10 @@ import re
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from pydantic import BaseModel
+
 from wonderful_team import errors
+from wonderful_team.contracts import BoxPx, PointPx
 from wonderful_team.core.caps import Estimate
 from wonderful_team.core.jsonable import to_jsonable
 from wonderful_team.core.pictures import Picture
@@ -23,6 +26,7 @@ from wonderful_team.errors import (
     reading,
 )
 from wonderful_team.models.client import as_answer, call_model
+from wonderful_team.models.wire.composing import answer_picture
 from wonderful_team.redaction import HIDDEN
 
 STAGES = ("plan", "ground", "act", "replan")
@@ -34,7 +38,8 @@ _PATIENCE_S = 0.5
 class ReplayModel:
     """Answers a run's requests from its record, by request id and try.
 
-    What is asked must be what was asked then: words, pictures (pixels and marks), role and kind of answer.
+    What is asked must be what was asked then: words, pictures (pixels and marks), role and kind of answer. Where it may differ,
+    positions in a view that was shown in another size mean the same places of it.
 
     Args:
         record: The content of a record.json.
@@ -93,7 +98,7 @@ class ReplayModel:
         self.differences += [f"{_called(request)}: {text}" for text in found]
         self.replayed += bool(entry["answer"] or entry["invalid"] or entry.get("failed"))
         if entry["answer"]:
-            return _answer(request, entry["answer"])
+            return _answer(request, entry)
         if entry["invalid"]:
             raw = entry["invalid"]["raw"]
             return Answer(raw, Usage(calls=0), self.name, raw, provenance="replayed")
@@ -205,9 +210,10 @@ def _excerpts(now: str, then: str) -> str:
     return f"{now[low : start + 40]!r}, was {then[low : start + 40]!r}"
 
 
-def _answer(request: Request, told: Mapping[str, Any]) -> Answer:
+def _answer(request: Request, entry: Mapping[str, Any]) -> Answer:
+    told = entry["answer"]
     try:
-        value = request.output.model_validate(told["parsed"])
+        value = in_todays_pixels(request.output.model_validate(told["parsed"]), *_zoom(request, entry))
     except ValueError as error:
         raise ReplayError(f"{_called(request)}: the recorded answer no longer fits its type: {error}") from error
     return Answer(
@@ -218,6 +224,34 @@ def _answer(request: Request, told: Mapping[str, Any]) -> Answer:
         provenance="replayed",
         repairs=tuple(told["repairs"]),
     )
+
+
+def _zoom(request: Request, entry: Mapping[str, Any]) -> tuple[float, float]:
+    """How many pixels of the picture that positions are given in one pixel of it was then, along x and y.
+
+    Releases may show the same view in another size.
+    """
+    shown = answer_picture(request)
+    then = next((part for part in entry["parts"] if shown is not None and part.get("picture") == shown.name), None)
+    if shown is None or then is None:
+        return 1.0, 1.0
+    return shown.size_px[0] / then["size_px"][0], shown.size_px[1] / then["size_px"][1]
+
+
+def in_todays_pixels(value: Any, across: float, down: float) -> Any:
+    """The same answer with its points and boxes in a picture that is so many times as wide and as high."""
+    match value:
+        case PointPx():
+            return PointPx(x=value.x * across, y=value.y * down)
+        case BoxPx():
+            return BoxPx(x0=value.x0 * across, y0=value.y0 * down, x1=value.x1 * across, y1=value.y1 * down)
+        case list():
+            return [in_todays_pixels(item, across, down) for item in value]
+        case BaseModel() if (across, down) != (1.0, 1.0):
+            held = {name: in_todays_pixels(getattr(value, name), across, down) for name in type(value).model_fields}
+            return value.model_copy(update=held)
+        case _:
+            return value
 
 
 def _revived(told: Mapping[str, Any]) -> WonderfulTeamError:

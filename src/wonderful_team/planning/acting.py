@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 from wonderful_team.agents import step_words
 from wonderful_team.contracts import GROUNDING_KINDS, PlanReview, ReviewSteps, StepList, WalkedReview, WriteSteps
-from wonderful_team.core.actions import Step
+from wonderful_team.core.actions import PickPlaceStep, Step
 from wonderful_team.core.pictures import BoxMark, PathMark, Picture, Point, PointMark, TurnMark
 from wonderful_team.core.text import counted
 from wonderful_team.core.values import Critique, GroundedTarget, PlannedAction, View
@@ -201,15 +201,14 @@ def overview_picture(
     """
     view = scene.views[0]
     turns = {mark.label: _on(view, mark) for mark in action_turns(actions, grounded, scene.view)}
-    paths = {str(number): _path(view, action) for number, action in enumerate(actions, start=1)}
-    return mark_targets(view, scene.view, grounded).marked(
-        *(
-            PathMark(path, label, _swept(scene, actions[int(label) - 1]))
-            for label, path in paths.items()
-            if len(path) >= 2 and not (label in turns and stays(path, turns[label]))
-        ),
-        *turns.values(),
-    )
+    arrows = []
+    for number, action in enumerate(actions, start=1):
+        path, label = _path(view, action), str(number)
+        if len(path) >= 2 and not (label in turns and stays(path, turns[label])):
+            carried = isinstance(action.step, PickPlaceStep)
+            arrows.append(PathMark(path, label, _swept(scene, action), bowed=carried))
+    drawn = mark_targets(replace(view, name=f"{view.name} with the plan"), scene.view, grounded)
+    return drawn.marked(*arrows, *turns.values())
 
 
 def _on(picture: Picture, mark: TurnMark) -> TurnMark:

@@ -47,7 +47,7 @@ def make_jobs(
             target,
             number,
             lines,
-            scene.examples([target]),
+            scene.examples([target], session.config.axes),
             _goal_of(target, targets, subgoals),
             accepted,
         )
@@ -126,7 +126,8 @@ async def read_scene(jobs: Sequence[Job]) -> tuple[SceneReading, Provenance]:
     # Where all targets are plain, the main view alone is enough to find them in.
     plain = session.config.sparing and not any(target.where or target.part for target in targets)
     context = () if plain else scene.views[1:]
-    question = ReadScene(targets, jobs[0].plan, view, context, scene.examples(targets), jobs[0].instruction)
+    examples = scene.examples(targets, session.config.axes)
+    question = ReadScene(targets, jobs[0].plan, view, context, examples, jobs[0].instruction)
     answer = await session.ask_whole(question, stage="ground")
     return answer.value, answer.provenance
 

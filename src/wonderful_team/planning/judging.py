@@ -24,7 +24,7 @@ async def judge_outcome(
         plan.subgoals,
         plan.targets,
         tuple(step_words(step) for step in plan.steps),
-        show_views(now),
+        show_views(now, " after"),
         measured_lines(executed),
     )
     outcome: Outcome = await session.ask(question, stage="replan")

@@ -31,6 +31,9 @@ PUSHES: tuple[PointRole, ...] = ("push_start", "push_end")
 ONWARD = "on to where it goes"
 """What the arrow says that points from a box to where the thing is pushed."""
 
+MARK_SHARE = 0.015
+"""A numbered mark reaches this far from its point, as a share of the picture's longer side."""
+
 
 async def choose_points(job: Job, box: Box, roles: Sequence[PointRole] = ()) -> dict[PointRole, Point]:
     """The point for each of these roles (all of the target when none is named), in view pixels; asked at once."""
@@ -47,7 +50,7 @@ async def _choose(job: Job, box: Box, role: PointRole) -> Point:
     candidates = inside_points(shown_box, GRID, GRID)
     if role in PUSHES:
         beside = beside_points(shown_box, BESIDE_SHARE * max(shown_box.width, shown_box.height))
-        candidates = (*candidates, *(point for point in beside if shown.frame.valid.contains(point)))
+        candidates = (*candidates, *_whole_marks(shown, beside))
     coarse = await _ask(job, shown, box, candidates, role, fine=False)
     if job.session.config.sparing and role in ("pick", "grasp", "place") and is_central(coarse, box):
         job.session.skip("ChoosePoint", "no second round: central on a compact shape", f"{job.target.id} {role}")
@@ -55,15 +58,20 @@ async def _choose(job: Job, box: Box, role: PointRole) -> Point:
         return coarse
     cell = Box.around(coarse, box.width * FINE_SHARE, box.height * FINE_SHARE)
     # The point may lie beside the box: the window holds its neighbourhood as well.
-    near = crop(job.scene.view, box, "crop", margin=FINE_MARGIN, min_side_px=FINE_SIDE_PX, also=(cell,))
-    fine_points = tuple(
-        point
-        for point in inside_points(near.frame.box_to_picture(cell), GRID, GRID)
-        if near.frame.valid.contains(point)
-    )
+    also = (cell.scaled(1 + 2 * FINE_MARGIN),)
+    near = crop(job.scene.view, box, "crop", margin=FINE_MARGIN, min_side_px=FINE_SIDE_PX, also=also)
+    fine_points = _whole_marks(near, inside_points(near.frame.box_to_picture(cell), GRID, GRID))
     chosen = await _ask(job, near, box, fine_points, role, fine=True)
     job.tell("point", f"{said_of(role)} point chosen", box, (chosen,))
     return chosen
+
+
+def _whole_marks(shown: Picture, points: tuple[Point, ...]) -> tuple[Point, ...]:
+    """The points that lie so far inside the view that their marks are not cut off; those inside it where none does."""
+    room = MARK_SHARE * max(shown.size_px)
+    valid = shown.frame.valid
+    inside = tuple(point for point in points if valid.contains(point))
+    return tuple(point for point in inside if valid.grown(-room, -room, -room, -room).contains(point)) or inside
 
 
 async def _ask(

@@ -3,16 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
+
+import numpy as np
 
 from wonderful_team.contracts import ShownSlot, ShownTask
 from wonderful_team.core.actions import Vocabulary
-from wonderful_team.core.geometry import Box
-from wonderful_team.core.pictures import Axes, BoxMark, Picture
-from wonderful_team.core.values import Instruction, KeepOut, Limits, Observation, SlotKind, Subgoal, Target, View
+from wonderful_team.core.pictures import Axes, Picture, RegionMark
+from wonderful_team.core.values import Instruction, KeepOut, Limits, Observation, Slot, SlotKind, Subgoal, Target, View
 from wonderful_team.images import whole
+from wonderful_team.images.cut import MARKED_SIDE_PX
 from wonderful_team.images.keep_out import region_px, table_height_m
+from wonderful_team.images.single import changed_pair, cut_outs
+from wonderful_team.images.stacked import lies_over
 
 ARRANGED: frozenset[SlotKind] = frozenset(("scene", "frame"))
 """Kinds of the instruction's pictures that show where things belong."""
@@ -55,6 +59,7 @@ class SceneShown:
 
     @cached_property
     def views(self) -> tuple[Picture, ...]:
+        """Every view whole, the main one first and large, with the regions that nothing may enter drawn on it."""
         main, *others = show_views(self.observation)
         regions = dict.fromkeys((*self.limits.keep_out, *self.keep_out))
         return main.marked(*keep_out_marks(main, self.view, regions, self.limits)), *others
@@ -66,14 +71,74 @@ class SceneShown:
 
     @cached_property
     def slots(self) -> tuple[ShownSlot, ...]:
+        """The instruction's pictures: single things and what differs in pairs cut out, whole tables as large as the main view.
+
+        A view from another side than the main one is shown of single things, and of whole tables where something lies over
+        something else: elsewhere it tells nothing that the view from the main side does not.
+        """
+        shown = self._single_things() | self._pairs()
+        for name, slot in self.instruction.slots.items():
+            if name not in shown:
+                shown[name] = tuple(self._table(slot, key) for key in self._useful(slot))
         return tuple(
-            ShownSlot(
-                slot.name,
-                slot.kind,
-                tuple(whole(view, f"{{{slot.name}}} {name}") for name, view in slot.views.items()),
-                slot.index,
+            ShownSlot(name, slot.kind, shown[name], slot.index) for name, slot in self.instruction.slots.items()
+        )
+
+    def _single_things(self) -> dict[str, tuple[Picture, ...]]:
+        things = [slot for slot in self.instruction.slots.values() if slot.kind == "object"]
+        shots = [[(_named(slot, key), view) for key, view in slot.views.items()] for slot in things]
+        return {slot.name: pictures for slot, pictures in zip(things, cut_outs(shots), strict=True)}
+
+    def _pairs(self) -> dict[str, tuple[Picture, ...]]:
+        """What differs between before and after, from the main side; from the others too where something is covered."""
+        shown: dict[str, tuple[Picture, ...]] = {}
+        ends = {slot.index: slot for slot in self.instruction.slots.values() if slot.kind == "after"}
+        for slot in self.instruction.slots.values():
+            end = ends.get(slot.index) if slot.kind == "before" else None
+            if end is None:
+                continue
+            (key, first), *others = slot.views.items()
+            pair = (
+                changed_pair((_named(slot, key), first), (_named(end, key), end.views[key]))
+                if key in end.views
+                else None
             )
-            for slot in self.instruction.slots.values()
+            if pair is None:
+                continue
+            flat = not lies_over(first, end.views[key])
+            shown[slot.name], shown[end.name] = (
+                (picture, *(() if flat else (self._table(one, other) for other, _ in others if other in one.views)))
+                for picture, one in zip(pair, (slot, end), strict=True)
+            )
+        return shown
+
+    def _useful(self, slot: Slot) -> tuple[str, ...]:
+        """The views of a picture of a whole table that are worth showing: all, or the main side's alone."""
+        key, view = next(iter(slot.views.items()))
+        same_camera = view.camera_name == self.view.camera_name and view.size_px == self.view.size_px
+        return (key,) if same_camera and not lies_over(self.view, view) else tuple(slot.views)
+
+    def _table(self, slot: Slot, key: str) -> Picture:
+        """A picture of a whole table, as large as the main view where it is that camera's."""
+        view = slot.views[key]
+        if view.camera_name == self.view.camera_name and view.size_px == self.view.size_px:
+            return whole(view, _named(slot, key), long_side_px=MARKED_SIDE_PX)
+        return whole(view, _named(slot, key))
+
+    @cached_property
+    def ticked_slots(self) -> tuple[ShownSlot, ...]:
+        """The same; what the main camera sees of a whole table carries tick labels in the main view's pixels."""
+        main = self.views[0]
+
+        def ticked(picture: Picture) -> Picture:
+            alike = picture.size_px == main.size_px and np.array_equal(
+                picture.frame.T_view_picture, main.frame.T_view_picture
+            )
+            return picture.marked(Axes(main.frame)) if alike else picture
+
+        return tuple(
+            slot if slot.kind == "object" else replace(slot, pictures=tuple(ticked(item) for item in slot.pictures))
+            for slot in self.slots
         )
 
     @cached_property
@@ -81,8 +146,8 @@ class SceneShown:
         facts = tuple(line.strip() for line in self.facts.splitlines() if line.strip())
         return ShownTask(self.instruction.text, self.views, self.slots, facts)
 
-    def examples(self, targets: Sequence[Target]) -> tuple[ShownSlot, ...]:
-        """The instruction's pictures of these targets, in the instruction's order.
+    def examples(self, targets: Sequence[Target], ticks: bool = True) -> tuple[ShownSlot, ...]:
+        """The instruction's pictures of these targets, in the instruction's order; whole tables with tick labels or without.
 
         A place is found with the scenes that define it. Where nobody says which these are, it gets all of them.
         """
@@ -91,23 +156,30 @@ class SceneShown:
         for target in targets:
             if target.kind == "area" and not scenes & set(target.like):
                 wanted |= scenes
-        return tuple(slot for slot in self.slots if slot.name in wanted)
+        return tuple(slot for slot in (self.ticked_slots if ticks else self.slots) if slot.name in wanted)
 
 
-def keep_out_marks(picture: Picture, view: View, regions: Iterable[KeepOut], limits: Limits) -> tuple[BoxMark, ...]:
-    """Regions that nothing may enter, as boxes on a whole view; what no camera can place in it is left out."""
+def keep_out_marks(picture: Picture, view: View, regions: Iterable[KeepOut], limits: Limits) -> tuple[RegionMark, ...]:
+    """Regions that nothing may enter, as outlines on a whole view; what no camera can place in it is left out."""
     marks = []
     for region in regions:
         shape = region_px(region, view.camera, table_height_m(limits))
-        box = None if shape is None else Box(*shape.bounds).intersection(Box(0, 0, *view.size_px))
-        if box is not None:
-            marks.append(BoxMark(picture.frame.box_to_picture(box), "keep_out", region.name))
+        if shape is not None:
+            corners = tuple(picture.frame.point_to_picture(xy) for xy in shape.exterior.coords[:-1])
+            marks.append(RegionMark(corners, region.name))
     return tuple(marks)
 
 
-def show_views(observation: Observation) -> tuple[Picture, ...]:
-    """Every view whole, the main one first."""
-    return tuple(whole(view, f"{name} view") for name, view in observation.views.items())
+def show_views(observation: Observation, when: str = "") -> tuple[Picture, ...]:
+    """Every view whole, the main one first and enlarged; `when` is added to their names."""
+    return tuple(
+        whole(view, f"{name} view{when}", long_side_px=0 if number else MARKED_SIDE_PX)
+        for number, (name, view) in enumerate(observation.views.items())
+    )
+
+
+def _named(slot: Slot, camera: str) -> str:
+    return f"{{{slot.name}}} {camera}"
 
 
 def plan_lines(subgoals: Sequence[Subgoal]) -> tuple[str, ...]:

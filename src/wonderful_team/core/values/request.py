@@ -56,11 +56,13 @@ class Words:
     Attributes:
         says: caption (it announces `picture`, its size and its tick labels) or positions (it says how to give positions
             in `picture`): a provider may write these in its model's own unit. "" for all other text.
+        about: Of a caption: what the picture is, in words.
     """
 
     text: str
     says: Literal["", "caption", "positions"] = ""
     picture: Picture | None = None
+    about: str = ""
 
 
 Part: TypeAlias = Words | Picture

@@ -22,6 +22,7 @@ from wonderful_team.core.pictures import (
     Picture,
     Point,
     PointMark,
+    RegionMark,
     Tiles,
     TurnMark,
 )
@@ -179,6 +180,8 @@ def _scaled_mark(mark: Mark, sx: float, sy: float) -> Mark:
             return replace(mark, centre=at(mark.centre), corners=tuple(at(corner) for corner in mark.corners))
         case LineMark():
             return LineMark(at(mark.start), at(mark.end))
+        case RegionMark():
+            return replace(mark, corners=tuple(at(point) for point in mark.corners))
         case Axes():
             return mark
 

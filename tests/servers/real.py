@@ -13,7 +13,6 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import httpx2
-
 from tools.tiny_model import NAME
 
 START_S = 600.0

@@ -99,7 +99,9 @@ _BOUNDS: tuple[tuple[str, Callable[[Any, Any], bool]], ...] = (
 )
 
 
-def misfits(value: Any, schema: Mapping[str, Any], where: str = "answer", root: Mapping[str, Any] | None = None) -> list[str]:
+def misfits(
+    value: Any, schema: Mapping[str, Any], where: str = "answer", root: Mapping[str, Any] | None = None
+) -> list[str]:
     """Where a value breaks a JSON schema, by the words that ours use."""
     root = schema if root is None else root
     if "$ref" in schema:
@@ -112,7 +114,11 @@ def misfits(value: Any, schema: Mapping[str, Any], where: str = "answer", root: 
     kind = _TYPES.get(wanted, object) if isinstance(wanted, str) else object
     if not isinstance(value, kind) or (isinstance(value, bool) and wanted in ("integer", "number")):
         return [f"{where}: {value!r} is no {wanted}"]
-    found = [f"{where}: {value!r} breaks {word} {schema[word]}" for word, broken in _BOUNDS if word in schema and broken(value, schema[word])]
+    found = [
+        f"{where}: {value!r} breaks {word} {schema[word]}"
+        for word, broken in _BOUNDS
+        if word in schema and broken(value, schema[word])
+    ]
     if isinstance(value, list):
         for index, item in enumerate(value):
             found += misfits(item, schema.get("items", {}), f"{where}[{index}]", root)

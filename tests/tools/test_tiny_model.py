@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-
 from tools.tiny_model import CONTROL, LIKELIER, learn_merges, letters, write_model
 
 SIZES = {0: 1, 1: 1, 4: 4, 5: 4, 6: 4, 7: 1}
@@ -118,7 +117,11 @@ def test_what_ends_a_text_is_likelier_than_other_tokens_whatever_came_before(fol
     logits = (hidden @ plain["lm_head.weight"].T).mean(axis=0)
     assert logits[tokens.index('"')] > 4.0 > np.median(logits) + 3.5
     # No layer, and no picture, changes the channel that makes them likelier.
-    for name in ("model.layers.0.self_attn.o_proj.weight", "model.layers.1.mlp.down_proj.weight", "visual.merger.mlp.2.weight"):
+    for name in (
+        "model.layers.0.self_attn.o_proj.weight",
+        "model.layers.1.mlp.down_proj.weight",
+        "visual.merger.mlp.2.weight",
+    ):
         assert not plain[name][0].any()
 
 

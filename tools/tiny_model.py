@@ -1,10 +1,10 @@
 """Write a tiny vision-language model with random weights, to try a real model server without downloading anything.
 
-    python tools/tiny_model.py FOLDER [--seed N]
+    python -m tools.tiny_model FOLDER [--seed N]
 
 The same weights, in the architecture of Qwen2.5-VL, are written in two forms: `hf/` (for vLLM, SGLang, `transformers serve`) and `model.gguf`
-with `mmproj.gguf` (for llama.cpp). About five megabytes, made in seconds with the standard library and numpy, the same for the same seed.
-What it answers is noise; only the marks that end a text, a list and an answer are made likelier, so that answers under a schema come to an end.
+with `mmproj.gguf` (for llama.cpp). Seven megabytes, made in seconds with the standard library and numpy, the same for the
+same seed and checkout. What it answers is noise; only the marks that end a text, a list and an answer are made likelier, so that answers under a schema come to an end.
 """
 
 from __future__ import annotations
@@ -12,19 +12,21 @@ from __future__ import annotations
 import argparse
 import json
 import re
-import struct
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
 
 import numpy as np
+
+from tools.weight_files import Numbers, Tensors, write_gguf, write_safetensors
 
 NAME = "qwen2.5-vl-tiny"
 HIDDEN, HEADS, LAYERS, INNER = 128, 2, 2, 256
 EYE_HIDDEN, EYE_HEADS, EYE_LAYERS, EYE_INNER = 64, 2, 2, 128
 PATCH, MERGE, FRAMES = 14, 2, 2
 CONTEXT = 131072
+SOURCES = ("models.md", "worlds.md", "architecture.md")
+"""Pages of docs/ that the tokenizer is made from."""
 MERGES = 1000
 """Joined pairs of the tokenizer: about three characters of English are one token, as with real ones."""
 CONTROL = ("<|endoftext|>", "<|im_start|>", "<|im_end|>", "<|vision_start|>", "<|vision_end|>", "<|image_pad|>", "<|video_pad|>")  # fmt: skip
@@ -45,8 +47,6 @@ TEMPLATE = """\
 {% endfor -%}
 {% if add_generation_prompt %}<|im_start|>assistant
 {% endif %}"""
-
-Tensors = dict[str, np.ndarray]
 
 # -- tokenizer -----------------------------------------------------------------------------------------------------
 
@@ -97,8 +97,8 @@ def make_tensors(tokens: Sequence[str], seed: int) -> Tensors:
     """All weights, under the names of Qwen2.5-VL's own files."""
     rng = np.random.default_rng(seed)
 
-    def normal(*shape: int) -> np.ndarray:
-        return (rng.standard_normal(shape) * (0.5 / np.sqrt(shape[-1]))).astype(np.float32)
+    def normal(*shape: int) -> Numbers:
+        return np.asarray(rng.standard_normal(shape) * (0.5 / np.sqrt(shape[-1])), np.float32)
 
     kept = np.ones(HIDDEN, np.float32)
     kept[0] = 0.0
@@ -256,24 +256,9 @@ def write_hf(folder: Path, tensors: Tensors, tokens: Sequence[str], merges: Sequ
         "tokenizer.json": tokenizer,
         "tokenizer_config.json": settings,
         "generation_config.json": generation,
-        "vocab.json": tokenizer["model"]["vocab"],
     }.items():
         (folder / name).write_text(json.dumps(value, indent=1), encoding="utf-8")
-    (folder / "merges.txt").write_text("\n".join(" ".join(pair) for pair in merges) + "\n", encoding="utf-8")
-    (folder / "chat_template.jinja").write_text(TEMPLATE, encoding="utf-8")
     write_safetensors(folder / "model.safetensors", tensors)
-
-
-def write_safetensors(path: Path, tensors: Tensors) -> None:
-    """https://huggingface.co/docs/safetensors: length and JSON of the head, then the numbers."""
-    head: dict[str, Any] = {"__metadata__": {"format": "pt"}}
-    at = 0
-    for name, tensor in tensors.items():
-        head[name] = {"dtype": "F32", "shape": tensor.shape, "data_offsets": [at, at + tensor.nbytes]}
-        at += tensor.nbytes
-    words = json.dumps(head).encode()
-    words += b" " * (-len(words) % 8)
-    path.write_bytes(struct.pack("<Q", len(words)) + words + b"".join(tensor.tobytes() for tensor in tensors.values()))
 
 
 # -- the form of llama.cpp's files ---------------------------------------------------------------------------------
@@ -366,49 +351,6 @@ def write_gguf_files(folder: Path, tensors: Tensors, tokens: Sequence[str], merg
     write_gguf(folder / "mmproj.gguf", encoder, gguf_tensors(tensors, vision=True))
 
 
-def write_gguf(path: Path, said: Mapping[str, Any], tensors: Tensors) -> None:
-    """https://github.com/ggml-org/ggml/blob/master/docs/gguf.md, version 3: what is said of the model, where its numbers are, the numbers."""
-    parts = [b"GGUF", struct.pack("<IQQ", 3, len(tensors), len(said))]
-    for name, value in said.items():
-        kind, raw = packed(value)
-        parts += [text(name), struct.pack("<I", kind), raw]
-    numbers, at = [], 0
-    for name, tensor in tensors.items():
-        raw = np.ascontiguousarray(tensor, np.float32).tobytes()
-        raw += bytes(-len(raw) % 32)
-        parts += [
-            text(name),
-            struct.pack(f"<I{tensor.ndim}Q", tensor.ndim, *reversed(tensor.shape)),
-            struct.pack("<IQ", 0, at),
-        ]
-        numbers.append(raw)
-        at += len(raw)
-    head = b"".join(parts)
-    path.write_bytes(head + bytes(-len(head) % 32) + b"".join(numbers))
-
-
-def packed(value: Any) -> tuple[int, bytes]:
-    """A value's kind and bytes: unsigned, integer in a list, number, truth, text, list."""
-    match value:
-        case bool():
-            return 7, struct.pack("<?", value)
-        case int():
-            return 4, struct.pack("<I", value)
-        case float():
-            return 6, struct.pack("<f", value)
-        case str():
-            return 8, text(value)
-    if isinstance(value[0], int):
-        return 9, struct.pack(f"<IQ{len(value)}i", 5, len(value), *value)
-    kind = packed(value[0])[0]
-    return 9, struct.pack("<IQ", kind, len(value)) + b"".join(packed(item)[1] for item in value)
-
-
-def text(words: str) -> bytes:
-    raw = words.encode()
-    return struct.pack("<Q", len(raw)) + raw
-
-
 def write_model(folder: Path, seed: int = 0) -> None:
     """Write the model in both forms."""
     root = Path(__file__).resolve().parent.parent
@@ -418,10 +360,6 @@ def write_model(folder: Path, seed: int = 0) -> None:
     folder.mkdir(parents=True, exist_ok=True)
     write_hf(folder / "hf", tensors, tokens, merges)
     write_gguf_files(folder, tensors, tokens, merges)
-
-
-SOURCES = ("models.md", "worlds.md", "architecture.md")
-"""Pages of docs/ that the tokenizer is made from."""
 
 
 def main() -> None:

@@ -7,6 +7,7 @@ nothing about answers, so nothing here asks for a right one.
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import json
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack
@@ -243,7 +244,5 @@ def test_a_probe_of_noise_finds_no_convention_and_keeps_no_profile(
 def test_a_name_that_the_server_does_not_have_is_an_unknown_model_or_taken_for_its_own(server: RealServer) -> None:
     """llama.cpp answers with the model it has, whatever it is called."""
     model = make_provider(f"{server.url}#another", timeout_s=PATIENT_S)
-    try:
+    with contextlib.suppress(UnknownModelError):
         assert answered(model, question()).raw
-    except UnknownModelError as error:
-        assert error.exit_code == 2

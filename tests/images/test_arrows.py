@@ -48,14 +48,16 @@ def test_a_path_that_is_followed_or_pushed_along_stays_as_it_is() -> None:
 def test_each_step_has_its_colour_and_none_that_of_boxes() -> None:
     assert len(set(STEP_COLOURS)) == len(STEP_COLOURS)
     assert ORANGE not in STEP_COLOURS
-    drawn = grey(PathMark((A, B), "1", True), PathMark((B, A), "2", True), PathMark((A, C), "3", True))
+    drawn = grey(
+        PathMark((A, B), "1", bowed=True), PathMark((B, A), "2", bowed=True), PathMark((A, C), "3", bowed=True)
+    )
     for number in (1, 2, 3):
         assert (drawn == step_colour(number)).all(axis=2).sum() > 100
 
 
 def test_numbers_stand_where_steps_start_beside_the_things_box() -> None:
     box = Box(60, 120, 140, 200)
-    plain, numbered = (grey(BoxMark(box), PathMark((A, B), label, True)) for label in ("", "1"))
+    plain, numbered = (grey(BoxMark(box), PathMark((A, B), label, bowed=True)) for label in ("", "1"))
     rows, columns = np.nonzero((plain != numbered).any(axis=2))
     plate = Box(columns.min(), rows.min(), columns.max() + 1, rows.max() + 1)
     assert math.dist(plate.centre, A) < math.dist(plate.centre, B)
@@ -64,7 +66,10 @@ def test_numbers_stand_where_steps_start_beside_the_things_box() -> None:
 
 
 def test_a_head_is_not_hidden_by_a_step_that_starts_there() -> None:
-    alone, both = grey(PathMark((A, C), "", True)), grey(PathMark((A, C), "", True), PathMark((C, B), "", True))
+    alone, both = (
+        grey(PathMark((A, C), "", bowed=True)),
+        grey(PathMark((A, C), "", bowed=True), PathMark((C, B), "", bowed=True)),
+    )
     head = np.s_[150:165, 284:300]
     colour = step_colour(1)
     assert (both[head] == colour).all(axis=2).sum() > 0.8 * (alone[head] == colour).all(axis=2).sum()

@@ -36,6 +36,10 @@ def scripted(**changes: Any) -> ScriptedModel:
     return ScriptedModel({**stub_script(), **changes})
 
 
+AS_LARGE = (1280, 960)
+"""Size of a view that is shown as it is: positions in its pictures are its own [px]."""
+
+
 def plan_with(
     model: Any,
     config: TeamConfig | None = None,
@@ -43,11 +47,12 @@ def plan_with(
     caps: Caps | None = None,
     vocabulary: Vocabulary = PICK_PLACE,
     tape: Tape | None = None,
+    size: tuple[int, int] = (640, 480),
     **options: Any,
 ) -> Plan:
     team = TeamPolicy(model, config or TeamConfig(mode="paper"), caps=caps, subscribers=[tape] if tape else ())
     instruction = Instruction("put the first thing into the second thing")
-    return asyncio.run(team.make_plan(photo(), instruction, vocabulary, **options))
+    return asyncio.run(team.make_plan(photo(*size), instruction, vocabulary, **options))
 
 
 def asked(model: ScriptedModel, contract: str) -> list[Request]:

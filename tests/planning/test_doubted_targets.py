@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import pytest
 
-from tests.planning.helpers import APPROVED, Tape, asked, draft, plan_with, scripted, subgoal
+from tests.planning import helpers
+from tests.planning.helpers import APPROVED, AS_LARGE, Tape, asked, draft, scripted, subgoal
 from wonderful_team.contracts import ReviewPlan
 from wonderful_team.core.pictures import PathMark, PointMark
 from wonderful_team.planning import Bounds, TeamConfig
+
+plan_with = partial(helpers.plan_with, size=AS_LARGE)
 
 LEAN = TeamConfig(mode="lean", thorough=True)
 HOLE = "The point lies in the hole of the ring; it should be on its rim."

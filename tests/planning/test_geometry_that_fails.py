@@ -2,8 +2,13 @@
 
 from __future__ import annotations
 
-from tests.planning.helpers import Tape, asked, draft, plan_with, scripted, subgoal
+from functools import partial
+
+from tests.planning import helpers
+from tests.planning.helpers import AS_LARGE, Tape, asked, draft, scripted, subgoal
 from wonderful_team.planning import Bounds, TeamConfig
+
+plan_with = partial(helpers.plan_with, size=AS_LARGE)
 
 LEAN = TeamConfig(mode="lean")
 MEASURED = "no room for T1 left of 'T2': "

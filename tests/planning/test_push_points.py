@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 import math
+from functools import partial
 
 import pytest
 
-from tests.planning.helpers import asked, draft, plan_with, scripted, subgoal
+from tests.planning import helpers
+from tests.planning.helpers import AS_LARGE, asked, draft, scripted, subgoal
 from tests.planning.test_doubted_targets import of_target, verdict
 from wonderful_team.core.actions import VOCABULARIES
 from wonderful_team.core.pictures import BoxMark, PathMark
 from wonderful_team.planning import TeamConfig
+
+plan_with = partial(helpers.plan_with, size=AS_LARGE)
 
 BLOCK, PLACE = (180, 230, 200, 250), (440, 120, 520, 200)
 GOAL = (480, 160)
@@ -112,4 +116,4 @@ def test_in_the_papers_way_the_whole_view_comes_without_an_arrow():
     coarse = next(request.question for request in asked(model, "ChoosePoint") if request.question.target.id == "T1")
     assert path(coarse.whole) is None
     assert path(coarse.crop) is None
-    assert coarse.whole.size_px == (640, 480)
+    assert coarse.whole.size_px == AS_LARGE

@@ -9,7 +9,9 @@ import pytest
 
 from tests.images.test_turned import letter
 from tests.planning.helpers import Tape, asked, draft, scripted, subgoal
+from wonderful_team.contracts import BoxPx
 from wonderful_team.core.actions import PICK_PLACE
+from wonderful_team.core.geometry import Box
 from wonderful_team.core.pictures import PathMark, TurnMark
 from wonderful_team.core.values import Instruction, Observation, Slot, View
 from wonderful_team.planning import TeamConfig, TeamPolicy
@@ -35,16 +37,17 @@ def plan_for(instruction, stated, config=LEAN, area=False, tape=None, **answers)
         return {"reasoning": "", "steps": [step]}
 
     def reading(request):
-        # The picture shows the view twice as large.
-        boxes = {"T1": (256, 176, 348, 304), "T2": (360, 120, 520, 280)}
+        view = request.question.view.frame
+        boxes = {"T1": Box(128, 88, 174, 152), "T2": Box(180, 60, 260, 140)}
+        points = {"T1": (138, 120), "T2": (220, 100)}
         return {
             "reasoning": "",
             "targets": [
                 {
                     "id": target.id, "found": True,
-                    "box": dict(zip(("x0", "y0", "x1", "y1"), boxes[target.id], strict=True)),
+                    "box": BoxPx.of(view.box_to_picture(boxes[target.id]), request.question.view).model_dump(),
                     "points": [
-                        {"role": role, "point": {"x": 440, "y": 200} if target.id == "T2" else {"x": 276, "y": 240}}
+                        {"role": role, "point": dict(zip("xy", view.point_to_picture(points[target.id]), strict=True))}
                         for role in target.roles
                     ],
                 }

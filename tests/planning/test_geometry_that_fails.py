@@ -68,7 +68,7 @@ def test_the_supervisor_is_told_what_was_measured_and_may_plan_otherwise():
     (advice,) = asked(model, "DraftPlan")[1].question.advice
     assert MEASURED in advice
     assert "60 px of the picture lie there, 100 px are needed" in advice
-    assert "on the other sides lie 440 px right, 200 px above, 200 px below" in advice
+    assert "on the other sides lie 1080 px right, 200 px above, 680 px below" in advice
     assert "goes back to the Supervisor" in tape.warnings
 
 

@@ -128,6 +128,9 @@ def test_whole_views_with_marks_are_large(task: str, mode: str) -> None:
     for request in sent(task, mode)[0]:
         for picture in request.pictures:
             whole = picture.frame.view_id == "top" and not picture.frame.T_view_picture[:2, 2].any()
+            # The small whole view beside a crop only tells which of several things is meant.
+            if picture.name.startswith("whole view with the box"):
+                continue
             if whole and picture.marks and picture.size_px[0] > 2 * picture.size_px[1] - 2:
                 assert max(picture.size_px) >= 1280, (request.id, picture.name)
 

@@ -19,7 +19,9 @@ class TileDesk:
     vocabulary = wt.PICK_PLACE
     limits = wt.Limits(low_m=(0.0, 0.0, -0.01), high_m=(0.5, 0.8, 0.4))
     instruction = wt.Instruction("put the red square to the left of the blue square")
-    facts = "Tool: a suction cup; it carries one tile at a time, over all others.\nNorth is the upper edge of the picture."
+    facts = (
+        "Tool: a suction cup; it carries one tile at a time, over all others.\nNorth is the upper edge of the picture."
+    )
 
     def __init__(self, seed: int = 0) -> None:
         # Where the tiles' centres are, shape (3, 2) [m].

@@ -16,6 +16,7 @@ from wonderful_team.core.geometry import Box
 from wonderful_team.core.pictures import RegionMark
 from wonderful_team.core.protocols import Situation, World, facts_of, offers
 from wonderful_team.core.values import Instruction, KeepOut, Request, Words
+from wonderful_team.models.stub_model import stub_script
 from wonderful_team.planning import TeamConfig, TeamPolicy
 from wonderful_team.runtime import rollout
 from wonderful_team.sims.tabletop import make_world
@@ -117,3 +118,14 @@ def test_a_push_that_was_made_is_not_announced_as_a_mistake() -> None:
     assert "What was already done, as planned; the views are newer." in text(request)
     assert done[0] in text(request)
     assert "went wrong" not in text(request)
+
+
+def test_without_a_grounding_team_an_area_is_asked_for_as_a_place() -> None:
+    def drafted(request: Request) -> Any:
+        draft = stub_script()["DraftPlan"](request)
+        return {**draft, "targets": [draft["targets"][0], {**draft["targets"][1], "kind": "area"}]}
+
+    model = scripted(DraftPlan=drafted)
+    plan_with(model, TeamConfig(ablation="s7"))
+    wanted = {request.question.target.id: request.question.purpose for request in asked(model, "LocatePoints")}
+    assert wanted == {"T1": "centre", "T2": "place"}

@@ -83,22 +83,13 @@ def overview(
             draw_box(canvas, box.corners, "target", colour)
             named.append(_Named(box, _name(item, names), colour, INK))
     paths = [_points(picture, arrow) for arrow in arrows if len(arrow) > 1]
-    turned = [
-        replace(turn, corners=tuple(_points(picture, turn.corners)), centre=_points(picture, [turn.centre])[0])
-        for turn in turns
-    ]
-    # Where something is only turned, the arc says so.
-    still = {
-        turn.label for turn in turned for n, path in enumerate(paths, 1) if str(n) == turn.label and stays(path, turn)
-    }
-    labels = _draw_arrows(canvas, {n: _arc(path) for n, path in enumerate(paths, 1) if str(n) not in still})
+    moves, turned = _moves_and_turns(picture, paths, turns)
+    labels = _draw_arrows(canvas, {number: _arc(path) for number, path in moves.items()})
     for turn in turned:
         labels += draw_turn(canvas, turn)
     for item, colour in found:
         labels += _draw_points(canvas, picture, item, colour, _name(item, names), bool(paths))
-    for n, path in enumerate(paths, start=1):
-        if str(n) in still:
-            continue
+    for path in moves.values():
         canvas.cross(path[-1], point_reach(canvas), GREEN)
     paint_plates(canvas, label_points(canvas, labels))
     for entry in named:
@@ -110,6 +101,21 @@ def action_arrows(actions: Iterable[PlannedAction]) -> tuple[tuple[Point, ...], 
     """One arrow per action that goes somewhere, through the pixels its numbers came from, in order [view px]."""
     paths = (tuple(source.point_px for source in action.sources) for action in actions)
     return tuple(path for path in paths if len(path) > 1)
+
+
+def _moves_and_turns(
+    picture: Picture, paths: Sequence[Sequence[Point]], turns: Sequence[TurnMark]
+) -> tuple[dict[int, Sequence[Point]], list[TurnMark]]:
+    """Paths by their numbers, without those of things that are only turned, where the arc says so; turns [picture px]."""
+    turned = {
+        turn.label: replace(
+            turn, corners=tuple(_points(picture, turn.corners)), centre=_points(picture, [turn.centre])[0]
+        )
+        for turn in turns
+    }
+    numbered = dict(enumerate(paths, start=1))
+    still = {n for n, path in numbered.items() if str(n) in turned and stays(path, turned[str(n)])}
+    return {n: path for n, path in numbered.items() if n not in still}, list(turned.values())
 
 
 class _Named(NamedTuple):

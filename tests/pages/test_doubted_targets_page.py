@@ -1,4 +1,4 @@
-"""A doubt about a target's point stands on the page with who answered it, and in the target's own strip."""
+"""A doubt about a target's point stands on the page with who answered it, and in the record's story of the target."""
 
 from __future__ import annotations
 
@@ -25,4 +25,4 @@ def test_the_page_tells_that_a_point_was_chosen_anew(tmp_path: Path) -> None:
     _, text = read(tmp_path / "page.html")
     assert f"Verification about T1 wrong point {HOLE} Manager the point was chosen anew" in text
     assert "found anew" in text
-    assert f"Verification: reject the point - {HOLE}" in text
+    assert f"Verification: reject the point - {HOLE}" in (tmp_path / "record.json").read_text(encoding="utf-8")

@@ -11,7 +11,7 @@ import pytest
 from wonderful_team.core.geometry import AffineCamera, Box, Frame
 from wonderful_team.core.pictures import BoxMark, Picture, Tiles, TurnMark
 from wonderful_team.core.values import View
-from wonderful_team.images import draw, resampled, seen_from_above
+from wonderful_team.images import draw, overview, resampled, seen_from_above
 from wonderful_team.images.turn_marks import arc_points
 from wonderful_team.images.turned import Shown, misfit, reach_px, thing_alone, turn_misfits, turn_strip
 
@@ -125,3 +125,19 @@ def test_a_turn_is_drawn_as_an_arc_through_its_whole_angle(turn):
     # The plate with the degrees stands beside the thing, not on it.
     assert not changed[171:177, 104:196].any()
     assert changed[:95].any() or changed[185:].any() or changed[:, :95].any() or changed[:, 205:].any()
+
+
+def test_the_picture_of_a_plan_shows_no_arrow_for_what_is_turned_where_it_lies():
+    view = letter(0)
+    centre = (150.0, 120.0)
+    mark = TurnMark(centre, Box(125, 88, 175, 152).corners, 90, "1")
+    green = (0, 158, 115)
+
+    def arrows(turns, end):
+        drawn = overview(view, arrows=[(centre, end)], turns=turns)
+        return bool((drawn == green).all(axis=2).any())
+
+    near, far = (158.0, 123.0), (250.0, 60.0)
+    assert arrows((), near)
+    assert not arrows((mark,), near)
+    assert arrows((mark,), far), "what is carried and turned has both"

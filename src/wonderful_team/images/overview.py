@@ -87,29 +87,22 @@ def overview(
             draw_box(canvas, box.corners, "target", colour)
             named.append(_Named(box, _name(item, names), colour, INK))
     paths = [_points(picture, arrow) for arrow in arrows if len(arrow) > 1]
-    turned = [
-        replace(turn, corners=tuple(_points(picture, turn.corners)), centre=_points(picture, [turn.centre])[0])
-        for turn in turns
-    ]
-    # Where something is only turned, the arc says so.
-    still = {
-        turn.label for turn in turned for n, path in enumerate(paths, 1) if str(n) == turn.label and stays(path, turn)
-    }
     scale = 1 / float(picture.frame.T_view_picture[0, 0])
     strips = [width * scale for width, arrow in zip(widths, arrows, strict=True) if len(arrow) > 1] if widths else []
     for number, (path, width) in enumerate(zip(paths, strips, strict=False), start=1):
         draw_strip(canvas, path, width, step_colour(number))
     canvas.things += [picture.frame.box_to_picture(item.box).as_tuple for item, _ in found if item.box is not None]
+    moves, turned = _moves_and_turns(picture, paths, turns)
     # What sweeps a strip goes straight; everything else bows, which leaves what lies between to be seen.
     bowed = [not width for width in strips] or [True] * len(paths)
-    ways = {n: way for n, way in enumerate(bows(paths, canvas.size_px, bowed), 1) if str(n) not in still}
-    labels = _draw_arrows(canvas, ways)
+    ways = dict(enumerate(bows(paths, canvas.size_px, bowed), start=1))
+    labels = _draw_arrows(canvas, {number: ways[number] for number in moves})
     for turn in turned:
         labels += draw_turn(canvas, turn)
     for item, colour in found:
         labels += _draw_points(canvas, picture, item, colour, _name(item, names), bool(paths))
-    for number in ways:
-        canvas.cross(paths[number - 1][-1], point_reach(canvas), step_colour(number))
+    for number, path in moves.items():
+        canvas.cross(path[-1], point_reach(canvas), step_colour(number))
     paint_plates(canvas, label_points(canvas, labels))
     for entry in named:
         label_box(canvas, entry.box, plain(entry.text), back=entry.back, colour=entry.colour)
@@ -144,6 +137,21 @@ def swept_width(action: Action | None, blade_m: float | None, camera: Camera | N
     except ValueError:
         return 0.0  # behind the camera
     return float(math.hypot(xb - xa, yb - ya))
+
+
+def _moves_and_turns(
+    picture: Picture, paths: Sequence[Sequence[Point]], turns: Sequence[TurnMark]
+) -> tuple[dict[int, Sequence[Point]], list[TurnMark]]:
+    """Paths by their numbers, without those of things that are only turned, where the arc says so; turns [picture px]."""
+    turned = {
+        turn.label: replace(
+            turn, corners=tuple(_points(picture, turn.corners)), centre=_points(picture, [turn.centre])[0]
+        )
+        for turn in turns
+    }
+    numbered = dict(enumerate(paths, start=1))
+    still = {n for n, path in numbered.items() if str(n) in turned and stays(path, turned[str(n)])}
+    return {n: path for n, path in numbered.items() if n not in still}, list(turned.values())
 
 
 class _Named(NamedTuple):

@@ -34,7 +34,11 @@ def planted(record: dict[str, Any], album: Album, asked: Sequence[Asked]) -> lis
 def _in_plan(plan: dict[str, Any]) -> dict[str, Any]:
     """A wrong plan: the lines that changed, and the doubts that changed them."""
     rows = diff_rows(plan["first_draft"] or plan["subgoals"], plan["subgoals"])
-    doubts = [doubt["question"] for doubt in plan["questions"] if doubt["changed"]]
+    doubts = [
+        doubt["question"]
+        for doubt in plan["questions"]
+        if doubt["changed"] and doubt["kind"] not in ("wrong_point", "wrong_box")
+    ]
     changed = [row["shown"] for row in rows if row["kind"] != "same"]
     return {"by": "Verification" if doubts else "", "said": doubts, "rows": changed, "frames": []}
 

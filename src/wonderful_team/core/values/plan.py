@@ -62,7 +62,7 @@ class GroundingEvent:
     """One line of a target's grounding story: a candidate, a box, a verdict, a point.
 
     Attributes:
-        what: centre | chosen | box | presence | verdict | move | point | absent | clamped.
+        what: centre | chosen | box | presence | verdict | move | point | absent | clamped | turn.
         text: What was said, in one line.
         box, points: In pixels of the main view.
     """

@@ -41,9 +41,10 @@ def steps_of_plan(session: AgentSession, scene: SceneShown, state: PlanState) ->
 
 def remember_angles(session: AgentSession, scene: SceneShown, state: PlanState, steps: Sequence[Step]) -> None:
     """Let Memory keep why something is turned as far as it is, where no words of the instruction say how far."""
+    turned = [step_words(step) for step in inferred_turns(steps, scene.instruction.text)]
     because = f" Because: {state.reasoning}" if state.reasoning else ""
-    for step in inferred_turns(steps, scene.instruction.text):
-        session.remember("supervisor", "act", "How far is it turned, and why?", f"{step_words(step)}.{because}")
+    if turned:
+        session.remember("supervisor", "act", "How far is what turned, and why?", f"{'; '.join(turned)}.{because}")
 
 
 def compute(

@@ -201,6 +201,9 @@ def _end(job: Job, status: Fate, box: Box | None, points: Mapping[str, Point] | 
 def _remember(job: Job, grounded: GroundedTarget) -> None:
     """Let Memory keep what the plan does not show of a target: what was taken for it and rejected, and which look-alike it is."""
     refused = [event.text for event in job.history if event.what == "verdict" and event.text.startswith(REFUSED)]
+    if not job.session.members.checker:
+        # Nobody has refused anything: the last box stands.
+        refused = []
     if not refused and not (job.unsure and grounded.status == "found"):
         return
     where = f" ({job.target.where})" if job.target.where else ""

@@ -12,21 +12,28 @@ from wonderful_team.core.pictures import BoxMark, PathMark, Picture, Point, Poin
 from wonderful_team.core.values import Critique, GroundedTarget, PlannedAction, View
 from wonderful_team.motion import ground_actions
 from wonderful_team.planning.notes import steps_note
-from wonderful_team.planning.plan_loop import PlanState, remember_doubt, resolve, told
+from wonderful_team.planning.plan_loop import PlanState, remember_doubt, resolve, settled_lines, told
 from wonderful_team.planning.scene import SceneShown
 from wonderful_team.planning.session import AgentSession
 from wonderful_team.planning.spending import inferred_turns, steps_said
 
 
-async def write_steps(
+async def ask_steps(
     session: AgentSession, scene: SceneShown, state: PlanState, functions: Sequence[str], doubt: str = ""
-) -> tuple[Step, ...]:
-    """The Supervisor's steps."""
+) -> StepList:
+    """The Supervisor's answer: steps, and what decided them."""
     question = WriteSteps(
         scene.task, scene.vocabulary.step_kinds, state.subgoals, state.targets, tuple(functions), doubt
     )
     written: StepList = await session.ask(question, stage="act")
-    return written.to_steps()
+    return written
+
+
+async def write_steps(
+    session: AgentSession, scene: SceneShown, state: PlanState, functions: Sequence[str]
+) -> tuple[Step, ...]:
+    """The Supervisor's steps."""
+    return (await ask_steps(session, scene, state, functions)).to_steps()
 
 
 def steps_of_plan(session: AgentSession, scene: SceneShown, state: PlanState) -> tuple[Step, ...] | None:
@@ -34,7 +41,7 @@ def steps_of_plan(session: AgentSession, scene: SceneShown, state: PlanState) ->
     kinds = scene.vocabulary.step_kinds
     if not session.config.sparing or not steps_said(state.subgoals, state.targets, state.moves, kinds):
         return None
-    session.skip("WriteSteps", "the plan states a pick and a place for each subgoal")
+    session.skip("WriteSteps", "the plan states them")
     session.note("supervisor", "WriteSteps", steps_note(state.moves))
     return state.moves
 
@@ -73,13 +80,12 @@ async def check_steps(
         The plan, its steps and their numbers. No numbers (None) when a doubt changed the plan: then the plan is a new one,
         and has to be checked and grounded.
     """
-    checked: list[str] = []
     while True:
         actions = compute(scene, steps, grounded, paths)
         if not session.members.verification:
             return state, steps, actions
         shown = overview_picture(scene, grounded, actions)
-        question = _review_question(session, scene, state, steps, shown, checked)
+        question = _review_question(session, scene, state, steps, shown)
         answer = await session.ask_whole(question, stage="act")
         review: PlanReview = answer.value
         if review.doubt is None:
@@ -96,9 +102,9 @@ async def check_steps(
             state, answered = await resolve(session, scene, state, asked)
             if answered.changed:
                 return state, steps, None
-            checked.append(f"asked about {answered.about}: {answered.question} Answer: {answered.answer}")
             continue
-        revised = await write_steps(session, scene, state, tuple(paths), review.doubt.question)
+        written = await ask_steps(session, scene, state, tuple(paths), review.doubt.question)
+        revised = written.to_steps()
         doubt = Critique(
             f"step {review.doubt.about}",
             review.doubt.kind,
@@ -107,8 +113,7 @@ async def check_steps(
             revised != steps,
             answer.provenance,
         )
-        remember_doubt(session, "act", doubt, "")
-        checked.append(f"asked about step {doubt.about}: {doubt.question} Answer: {doubt.answer}")
+        remember_doubt(session, "act", doubt, written.reasoning)
         state, steps = replace(state, questions=(*state.questions, doubt)), revised
 
 
@@ -118,14 +123,15 @@ def _review_question(
     state: PlanState,
     steps: tuple[Step, ...],
     shown: Picture,
-    checked: Sequence[str],
 ) -> ReviewSteps:
     task = scene.task
     if session.config.sparing:
         # The drawn plan takes the place of the main view, which it shows.
         task = replace(task, views=(shown, *task.views[1:]))
     kinds = () if state.reviewed else scene.vocabulary.step_kinds
-    return ReviewSteps(task, state.subgoals, state.targets, steps, shown, tuple(checked), state.reviewed, kinds)
+    return ReviewSteps(
+        task, state.subgoals, state.targets, steps, shown, settled_lines(state.questions), state.reviewed, kinds
+    )
 
 
 def overview_picture(

@@ -122,7 +122,7 @@ async def settle_reading(
             boxes = [job.first_box for job in plain if job.first_box is not None]
             await judge_together(plain, boxes)
             named = ", ".join(job.target.id for job in plain)
-            plain[0].session.skip("JudgeBox", f"plain targets are judged in one question ({named})")
+            plain[0].session.skip("JudgeBox", f"{named} in one question")
         return await together([_settle_one(job, reading, provenance) for job in plain])
 
     async def one_by_one() -> list[GroundedTarget]:

@@ -104,7 +104,7 @@ async def verify_where_needed(
     )
     if why or not (session.config.sparing and session.members.verification):
         return await verify(session, scene, state)
-    session.skip("ReviewPlan", "a plain plan is checked with its steps, drawn over the picture")
+    session.skip("ReviewPlan", "a plain plan is checked with its steps")
     return state
 
 
@@ -116,7 +116,7 @@ async def verify(session: AgentSession, scene: SceneShown, state: PlanState) -> 
     if state.unsure:
         session.note("verification", "unsure", one_line(f"The Supervisor is not sure: {state.unsure}"))
     whole = session.config.sparing
-    checked: list[str] = [_settled_line(doubt) for doubt in state.questions]
+    checked = list(settled_lines(state.questions))
     passed: set[str] = set()
     overruled = False
     while True:
@@ -144,7 +144,7 @@ async def verify(session: AgentSession, scene: SceneShown, state: PlanState) -> 
             break
         doubt = Critique(verdict.doubt.about, verdict.doubt.kind, verdict.doubt.question, provenance=review.provenance)
         state, answered = await resolve(session, scene, state, doubt)
-        checked.append(_settled_line(answered))
+        checked += settled_lines((answered,))
         # A revised plan is a new plan: each of its subgoals may be checked once more.
         overruled = not answered.changed
         passed = set() if answered.changed else passed | ({under_check} if under_check else set())
@@ -153,8 +153,12 @@ async def verify(session: AgentSession, scene: SceneShown, state: PlanState) -> 
     return state
 
 
-def _settled_line(doubt: Critique) -> str:
-    return f"asked about {doubt.about}: {doubt.question} Answer: {doubt.answer}"
+def settled_lines(questions: Sequence[Critique]) -> tuple[str, ...]:
+    """What was asked before and how it was settled, one line each."""
+    return tuple(
+        f"asked about {one.about}: {one.question} Answer: {one.answer} ({'changed' if one.changed else 'kept'})"
+        for one in questions
+    )
 
 
 async def resolve(

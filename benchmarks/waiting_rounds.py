@@ -49,6 +49,7 @@ def main() -> None:
     )
     for mode in ("paper", "lean"):
         describe(mode, TeamConfig(mode=mode))
+    describe("lean, thorough", TeamConfig(mode="lean", thorough=True))
     for ablation in ("s1", "s2", "s4", "s6", "s7", "s8"):
         describe(f"paper, {ablation}", TeamConfig(mode="paper", ablation=ablation))
 

@@ -27,15 +27,22 @@ from wonderful_team.planning.spending import inferred_turns, steps_said
 from wonderful_team.planning.turns import settle_turns
 
 
-async def write_steps(
+async def ask_steps(
     session: AgentSession, scene: SceneShown, state: PlanState, functions: Sequence[str], doubt: str = ""
-) -> tuple[Step, ...]:
-    """The Supervisor's steps."""
+) -> StepList:
+    """The Supervisor's answer: steps, and what decided them."""
     question = WriteSteps(
         scene.task, scene.vocabulary.step_kinds, state.subgoals, state.targets, tuple(functions), doubt
     )
     written: StepList = await session.ask(question, stage="act")
-    return written.to_steps()
+    return written
+
+
+async def write_steps(
+    session: AgentSession, scene: SceneShown, state: PlanState, functions: Sequence[str]
+) -> tuple[Step, ...]:
+    """The Supervisor's steps."""
+    return (await ask_steps(session, scene, state, functions)).to_steps()
 
 
 def steps_of_plan(session: AgentSession, scene: SceneShown, state: PlanState) -> tuple[Step, ...] | None:
@@ -43,16 +50,17 @@ def steps_of_plan(session: AgentSession, scene: SceneShown, state: PlanState) ->
     kinds = scene.vocabulary.step_kinds
     if not session.config.sparing or not steps_said(state.subgoals, state.targets, state.moves, kinds):
         return None
-    session.skip("WriteSteps", "the plan states a pick and a place for each subgoal")
+    session.skip("WriteSteps", "the plan states them")
     session.note("supervisor", "WriteSteps", steps_note(state.moves))
     return state.moves
 
 
 def remember_angles(session: AgentSession, scene: SceneShown, state: PlanState, steps: Sequence[Step]) -> None:
     """Let Memory keep why something is turned as far as it is, where no words of the instruction say how far."""
+    turned = [step_words(step) for step in inferred_turns(steps, scene.instruction.text)]
     because = f" Because: {state.reasoning}" if state.reasoning else ""
-    for step in inferred_turns(steps, scene.instruction.text):
-        session.remember("supervisor", "act", "How far is it turned, and why?", f"{step_words(step)}.{because}")
+    if turned:
+        session.remember("supervisor", "act", "How far is what turned, and why?", f"{'; '.join(turned)}.{because}")
 
 
 def compute(
@@ -128,7 +136,7 @@ async def check_steps(
             if answered.changed:
                 return Acted(state, steps, grounded, None, changed=True)
             continue
-        doubt = Critique(about if of_target else f"step {about}", kind, said, provenance=answer.provenance)
+        doubt, why = Critique(about if of_target else f"step {about}", kind, said, provenance=answer.provenance), ""
         if of_target:
             looks[about] += 1
             grounded, doubt = await _look_again(jobs, grounded, doubt)
@@ -137,10 +145,11 @@ async def check_steps(
             if paths:
                 paths = await write_functions(session, scene, state.subgoals, grounded)
         else:
-            revised = await write_steps(session, scene, state, tuple(paths), said)
+            written = await ask_steps(session, scene, state, tuple(paths), said)
+            revised, why = written.to_steps(), written.reasoning
             done = "steps rewritten" if revised != steps else "steps kept"
             steps, doubt = revised, replace(doubt, answer=done, changed=revised != steps)
-        remember_doubt(session, "act", doubt, "")
+        remember_doubt(session, "act", doubt, why)
         state = replace(state, questions=(*state.questions, doubt))
 
 

@@ -150,7 +150,7 @@ async def settle_reading(
         if plain:
             await judge_together(plain)
             named = ", ".join(job.target.id for job in plain)
-            plain[0].session.skip("JudgeBox", f"plain targets are judged in one question ({named})")
+            plain[0].session.skip("JudgeBox", f"{named} in one question")
         return await together([_settle_one(job, provenance) for job in plain])
 
     async def one_by_one() -> list[GroundedTarget]:
@@ -262,6 +262,9 @@ def _end(job: Job, status: Fate, box: Box | None, points: Mapping[PointRole, Poi
 def _remember(job: Job, grounded: GroundedTarget) -> None:
     """Let Memory keep what the plan does not show of a target: what was taken for it and rejected, and which look-alike it is."""
     refused = [event.text for event in job.history if event.what == "verdict" and event.text.startswith(REFUSED)]
+    if not job.session.members.checker:
+        # Nobody has refused anything: the last box stands.
+        refused = []
     if not refused and not (job.unsure and grounded.status == "found"):
         return
     where = f" ({job.target.where})" if job.target.where else ""

@@ -106,7 +106,7 @@ async def verify_where_needed(
     )
     if why or not (session.config.sparing and session.members.verification):
         return await verify(session, scene, state)
-    session.skip("ReviewPlan", "a plain plan is checked with its steps, drawn over the picture")
+    session.skip("ReviewPlan", "a plain plan is checked with its steps")
     return state
 
 
@@ -118,7 +118,7 @@ async def verify(session: AgentSession, scene: SceneShown, state: PlanState) -> 
     if state.unsure:
         session.note("verification", "unsure", one_line(f"The Supervisor is not sure: {state.unsure}"))
     whole = session.config.sparing
-    checked: list[str] = [*settled_lines(state.questions)]
+    checked = list(settled_lines(state.questions))
     passed: set[str] = set()
     overruled = False
     while True:

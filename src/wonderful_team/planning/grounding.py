@@ -31,10 +31,9 @@ def make_jobs(
     session: AgentSession, scene: SceneShown, targets: Sequence[Target], subgoals: Sequence[Subgoal]
 ) -> list[Job]:
     """One job per target."""
-    lines, ticks = plan_lines(subgoals), session.config.axes
+    lines = plan_lines(subgoals)
     return [
-        Job(session, scene, target, number, lines, scene.examples([target], ticks))
-        for number, target in enumerate(targets)
+        Job(session, scene, target, number, lines, scene.examples([target])) for number, target in enumerate(targets)
     ]
 
 

@@ -107,7 +107,7 @@ def draw(picture: Picture, ticks: Ticks = Ticks.PIXELS) -> Array:
     named = [(box.box, box.label, box.style) for box in boxes]
     for outline, label, style in (*named, *((_round(region), region.label, "keep_out") for region in regions)):
         if label:
-            label_box(canvas, outline, plain(label), back=BOX_COLOURS[style])
+            label_box(canvas, outline, plain(label), back=BOX_COLOURS[style], inside=style == "keep_out")
     number_tiles(canvas, [box for mark in _of(Tiles, picture) for box in mark.boxes])
     return canvas.rgb
 

@@ -78,7 +78,7 @@ def overview(
         if corners is not None:
             on_picture = _points(picture, corners)
             draw_box(canvas, on_picture, style)
-            named += [_Named(Box.bounding(on_picture), name, VERMILLION, WHITE)] if name else []
+            named += [_Named(Box.bounding(on_picture), name, VERMILLION, WHITE, is_region=True)] if name else []
     targets = grounded.values() if isinstance(grounded, Mapping) else grounded
     found = [(item, TARGET_COLOURS[k % len(TARGET_COLOURS)]) for k, item in enumerate(_found(targets))]
     for item, colour in found:
@@ -105,7 +105,7 @@ def overview(
         canvas.cross(path[-1], point_reach(canvas), step_colour(number))
     paint_plates(canvas, label_points(canvas, labels))
     for entry in named:
-        label_box(canvas, entry.box, plain(entry.text), back=entry.back, colour=entry.colour)
+        label_box(canvas, entry.box, plain(entry.text), back=entry.back, colour=entry.colour, inside=entry.is_region)
     return canvas.rgb
 
 
@@ -161,6 +161,7 @@ class _Named(NamedTuple):
     text: str
     back: Colour
     colour: Colour
+    is_region: bool = False
 
 
 def _found(targets: Iterable[GroundedTarget]) -> list[GroundedTarget]:

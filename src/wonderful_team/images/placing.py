@@ -67,8 +67,11 @@ def paint_plates(canvas: Canvas, placed: Sequence[tuple[PointLabel, Rectangle]])
         canvas.plate(label.text, int(spot[0]), int(spot[1]), back=label.back, colour=label.colour, alpha=0.92)
 
 
-def label_box(canvas: Canvas, box: Box, text: str, *, back: Colour, colour: Colour = INK) -> None:
-    """A plate at a box: above its top-left corner if there is room, else below, beside, or inside the box."""
+def label_box(canvas: Canvas, box: Box, text: str, *, back: Colour, colour: Colour = INK, inside: bool = False) -> None:
+    """A plate at a box: above its top-left corner if there is room, else below, beside, or inside the box.
+
+    With `inside`, which is for regions that are no things, in its corner first.
+    """
     width, height = canvas.plate_size(text)
     half = canvas.stroke_px / 2 + 1
     x0, y0, x1, y1 = box.as_tuple
@@ -77,6 +80,8 @@ def label_box(canvas: Canvas, box: Box, text: str, *, back: Colour, colour: Colo
         (left, above), (right, above), (left, below), (right, below), (x1 + half, y0 - half),
         (x0 - half - width, y0 - half), (x0 + half, y0 + half), (x0 + half, y1 - half - height),
     )  # fmt: skip
+    if inside:
+        corners = (*corners[-2:], *corners[:-2])
     best, lowest = (0.0, 0.0, float(width), float(height)), math.inf
     for rank, (x, y) in enumerate(corners):
         option = _held_inside((round(x), round(y), round(x) + width, round(y) + height), canvas.size_px)

@@ -47,7 +47,7 @@ def make_jobs(
             target,
             number,
             lines,
-            scene.examples([target], session.config.axes),
+            scene.examples([target]),
             _goal_of(target, targets, subgoals),
             accepted,
         )

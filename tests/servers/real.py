@@ -15,7 +15,7 @@ from pathlib import Path
 import httpx2
 from tools.tiny_model import NAME
 
-START_S = 600.0
+START_S = 1200.0
 """Longest time for a server to load its model: vLLM needs minutes on a busy machine."""
 STOP_S = 30.0
 
@@ -39,7 +39,7 @@ def _llama_server(program: str, model: Path, wanted: Wanted, port: int) -> list[
     words = [program, "-m", f"{model}/model.gguf", "--alias", NAME, "-c", str(wanted.context), "--seed", "1"]
     words += ["--mmproj", f"{model}/mmproj.gguf"] if wanted.pictures else []
     words += ["--api-key", wanted.key] if wanted.key else []
-    return [*words, "--host", "127.0.0.1", "--port", str(port), "-t", "2", "-np", "4", "--no-warmup"]
+    return [*words, "--host", "127.0.0.1", "--port", str(port), "-t", "2", "--no-warmup"]
 
 
 def _vllm(program: str, model: Path, wanted: Wanted, port: int) -> list[str]:

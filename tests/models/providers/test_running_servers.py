@@ -42,7 +42,7 @@ from wonderful_team.models.providers.listing import server_models
 from wonderful_team.models.providers.server_facts import server_facts
 from wonderful_team.models.providers.vendors import SERVER
 
-pytestmark = [pytest.mark.servers, pytest.mark.enable_socket, pytest.mark.timeout(1200)]
+pytestmark = [pytest.mark.servers, pytest.mark.enable_socket, pytest.mark.timeout(1800)]
 
 PATIENT_S = 300.0
 """For one reply, on a busy machine."""

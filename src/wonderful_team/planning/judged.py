@@ -25,10 +25,15 @@ def judge_box(job: Job, box: Box, points: Mapping[PointRole, Point], name: str =
     also = [Box.around(point, 1, 1) for point in drawn.values()]
     shown = _boxed(job, crop(job.scene.view, box, name, also=also), box)
     marks = (PointMark(shown.frame.point_to_picture(point), said_of(role)) for role, point in drawn.items())
-    goal = _goal(job, box, also)
-    # Where the same part of the defining scene is shown, whole scenes say nothing more.
-    examples = job.examples if goal is None else tuple(slot for slot in job.examples if not slot.whole_scene)
-    return JudgeBox(job.target, shown.marked(*marks), examples, tuple(drawn), _whole_view(job, box), _alike(job), goal)
+    return JudgeBox(
+        job.target,
+        shown.marked(*marks),
+        job.examples,
+        tuple(drawn),
+        _whole_view(job, box),
+        _alike(job),
+        _goal(job, box, also),
+    )
 
 
 def said_of(role: PointRole) -> str:

@@ -101,8 +101,8 @@ def overview(
         labels += draw_turn(canvas, turn)
     for item, colour in found:
         labels += _draw_points(canvas, picture, item, colour, _name(item, names), bool(paths))
-    for number, path in moves.items():
-        canvas.cross(path[-1], point_reach(canvas), step_colour(number))
+    for number, move in moves.items():
+        canvas.cross(move[-1], point_reach(canvas), step_colour(number))
     paint_plates(canvas, label_points(canvas, labels))
     for entry in named:
         label_box(canvas, entry.box, plain(entry.text), back=entry.back, colour=entry.colour, inside=entry.is_region)

@@ -46,6 +46,7 @@ async def find(
     session.stage(
         "grounded", "   ".join(f"{key} {item.target.words} ({_says(item)})" for key, item in grounded.items())
     )
+    session.tell_skipped()
     plan = Plan(
         instruction, status, targets=tuple(targets), grounded=grounded, scene_hash=observation.hash, message=message
     )

@@ -70,7 +70,7 @@ class Server:
                     own.wait.wait(own.slow_s[number])
                 own.on_answer()
                 scripted = own.script[number] if number < len(own.script) else None
-                self.say(*(scripted or (200, own.answer())))
+                self.say(*(scripted or own.reply(number)))
 
             def say(self, status: int, value: Any) -> None:
                 raw = json.dumps(value).encode()
@@ -90,6 +90,10 @@ class Server:
         self.server.daemon_threads = True
         self.url = f"http://127.0.0.1:{self.server.server_port}/v1"
         Thread(target=self.server.serve_forever, daemon=True).start()
+
+    def reply(self, number: int) -> Reply:
+        """What a request that is not scripted gets."""
+        return 200, self.answer()
 
     def answer(self) -> dict[str, Any]:
         text = right_answer(question()).model_dump_json()

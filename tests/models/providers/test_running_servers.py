@@ -47,6 +47,8 @@ pytestmark = [pytest.mark.servers, pytest.mark.enable_socket, pytest.mark.timeou
 PATIENT_S = 300.0
 """For one reply, on a busy machine."""
 Start = Callable[[Wanted], RealServer]
+LONG, SHORT, SHORTER = Wanted(), Wanted(context=8192, key="right-key-for-tests"), Wanted(context=1024)
+BLIND = Wanted(pictures=False)
 
 
 @pytest.fixture(scope="module")
@@ -62,21 +64,23 @@ def start(request: pytest.FixtureRequest, weights: Path, tmp_path_factory: pytes
     kind = KINDS[request.param]
     if not kind.program:
         pytest.skip(f"{kind.variable} names no {request.param}")
-    running: dict[Wanted, RealServer] = {}
+    running: list[tuple[Wanted, RealServer]] = []
     with ExitStack() as stack:
 
         def started(wanted: Wanted) -> RealServer:
-            if wanted not in running:
+            if not running or running[0][0] != wanted:
+                # One at a time: each holds a model and its memory.
+                stack.close()
                 folder = tmp_path_factory.mktemp(request.param)
-                running[wanted] = stack.enter_context(serving(kind, weights, folder, wanted))
-            return running[wanted]
+                running[:] = [(wanted, stack.enter_context(serving(kind, weights, folder, wanted)))]
+            return running[0][1]
 
         yield started
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture
 def server(start: Start) -> RealServer:
-    return start(Wanted())
+    return start(LONG)
 
 
 def provider(server: RealServer, **options: Any) -> Any:
@@ -110,7 +114,7 @@ def answered(model: Any, request: Request, tries: int = 4) -> Answer:
 
 def test_it_lists_its_model_and_says_how_long_its_context_is(server: RealServer) -> None:
     assert server_models(server.url, None, timeout_s=30.0) == [NAME]
-    assert server_facts(SERVER, server.url, NAME, None, timeout_s=30.0).context == Wanted().context
+    assert server_facts(SERVER, server.url, NAME, None, timeout_s=30.0).context == LONG.context
     assert make_provider(server.url).model == NAME, "an address alone is enough where there is one model"
 
 
@@ -130,18 +134,6 @@ def test_it_takes_the_words_pictures_and_schema_of_every_question_and_keeps_to_t
     assert misfits(json.loads(answer.raw), model._compose(request).form.schema) == []
 
 
-def test_many_questions_at_once_are_all_answered(server: RealServer) -> None:
-    model = provider(server)
-
-    async def ask() -> list[Any]:
-        asked = (model.answer(question(f"0/ground/{name}/ReadScene/1")) for name in "abcdefgh")
-        return await asyncio.gather(*asked, return_exceptions=True)
-
-    outcomes = asyncio.run(ask())
-    assert len(outcomes) == 8
-    assert [outcome for outcome in outcomes if not isinstance(outcome, Answer | ModelCutOffError)] == []
-
-
 def test_an_answer_that_does_not_fit_goes_back_and_ends_as_the_models_failure_or_an_answer(server: RealServer) -> None:
     client = ModelClient(provider(server))
     try:
@@ -155,52 +147,6 @@ def test_an_answer_that_does_not_fit_goes_back_and_ends_as_the_models_failure_or
 @pytest.mark.parametrize("thinking", ["off", "low"])
 def test_the_switch_for_thinking_is_taken_or_left_out(thinking: Any, server: RealServer) -> None:
     assert answered(provider(server, thinking=thinking), question()).raw
-
-
-# -- lengths -------------------------------------------------------------------------------------------------------
-
-
-def test_the_answers_limit_fits_a_short_context(start: Start) -> None:
-    model, ear = provider(start(SHORT), max_tokens=8192), Ear()
-    client = ModelClient(model, subscribers=(ear,))
-    for _ in range(2):
-        try:
-            asyncio.run(client.ask(question()))
-        except ModelOutputError:
-            pass
-    assert client.budget.spent.calls >= 2, "nothing was refused for its length"
-    assert [text for text in ear.warnings if f"context is {SHORT.context} tokens" in text]
-
-
-SHORT, SHORTER = Wanted(context=8192), Wanted(context=1024)
-
-
-@pytest.mark.parametrize("told", [True, False], ids=["told before", "learnt from the refusal"])
-def test_a_request_that_is_too_long_is_named_as_such(told: bool, start: Start) -> None:
-    model = provider(start(SHORTER))
-    if not told:
-        model._learned.know(UNKNOWN)
-    with pytest.raises(ContextTooLongError, match=rf"\b{SHORTER.context}\b") as caught:
-        asyncio.run(model.answer(question()))
-    assert caught.value.exit_code == 2
-
-
-# -- refusals ------------------------------------------------------------------------------------------------------
-
-
-def test_a_model_that_takes_no_pictures_is_named_as_such(start: Start) -> None:
-    with pytest.raises(NoPicturesError) as caught:
-        asyncio.run(provider(start(Wanted(pictures=False))).answer(question()))
-    assert caught.value.exit_code == 2
-
-
-def test_a_missing_and_a_wrong_key_are_named_as_such(start: Start) -> None:
-    server = start(Wanted(context=SHORT.context, key="right-key-for-tests"))
-    with pytest.raises(ModelAuthError, match="wants a key, and none was sent"):
-        asyncio.run(provider(server).answer(question()))
-    with pytest.raises(ModelAuthError, match="refused the key"):
-        asyncio.run(provider(server, api_key="wrong-key-for-tests").answer(question()))
-    assert answered(provider(server, api_key="right-key-for-tests"), question()).raw
 
 
 # -- commands ------------------------------------------------------------------------------------------------------
@@ -246,3 +192,56 @@ def test_a_name_that_the_server_does_not_have_is_an_unknown_model_or_taken_for_i
     model = make_provider(f"{server.url}#another", timeout_s=PATIENT_S)
     with contextlib.suppress(UnknownModelError):
         assert answered(model, question()).raw
+
+
+# -- lengths, keys, pictures -----------------------------------------------------------------------------------------
+
+
+def test_the_answers_limit_fits_a_short_context(start: Start) -> None:
+    model, ear = provider(start(SHORT), api_key=SHORT.key, max_tokens=8192), Ear()
+    client = ModelClient(model, subscribers=(ear,))
+    for _ in range(2):
+        try:
+            asyncio.run(client.ask(question()))
+        except ModelOutputError:
+            pass
+    assert client.budget.spent.calls >= 2, "nothing was refused for its length"
+    assert [text for text in ear.warnings if f"context is {SHORT.context} tokens" in text]
+
+
+def test_many_questions_at_once_are_all_answered(start: Start) -> None:
+    """Together they are longer than the context, which llama.cpp's requests share."""
+    model = provider(start(SHORT), api_key=SHORT.key)
+
+    async def ask() -> list[Any]:
+        asked = (model.answer(question(f"0/ground/{name}/ReadScene/1")) for name in "abcdefgh")
+        return await asyncio.gather(*asked, return_exceptions=True)
+
+    outcomes = asyncio.run(ask())
+    assert len(outcomes) == 8
+    assert [outcome for outcome in outcomes if not isinstance(outcome, Answer | ModelCutOffError)] == []
+
+
+def test_a_missing_and_a_wrong_key_are_named_as_such(start: Start) -> None:
+    server = start(SHORT)
+    with pytest.raises(ModelAuthError, match="wants a key, and none was sent"):
+        asyncio.run(provider(server).answer(question()))
+    with pytest.raises(ModelAuthError, match="refused the key"):
+        asyncio.run(provider(server, api_key="wrong-key-for-tests").answer(question()))
+    assert answered(provider(server, api_key=SHORT.key), question()).raw
+
+
+@pytest.mark.parametrize("told", [True, False], ids=["told before", "learnt from the refusal"])
+def test_a_request_that_is_too_long_is_named_as_such(told: bool, start: Start) -> None:
+    model = provider(start(SHORTER))
+    if not told:
+        model._learned.know(UNKNOWN)
+    with pytest.raises(ContextTooLongError, match=rf"\b{SHORTER.context}\b") as caught:
+        asyncio.run(model.answer(question()))
+    assert caught.value.exit_code == 2
+
+
+def test_a_model_that_takes_no_pictures_is_named_as_such(start: Start) -> None:
+    with pytest.raises(NoPicturesError) as caught:
+        asyncio.run(provider(start(BLIND)).answer(question()))
+    assert caught.value.exit_code == 2

@@ -61,6 +61,8 @@ _PICTURES = re.compile(
     r"|(image|picture)s?\b.{0,40}(limit|at most|too many|exceed)",
     re.I,
 )
+_CROWDED = re.compile(r"context size has been exceeded", re.I)
+"""llama.cpp, whose requests share one context unless it is told otherwise: together they overfilled it, and each of them failed."""
 _SCHEMA = re.compile(
     r"response_format|json_schema|guided|structured output|output_config|output_format|response_schema|grammar", re.I
 )
@@ -85,6 +87,7 @@ class Fault:
         picture_limit: How many pictures it takes, when that is what it refused; 0 when it did not say.
         schema: It refused the schema.
         thinking: It refused the switch for thinking.
+        crowded: Requests under way at once were too much for it; it may take this one alone.
         billed: It may have worked on the request, so the request may cost something.
         context, taken: Tokens of the model's context and of the request, when it says them.
         most_out: Most tokens of an answer, when it says that.
@@ -96,6 +99,7 @@ class Fault:
     picture_limit: int | None = None
     schema: bool = False
     thinking: bool = False
+    crowded: bool = False
     billed: bool = False
     context: int | None = None
     taken: int | None = None
@@ -140,7 +144,7 @@ def _sorted(error: Any, said: str, name: str, where: str, refused: str) -> Fault
             what = "the connection broke" if sent else "cannot be reached"
             return Fault(ModelConnectionError(f"{name}: {where}: {what} ({said})"), True, billed=sent)
         case lib.ModelUnavailableError() | lib.ModelServerError():
-            return Fault(ModelServerError(f"{name}: the provider failed ({said})"), True, _asked_wait(error))
+            return _failed(name, said, _asked_wait(error))
         case lib.ModelHTTPError():
             return _rejected(error.status_code, name, where, said, _asked_wait(error), refused)
         case lib.ModelRequestRejectedError():
@@ -171,7 +175,7 @@ def key_refused(where: str, key: str | None, key_holder: str) -> str:
 def _rejected(status: int, name: str, where: str, said: str, wait_s: float | None, refused: str) -> Fault:
     """A reply with a status of its own; 4xx are final unless another form of the request may do."""
     if status in (408, 409, 425) or status >= 500:
-        return Fault(ModelServerError(f"{name}: the provider failed ({said})"), True, wait_s)
+        return _failed(name, said, wait_s)
     if 300 <= status < 400:
         return Fault(UnknownModelError(f"{name}: {where} sends elsewhere (status {status}); give the final address"))
     if _BAD_KEY.search(said):
@@ -185,6 +189,12 @@ def _rejected(status: int, name: str, where: str, said: str, wait_s: float | Non
         return _too_long(name, said)
     rejected = RequestRejectedError(f"{name}: {where} refused the request ({said})")
     return Fault(rejected, schema=bool(_SCHEMA.search(said)), thinking=bool(_THINKING.search(said)), most_out=most_out)
+
+
+def _failed(name: str, said: str, wait_s: float | None) -> Fault:
+    """A failure of the service's own; llama.cpp calls it one that requests at once overfilled its context."""
+    crowded = bool(_CROWDED.search(said))
+    return Fault(ModelServerError(f"{name}: the provider failed ({said})"), True, wait_s, crowded=crowded)
 
 
 def _too_long(name: str, said: str) -> Fault:

@@ -31,6 +31,7 @@ class Learned:
         most_out: Most tokens of an answer, as it said when it refused more.
         counted: Largest share of the careful estimate that a request took as it counted; None before it counted one.
         first_try_s, try_s: How long one try may take: at the start, and now.
+        crowded: Requests at once were too much for it: it is asked one at a time.
         notices: What the user should know, not yet told.
     """
 
@@ -44,6 +45,7 @@ class Learned:
     context: int | None = None
     most_out: int | None = None
     counted: float | None = None
+    crowded: bool = False
     notices: list[str] = field(default_factory=list)
     _said: set[str] = field(default_factory=set)
 
@@ -171,6 +173,16 @@ class Learned:
             self.most_out = fault.most_out
             return True
         return isinstance(fault.error, ContextTooLongError) and self._shorter(fault, limit, reckoned)
+
+    def crowd(self) -> None:
+        """Requests that were under way at once were too much for the service."""
+        self.crowded = True
+        known = "" if self.context is None else f" of {self.context} tokens"
+        self.say(
+            "crowd",
+            f"requests at once share the model's context{known} and together overfilled it: it is asked one at a time from now "
+            f"on; {self._raised(4 * (self.context or 4096))}",
+        )
 
     def _shorter(self, fault: Fault, limit: int, reckoned: float) -> bool:
         """Whether a shorter answer makes a request fit that was too long for the context."""

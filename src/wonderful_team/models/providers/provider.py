@@ -37,6 +37,7 @@ from wonderful_team.models.providers.server_facts import server_facts
 from wonderful_team.models.providers.settings import LONGEST_WAIT_S, TIMED_OUT_TRIES, Settings, Thinking
 from wonderful_team.models.providers.specs import Spec, is_loopback
 from wonderful_team.models.providers.tokens import MOST_CHARACTERS_PER_TOKEN, as_said, reckoned, usage_of
+from wonderful_team.models.providers.turns import Turn, Turns
 from wonderful_team.models.providers.vendors import SERVER_KEY
 from wonderful_team.models.wire import Composed, Reading, Unreadable, compose, encodable, ticks_of
 from wonderful_team.redaction import keep_secret, redact, redact_known
@@ -78,6 +79,7 @@ class Provider:
     def __post_init__(self) -> None:
         keep_secret(self.key)
         self._learned = Learned.of(self.settings)
+        self._turns = Turns()
 
     @property
     def ticks(self) -> Ticks:
@@ -116,6 +118,11 @@ class Provider:
 
     @property
     def deadline_s(self) -> float:
+        """Longest time for one request with all its tries, and for those whose turn comes before it."""
+        return self._own_s * (1 + self._turns.ahead)
+
+    @property
+    def _own_s(self) -> float:
         """Longest time for one request with all its tries."""
         held = self.settings
         if held.deadline_s is not None:
@@ -145,13 +152,20 @@ class Provider:
         # The first request of a loop builds the client, which takes time that is not the service's.
         with _before_sending():
             await self._client()
-        ticket = current_ticket()
-        started = time.monotonic()
+        ticket, started = current_ticket(), time.monotonic()
         # A little earlier than whoever waits, so that the error can say what was tried.
-        deadline_s = min(self.deadline_s, math.inf if ticket.seconds is None else 0.97 * ticket.seconds)
-        await self._ask_facts(deadline_s)
+        longest_s = math.inf if ticket.seconds is None else 0.97 * ticket.seconds
+        await self._ask_facts(min(self._own_s, longest_s))
+        async with Turn(self._turns) as turn:
+            return await self._answer(request, ticket, turn, started, started + longest_s)
+
+    async def _answer(self, request: Request, ticket: Ticket, turn: Turn, started: float, ends: float) -> Answer:
+        """The answer after as many tries as it needs, at the latest at `ends`; waiting for its turn is not its own time."""
+        own_ends = started + self._own_s
         tries, doubts, timed_out, wait_s = 0, 0, 0, 0.0
         while True:
+            if self._learned.crowded:
+                own_ends += await turn.take()
             with _before_sending(first=not tries):
                 composed = self._compose(request)
                 limit = self._limit(request, ticket)
@@ -159,7 +173,7 @@ class Provider:
                 ticket.another_try()
             tries += 1
             began = time.monotonic()
-            outcome = await self._try(request, composed, limit, deadline_s - (began - started))
+            outcome = await self._try(request, composed, limit, min(ends, own_ends) - began)
             if not isinstance(outcome, Fault):
                 self._learned.took(time.monotonic() - began)
                 return await self._answered(request, composed, outcome, limit, tries, ticket)
@@ -169,11 +183,14 @@ class Provider:
                 timed_out += 1
                 if self.settings.adapts:
                     self._learned.too_short(time.monotonic() - began)
+            if outcome.crowded and not turn.taken:
+                self._learned.crowd()
+                continue
             size = self._reckoned(request)
             if doubts < 3 and self._learned.take(outcome, len(composed.sizes_px), self._thinking, limit, size):
                 doubts += 1
                 continue
-            left = deadline_s - (time.monotonic() - started)
+            left = min(ends, own_ends) - time.monotonic()
             wait_s = self._wait(outcome, request, tries)
             again = outcome.retry and tries < self.settings.tries and timed_out < TIMED_OUT_TRIES
             if not again or wait_s > LONGEST_WAIT_S or wait_s >= left:

@@ -92,6 +92,7 @@ def runs(out: Path) -> Iterator[Source]:
         yield Source(out / name / "latest", f"`{command}`")
     yield _again(out)
     yield _circle(out)
+    yield _twisted(out)
 
 
 def _again(out: Path) -> Source:
@@ -116,6 +117,27 @@ def _not_reached(outcome: Any, request: Request) -> Any:
     first, *rest = outcome.verdicts
     missed = first.model_copy(update={"status": "not_done", "evidence": "the red block lies beside the bowl"})
     return outcome.model_copy(update={"verdicts": [missed, *rest]})
+
+
+def _twisted(out: Path) -> Source:
+    """An angle that pictures show and the plan states wrongly."""
+    wrong = Injection(("DraftPlan",), _misread, "the angle of the first draft is misread by 50 degrees")
+    world = wt.make_world("tabletop/twist", seed=3)
+    try:
+        model = Injecting(wt.make_model("simulated:perfect", world=world), [wrong])
+        trial = wt.rollout(wt.Team(model=model, method="team", out=out / "twisted"), world, seed=3, scene="tabletop/twist#3")
+    finally:
+        world.close()
+    assert trial.folder is not None
+    return Source(trial.folder, "`team` on `tabletop/twist`, with `simulated:perfect`; the angle of its first draft is spoiled")
+
+
+def _misread(draft: Any, request: Request) -> Any:
+    goals = [
+        goal.model_copy(update={"move": goal.move.model_copy(update={"rotate_deg": goal.move.rotate_deg - 50})})
+        for goal in draft.subgoals
+    ]
+    return draft.model_copy(update={"subgoals": goals})
 
 
 def _circle(out: Path) -> Source:

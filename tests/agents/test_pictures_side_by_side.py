@@ -31,7 +31,7 @@ def test_top_and_front_of_a_thing_are_one_picture_that_says_which_is_which() -> 
     assert isinstance(words, Words)
     assert isinstance(sheet, Picture)
     assert (
-        "{mug}: one thing alone, 4 times as large as in the views; of each the top view (left) and front view (right)"
+        "each over its name, {mug}: one thing alone, 4 times as large as in the views; of each the top view (left) and front view (right)"
         in (words.text)
     )
     top, front = sheet.panels
@@ -42,13 +42,18 @@ def test_top_and_front_of_a_thing_are_one_picture_that_says_which_is_which() -> 
         assert np.array_equal(sheet.rgb[y : y + height, x : x + width], panel.picture.rgb)
 
 
-def test_things_share_a_picture_only_as_far_as_it_is_no_wider_than_a_whole_view() -> None:
-    pictures = [part for part in slot_parts(things("a", "b", "c", "d")) if isinstance(part, Picture)]
-    assert 1 < len(pictures) < 4
-    assert all(picture.size_px[0] <= 1280 for picture in pictures)
-    assert [panel.picture.name for picture in pictures for panel in picture.panels] == [
-        f"{{{name}}} {camera}" for name in "abcd" for camera in ("top", "front")
+def test_things_share_a_picture_as_long_as_no_model_shrinks_it() -> None:
+    pictures = [part for part in slot_parts(things(*"abcdefg")) if isinstance(part, Picture)]
+    assert 1 < len(pictures) < 7
+    assert all(picture.size_px[0] <= 1280 and picture.size_px[1] <= 768 for picture in pictures)
+    panels = [panel for picture in pictures for panel in picture.panels]
+    assert [panel.picture.name for panel in panels] == [
+        f"{{{name}}} {camera}" for name in "abcdefg" for camera in ("top", "front")
     ]
+    for picture in pictures:
+        for panel in picture.panels:
+            (x, y), (width, height) = panel.origin_px, panel.picture.size_px
+            assert np.array_equal(picture.rgb[y : y + height, x : x + width], panel.picture.rgb)
 
 
 def test_an_instruction_shows_shared_pictures_once_where_the_first_name_stands() -> None:

@@ -23,8 +23,7 @@ from wonderful_team.core.pictures import (
 )
 from wonderful_team.core.values import Note, Part, Subgoal, Target, Words
 from wonderful_team.images.captions import axes_words, size_words
-from wonderful_team.images.cut import MARKED_SIDE_PX
-from wonderful_team.images.panels import side_by_side, width_px
+from wonderful_team.images.panels import fit, side_by_side
 
 _BOX_STYLES = {
     "target": "the box",
@@ -154,8 +153,8 @@ def slot_parts(slots: Sequence[ShownSlot]) -> list[Part]:
 
 
 def slot_groups(slots: Sequence[ShownSlot]) -> list[tuple[ShownSlot, ...]]:
-    """Which slots share a picture: single things one after the other as far as it grows no wider than a whole view, and a
-    thing before and after.
+    """Which slots share a picture: single things one after the other as long as it stays small enough, and a thing before
+    and after.
     """
     groups: list[tuple[ShownSlot, ...]] = []
     left = list(slots)
@@ -167,7 +166,7 @@ def slot_groups(slots: Sequence[ShownSlot]) -> list[tuple[ShownSlot, ...]]:
             group = (*group, end)
         elif _is_single(group[0]):
             while following := next((other for other in left if _is_single(other)), None):
-                if width_px(tuple((slot.name, slot.pictures) for slot in (*group, following))) > MARKED_SIDE_PX:
+                if not fit(tuple((f"{{{slot.name}}}", slot.pictures) for slot in (*group, following))):
                     break
                 left.remove(following)
                 group = (*group, following)
@@ -205,13 +204,23 @@ def _group_parts(group: tuple[ShownSlot, ...]) -> list[Part]:
 def _side_by_side(shown: tuple[tuple[ShownSlot, tuple[Picture, ...]], ...]) -> list[Part]:
     """Pictures of slots in one, and what stands where in it."""
     named = tuple((f"{{{slot.name}}}", pictures) for slot, pictures in shown)
-    sheet = side_by_side(named, ", ".join(name for name, _ in named))
-    kinds = "; ".join(f"{slot_about(slot)}{_cut_words(pictures)}" for slot, pictures in shown)
+    names = [name for name, _ in named]
+    name = ", ".join(names) if len(names) <= 2 else f"{names[0]} to {names[-1]}"  # noqa: PLR2004  a pair is named in full
+    sheet = side_by_side(named, name)
+    if len({slot_about(slot).partition(": ")[2] for slot, _ in shown}) == 1:
+        about = f"each over its name, {', '.join(names)}: {slot_about(shown[0][0]).partition(': ')[2]}"
+    else:
+        about = f"each over its name, {'; '.join(slot_about(slot) for slot, _ in shown)}"
+    sizes = tuple(dict.fromkeys(_cut_words(pictures) for _, pictures in shown))
+    if len(sizes) == 1:
+        about += sizes[0]
+    else:
+        about += "; " + "; ".join(f"{{{slot.name}}}{_cut_words(pictures)}" for slot, pictures in shown)
     cameras = tuple(dict.fromkeys(_cameras(slot, pictures) for slot, pictures in shown))
     views = f"; of each the {cameras[0]}" if len(cameras) == 1 and cameras[0] else ""
     if len(cameras) > 1:
         views = "; " + "; ".join(f"{{{slot.name}}}: {_cameras(slot, held)}" for slot, held in shown)
-    return picture_parts(sheet, f"each over its name, {kinds}{views}")
+    return picture_parts(sheet, about + views)
 
 
 def _cameras(slot: ShownSlot, pictures: Sequence[Picture]) -> str:
@@ -224,7 +233,8 @@ def _cut_words(pictures: Sequence[Picture]) -> str:
     """That pictures were cut out and enlarged; empty for whole ones."""
     if not any(picture.frame.T_view_picture[:2, 2].any() for picture in pictures):
         return ""
-    return f", {pictures[0].frame.scale:.2g} times as large as in the views"
+    scale = pictures[0].frame.scale
+    return f", {scale:.2g} times as large as in the views" if round(scale, 1) != 1 else ", as large as in the views"
 
 
 def example_parts(slots: Sequence[ShownSlot]) -> list[Part]:

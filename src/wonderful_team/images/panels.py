@@ -18,19 +18,22 @@ Group: TypeAlias = tuple[str, tuple[Picture, ...]]
 GAP_PX, APART_PX = 8, 28
 """Between two pictures of a group, and between two groups."""
 NAME_PX = 16
+MOST_ACROSS_PX, MOST_DOWN_PX = 1280, 768
+"""Several groups make no picture larger than this: families that tile pictures shrink those with a longer short side."""
 _STRIP_PX = 28
 _GREY = 205
 """Of the gaps, and of what is left below a lower picture."""
 
 
-def width_px(groups: tuple[Group, ...]) -> int:
-    """How wide `side_by_side` makes a picture of these groups."""
-    return sum(_cell_px(group) for group in groups) + APART_PX * (len(groups) - 1)
+def fit(groups: tuple[Group, ...]) -> bool:
+    """Whether `side_by_side` puts these groups into a picture that no common model shrinks."""
+    width, height = _size_px(_rows(groups))
+    return width <= MOST_ACROSS_PX and height <= MOST_DOWN_PX
 
 
 @lru_cache(maxsize=64)
 def side_by_side(groups: tuple[Group, ...], name: str) -> Picture:
-    """One picture that holds these from left to right, tops in line, each group's name below it.
+    """One picture that holds these from left to right, row by row, tops in line, each group's name below it.
 
     What came from where stands in its `panels`; its frame is that of the first. The same picture for the same groups.
 
@@ -40,22 +43,48 @@ def side_by_side(groups: tuple[Group, ...], name: str) -> Picture:
     pictures = [picture for _, held in groups for picture in held]
     if not pictures or any(picture.marks for picture in pictures):
         raise ValueError("side_by_side needs at least one picture, and none with marks")
-    height = max(picture.size_px[1] for picture in pictures)
-    size = (width_px(groups), height + _STRIP_PX)
+    rows = _rows(groups)
+    size = _size_px(rows)
     canvas = Canvas.over(np.full((size[1], size[0], 3), _GREY, np.uint8))
-    panels, left = [], 0
-    for group in groups:
-        x = left
-        for picture in group[1]:
-            across, down = picture.size_px
-            canvas.rgb[:down, x : x + across] = picture.rgb
-            panels.append(Panel(picture, (x, 0)))
-            x += across + GAP_PX
-        canvas.plate(plain(group[0]), left, height + 2, colour=WHITE, back=INK, font_px=NAME_PX, alpha=1.0)
-        left += _cell_px(group) + APART_PX
+    panels, top = [], 0
+    for row in rows:
+        left, high = 0, _high_px(row)
+        for group in row:
+            x = left
+            for picture in group[1]:
+                across, down = picture.size_px
+                canvas.rgb[top : top + down, x : x + across] = picture.rgb
+                panels.append(Panel(picture, (x, top)))
+                x += across + GAP_PX
+            canvas.plate(plain(group[0]), left, top + high + 2, colour=WHITE, back=INK, font_px=NAME_PX, alpha=1.0)
+            left += _cell_px(group) + APART_PX
+        top += high + _STRIP_PX
     first = pictures[0].frame
     frame = Frame(first.view_id, first.T_view_picture, size, first.valid)
     return Picture(name, canvas.rgb, frame, panels=tuple(panels))
+
+
+def _rows(groups: tuple[Group, ...]) -> list[list[Group]]:
+    """The groups in rows that are no wider than they may be; at least one in each."""
+    rows: list[list[Group]] = []
+    for group in groups:
+        if rows and _wide_px([*rows[-1], group]) <= MOST_ACROSS_PX:
+            rows[-1].append(group)
+        else:
+            rows.append([group])
+    return rows
+
+
+def _size_px(rows: list[list[Group]]) -> tuple[int, int]:
+    return max(map(_wide_px, rows)), sum(_high_px(row) + _STRIP_PX for row in rows)
+
+
+def _wide_px(row: list[Group]) -> int:
+    return sum(map(_cell_px, row)) + APART_PX * (len(row) - 1)
+
+
+def _high_px(row: list[Group]) -> int:
+    return max(picture.size_px[1] for _, held in row for picture in held)
 
 
 def _cell_px(group: Group) -> int:

@@ -21,7 +21,7 @@ from wonderful_team.images.resample import picture_of, whole_pixels
 
 LONG_SIDE_PX = 256
 """A cut-out's long side has at least about this many pixels."""
-LARGEST_PX = 640
+LARGEST_PX = 420
 """The common factor makes no cut-out larger than this."""
 SMALLEST_PX = 160
 """A cut-out that the common factor leaves smaller than this gets a factor of its own."""

@@ -60,7 +60,7 @@ def weights(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module", params=sorted(KINDS))
 def start(request: pytest.FixtureRequest, weights: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Start]:
-    """Starts this kind of server; one of each form serves all tests."""
+    """Starts this kind of server; a test that wants another form of it ends the one before."""
     kind = KINDS[request.param]
     if not kind.program:
         pytest.skip(f"{kind.variable} names no {request.param}")

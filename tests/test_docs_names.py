@@ -19,8 +19,11 @@ PACKAGE = ROOT / "src" / "wonderful_team"
 PAGES = [ROOT / "README.md", ROOT / "CHANGELOG.md", *sorted((ROOT / "docs").glob("*.md"))]
 CODE = [path for folder in ("src", "examples", "benchmarks", "tools") for path in sorted((ROOT / folder).rglob("*.py"))]
 PARTS = sorted(path.name for path in PACKAGE.iterdir() if path.is_dir() and (path / "__init__.py").is_file())
-NOT_OURS = {"--runslow", "--runinstall", "--no-deps", "--dry-run", "--max-model-len"}
-"""Options of pytest, pip, uv and vLLM that the documents name."""
+NOT_OURS = {
+    "--runslow", "--runinstall", "--runservers", "--no-deps", "--dry-run", "--max-model-len", "--served-model-name", "--dtype",
+    "--mmproj", "--alias", "--port", "--build", "--target",
+}  # fmt: skip
+"""Options of pytest, pip, uv, vLLM, llama.cpp and CMake that the documents name."""
 OF_BENCHMARKS = {
     option for path in (ROOT / "benchmarks").glob("*.py") for option in re.findall(r"--[a-z][\w-]*", path.read_text())
 }

@@ -60,7 +60,7 @@ def weights(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module", params=sorted(KINDS))
 def start(request: pytest.FixtureRequest, weights: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Start]:
-    """Starts this kind of server; one of each form serves all tests."""
+    """Starts this kind of server; a test that wants another form of it ends the one before."""
     kind = KINDS[request.param]
     if not kind.program:
         pytest.skip(f"{kind.variable} names no {request.param}")
@@ -131,7 +131,8 @@ def test_it_takes_the_words_pictures_and_schema_of_every_question_and_keeps_to_t
     assert not model.schemas_refused
     assert model.picture_limit is None, "all pictures were taken"
     assert answer.usage.tokens_in > 0
-    assert misfits(json.loads(answer.raw), model._compose(request).form.schema) == []
+    # vLLM's grammar lets control characters into texts; our client reads them.
+    assert misfits(json.loads(answer.raw, strict=False), model._compose(request).form.schema) == []
 
 
 def test_an_answer_that_does_not_fit_goes_back_and_ends_as_the_models_failure_or_an_answer(server: RealServer) -> None:
@@ -152,28 +153,33 @@ def test_the_switch_for_thinking_is_taken_or_left_out(thinking: Any, server: Rea
 # -- commands ------------------------------------------------------------------------------------------------------
 
 
-def test_a_plan_ends_with_a_plan_or_an_error_that_says_whose_fault_it_is(
+def test_plans_boxes_and_trials_end_with_a_result_or_an_error_that_says_whose_fault_it_is(
     server: RealServer, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     photo = tmp_path / "desk.png"
     photo.write_bytes(to_png(small_scene(640, 480).rgb))
-    codes = []
-    for method in ("team", "team:paper"):
+    asked = (
+        ["plan", str(photo), "put the red cube into the free corner"],
+        ["plan", str(photo), "put the red cube into the free corner", "--method", "team:paper"],
+        ["ground", str(photo), "red cube", "blue square"],
+        ["run", "tabletop/rotate", "--seed", "3"],
+    )
+    for command in asked:
         words = [
-            "plan",
-            str(photo),
-            "put the red cube into the free corner",
+            *command,
             "--model",
             server.spec,
-            "--method",
-            method,
+            "--max-tokens",
+            "400000",
+            "--max-calls",
+            "30",
+            "--max-seconds",
+            "300",
         ]
-        words += ["--max-tokens", "400000", "--max-calls", "30", "--max-seconds", "300", "--cache", "off", "--json"]
-        codes.append(run(words))
+        code = run([*words, "--cache", "off", "--json"])
         document = json.loads(capsys.readouterr().out)
-        assert document["schema_version"]
-        assert (codes[-1] == 0) == ("error" not in document), document
-    assert set(codes) <= {0, 1, 5, 7}, codes
+        assert code in (0, 1, 5, 7), document
+        assert document["exit_code"] == code
 
 
 def test_a_probe_of_noise_finds_no_convention_and_keeps_no_profile(

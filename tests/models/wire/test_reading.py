@@ -66,3 +66,16 @@ def test_what_is_no_answer_is_refused_with_words_for_the_model(text: str, says: 
 )
 def test_molmos_tags_hold_points(text: str, pairs: list[list[float]]) -> None:
     assert read_point_tags(text) == pairs
+
+
+@pytest.mark.parametrize("before", ["", "<think>Hm.</think>"])
+def test_control_characters_in_a_text_are_taken_as_they_are(before: str) -> None:
+    """Models write line breaks into texts; vLLM's enforcement of schemas let others through."""
+    said = before + '{"reasoning": "one\ntwo\x1f\tthree", "inner": {"found": true}}'
+    reading = read_json(said, frozenset({"reasoning", "inner"}))
+    assert reading.value == {"reasoning": "one\ntwo\x1f\tthree", "inner": {"found": True}}
+    assert reading.repairs[-1] == "control characters in a text taken as they are"
+
+
+def test_escaped_control_characters_and_line_breaks_between_fields_are_no_repair() -> None:
+    assert read_json('{\n\t"reasoning": "one\\ntwo"\n}').repairs == ()

@@ -39,16 +39,7 @@ def read_json(text: str, keys: frozenset[str] = frozenset()) -> Reading:
     stripped = text.strip().lstrip("\ufeff")
     if not stripped:
         raise ValueError("the answer is empty; expected one JSON object")
-    repairs: list[str] = []
-    found, value = _parsed(stripped)
-    if not found:
-        cleaned = _OPEN_END.sub("", _THINKING.sub("", stripped)).strip()
-        if cleaned != stripped:
-            repairs.append("thinking before the answer dropped")
-        found, value = _parsed(cleaned)
-        if not found:
-            value = _embedded(cleaned, keys)
-            repairs.append("text round the JSON dropped")
+    value, repairs = _found(stripped, keys)
     for _ in range(2):
         if isinstance(value, str):
             found, inner = _parsed(value.strip())
@@ -68,6 +59,19 @@ def read_json(text: str, keys: frozenset[str] = frozenset()) -> Reading:
         raise ValueError(f"expected one JSON object, got {type(value).__name__}")
     _check_depth(value)
     return Reading(_encodable(value), tuple(repairs))
+
+
+def _found(text: str, keys: frozenset[str]) -> tuple[Any, list[str]]:
+    """The value in a model's words, and what had to be left out or taken as it is."""
+    found, value = _parsed(text)
+    if found:
+        return value, [] if _is_strict(text) else [_CONTROL]
+    cleaned = _OPEN_END.sub("", _THINKING.sub("", text)).strip()
+    repairs = ["thinking before the answer dropped"] if cleaned != text else []
+    found, value = _parsed(cleaned)
+    if not found:
+        return _embedded(cleaned, keys), [*repairs, "text round the JSON dropped"]
+    return value, repairs if _is_strict(cleaned) else [*repairs, _CONTROL]
 
 
 def encodable(text: str) -> str:
@@ -122,7 +126,18 @@ class _NotANumberError(Exception):
     pass
 
 
-_DECODER = json.JSONDecoder(parse_constant=_no_constant)
+_CONTROL = "control characters in a text taken as they are"
+_DECODER = json.JSONDecoder(parse_constant=_no_constant, strict=False)
+"""Takes line breaks and the like inside texts: models write them, and servers that enforce schemas let some through."""
+
+
+def _is_strict(text: str) -> bool:
+    """Whether JSON that could be read has all control characters of its texts written as escapes."""
+    try:
+        json.loads(text)
+    except (ValueError, RecursionError):
+        return False
+    return True
 
 
 def _parsed(text: str) -> tuple[bool, Any]:

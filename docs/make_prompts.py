@@ -35,7 +35,7 @@ from wonderful_team.models.wrappers import Injecting, Injection
 from wonderful_team.registry.models import make_model
 
 HERE = Path(__file__).parent
-PICTURES = "images/prompts"
+PICTURES = "prompts"
 TABLE = "tabletop/everyday/tidy_up"
 HEAD = """# What the team is asked
 
@@ -44,7 +44,7 @@ One request of each kind, with its pictures, taken from the records of real runs
 They show the form of an answer and say nothing of a vision-language model.
 
 A request is the role's standing words (the system message), then its parts in this order, then an answer that has to keep the schema.
-`wonderful-team list prompts` shows the words alone, `--prompts DIR` replaces them, `show RUN --requests` shows those of a run.
+`wonderful-team list prompts` shows the words alone, `--prompts DIR` replaces them, `show RUN --role ROLE` shows those of a run.
 """
 
 QUESTIONS_BY_NAME = {kind.contract: kind for kind in QUESTIONS}
@@ -125,11 +125,15 @@ def _twisted(out: Path) -> Source:
     world = wt.make_world("tabletop/twist", seed=3)
     try:
         model = Injecting(wt.make_model("simulated:perfect", world=world), [wrong])
-        trial = wt.rollout(wt.Team(model=model, method="team", out=out / "twisted"), world, seed=3, scene="tabletop/twist#3")
+        trial = wt.rollout(
+            wt.Team(model=model, method="team", out=out / "twisted"), world, seed=3, scene="tabletop/twist#3"
+        )
     finally:
         world.close()
     assert trial.folder is not None
-    return Source(trial.folder, "`team` on `tabletop/twist`, with `simulated:perfect`; the angle of its first draft is spoiled")
+    return Source(
+        trial.folder, "`team` on `tabletop/twist`, with `simulated:perfect`; the angle of its first draft is spoiled"
+    )
 
 
 def _misread(draft: Any, request: Request) -> Any:

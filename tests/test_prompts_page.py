@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from docs.make_prompts import HERE, page, runs, stale
+from docs.make_prompts import HERE, PICTURES, page, runs, stale
 
 
 def test_the_page_shows_what_is_sent_today(tmp_path: Path) -> None:
@@ -16,4 +16,4 @@ def test_the_page_shows_what_is_sent_today(tmp_path: Path) -> None:
     assert stale(text.replace("the main view", "the principal view"), images)
     next(images.iterdir()).unlink()
     assert stale(text, images)
-    assert (HERE / "images" / "prompts").is_dir()
+    assert (HERE / PICTURES).is_dir()

@@ -18,7 +18,7 @@ from wonderful_team.runtime.read_plan_checks import read_plan_checks
 
 DESK = str(Path(__file__).parents[2] / "examples" / "desk.png")
 UNKNOWN, SAID = "put the flurb onto the wurgle", "I do not know: flurb, wurgle"
-UNCLEAR = "put the block to the left of the bowl"
+UNCLEAR = "rotate the block by 90 degrees"
 
 
 @pytest.mark.parametrize("command", [["plan", DESK], ["run", "tabletop/rotate"]], ids=["plan", "run"])

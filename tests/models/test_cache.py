@@ -8,7 +8,7 @@ from dataclasses import replace
 import pytest
 
 from tests.models.cache_helpers import CONTRADICTION, GOOD, Paid, ask, picture, request
-from wonderful_team.contracts import ReviewSteps
+from wonderful_team.contracts import PlanReview
 from wonderful_team.core.caps import Caps, Estimate
 from wonderful_team.core.geometry import Box
 from wonderful_team.core.pictures import BoxMark
@@ -59,7 +59,7 @@ def _changed():
         "attempt": request(attempt=1),
         "feedback": request(attempt=1, feedback="x is missing"),
         "previous": request(attempt=1, previous={"a": 1}),
-        "schema": request(output=ReviewSteps.output(None)),
+        "schema": request(output=PlanReview),
         "order of parts": replace(request(shown), parts=tuple(reversed(request(shown).parts))),
     }
 

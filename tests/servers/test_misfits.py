@@ -48,7 +48,11 @@ def test_everything_that_breaks_a_schema_is_found(value: Any, found: int) -> Non
 @pytest.mark.parametrize("asked", SAMPLES, ids=lambda asked: asked.contract)
 def test_right_answers_to_every_question_fit_and_all_words_of_its_schema_are_known(asked: Question) -> None:
     request = build_request(asked, id="q", stage="plan")
-    right = request.output.model_validate(stub_script()[asked.contract](request)).model_dump(mode="json")
+    said = request.output.model_validate(stub_script()[asked.contract](request))
+    right = said.model_dump(mode="json")
+    if right.get("reasoning", "") is None:
+        # A field that only answers of earlier releases have.
+        del right["reasoning"]
     form = Form.of(request.output, CONVENTIONS["qwen2.5-vl"])
     sent = form.write(right, (640, 480))
     assert misfits(json.loads(json.dumps(sent)), form.schema) == []

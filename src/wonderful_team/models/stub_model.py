@@ -49,10 +49,10 @@ def stub_script() -> dict[str, Any]:
         },
         "ReviewPlan": lambda request: request.question.walked(
             c.PlanReview(reasoning="", approved=True, doubt=None)
-        ).model_dump(),
+        ).model_dump(exclude_unset=True),
         "ReviewSteps": lambda request: request.question.in_form(
             c.PlanReview(reasoning="", approved=True, doubt=None)
-        ).model_dump(),
+        ).model_dump(exclude_unset=True),
         "LocatePoints": lambda request: {"reasoning": "", "found": True, "points": [_centre(request)]},
         "ChooseMark": lambda _: {"reasoning": "", "number": 1},
         "GiveBox": lambda request: {"reasoning": "", "box": _box(request)},

@@ -16,6 +16,7 @@ import numpy as np
 from benchmarks.planted_faults import PLAN_FAULTS, desk_for, scenes, show, spoil
 from wonderful_team.contracts import DraftPlan, PlanDraft
 from wonderful_team.core.actions import PICK_PLACE
+from wonderful_team.core.protocols import Event
 from wonderful_team.errors import WonderfulTeamError
 from wonderful_team.evals import Confusion
 from wonderful_team.models.wrappers import Injecting, Injection
@@ -24,8 +25,17 @@ from wonderful_team.offline.answers.moves import with_moves
 from wonderful_team.planning import TeamConfig, TeamPolicy
 
 
+class Drafts:
+    """Counts how often a plan was drafted."""
+
+    count = 0
+
+    def on_event(self, event: Event) -> None:
+        self.count += event.kind == "request" and event.content.contract == "DraftPlan"
+
+
 async def check_plans_in_team(n: int, first: int, config: TeamConfig) -> dict[str, Confusion]:
-    """Half of the plans are spoiled; counted is whether anything was objected before actions came of it."""
+    """Half of the plans are spoiled; counted is whether it went back before actions came of it."""
     rng = np.random.default_rng(first)
     by_kind: dict[str, Confusion] = {}
     done, kinds = 0, list(PLAN_FAULTS)
@@ -46,9 +56,11 @@ async def check_plans_in_team(n: int, first: int, config: TeamConfig) -> dict[st
             # A wrong plan states the moves of what it says: nothing in it contradicts itself.
             drafted = with_moves(plan, where.shown.task, PICK_PLACE.step_kinds)
             injection = Injection(("DraftPlan",), lambda value, request, drafted=drafted: drafted, f"plan: {kind}")
-            team = TeamPolicy(Injecting(OfflineModel(), [injection]), config)
+            drafts = Drafts()
+            team = TeamPolicy(Injecting(OfflineModel(), [injection]), config, subscribers=[drafts])
             made = await team.make_plan(where.world.observe(), where.world.instruction, PICK_PLACE, where.world.limits)
-            objected = bool(made.questions) or made.status != "planned"
+            # A plan that could not be carried out goes back as well, with what was measured.
+            objected = bool(made.questions) or made.status != "planned" or drafts.count > 1
             by_kind[kind] = by_kind.get(kind, Confusion()).add(bad=kind != "none", objected=objected)
             done += 1
             if (kind != "none") != objected:

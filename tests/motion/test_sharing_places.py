@@ -62,6 +62,8 @@ def test_where_there_is_no_room_things_are_stacked_on_the_point_itself() -> None
     first, second = ends([put("T1", At("T3")), put("T2", At("T3"))], CAMERAS["affine"], SMALL)
     assert first[:2] == pytest.approx((0.53, 0.08), abs=0.006)
     assert second[:2] == pytest.approx(first[:2], abs=1e-6)
+    assert first[2] == pytest.approx(SMALL.height, abs=0.004)
+    assert second[2] == pytest.approx(SMALL.height + RED.height, abs=0.004)
 
 
 def test_the_source_of_the_number_says_that_a_place_is_shared() -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -158,15 +158,19 @@ class Places:
                 # A thing that is put down where it is, such as one that is only turned.
                 return self.resting(target, progress)
             case At(target):
-                spot = self._shared(target, self.spot(target, TO_PLACE, progress)[1])
+                spot = self._shared(target, self.spot(target, TO_PLACE, progress)[1], progress)
                 return spot if progress.moved.get(target) else self._freed(spot, progress, thing, target)
             case OriginOf(target):
                 return self.origin(target)
             case Beside():
                 return self._beside(place, progress, thing, yaw_rad)
 
-    def _shared(self, name: str, spot: ResolvedPoint) -> ResolvedPoint:
-        """This step's part of a place that several things share; the place's own point for one thing alone."""
+    def _shared(self, name: str, spot: ResolvedPoint, progress: MotionState) -> ResolvedPoint:
+        """This step's part of a place that several things share; the place's own point for one thing alone.
+
+        Where a thing has no room for all beside each other, each comes to lie on those before it. In a free area nobody asked
+        for that: its height stays, and the safety gate sees what stands there.
+        """
         share = self.shares.get(self.step)
         if share is None:
             return spot
@@ -174,10 +178,27 @@ class Places:
         centre = self.point(name, TO_PLACE)[1]
         px = share_px(share, self.target(name), boxes, centre, self.lift)
         px = (spot.px[0] + px[0] - centre[0], spot.px[1] + px[1] - centre[1])
-        if px == spot.px:
+        if px == spot.px and self.target(name).target.kind == "area":
             return spot
+        if px == spot.px:
+            return self._on_others(share.things[: share.index], spot, progress)
         how = f"{spot.how}; part {share.index + 1} of {len(share.things)} that go there"
         return self.lift.at_height(px, 0.0 if spot.position_m is None else float(spot.position_m[2]), how)
+
+    def _on_others(self, things: Sequence[str], spot: ResolvedPoint, progress: MotionState) -> ResolvedPoint:
+        """A spot at the height of what earlier steps have put there, if that is higher."""
+        if spot.position_m is None:
+            return spot
+        highest, z_m = "", float(spot.position_m[2])
+        for thing in things:
+            top = self.spot(thing, TO_PICK, progress)[1].position_m
+            if top is not None and top[2] > z_m:
+                highest, z_m = thing, float(top[2])
+        if not highest:
+            return spot
+        return ResolvedPoint(
+            spot.px, np.array([*spot.position_m[:2], z_m]), f"{spot.how}; on {highest}, which lies there"
+        )
 
     def _beside(self, place: Beside, progress: MotionState, thing: str | None, yaw_rad: float) -> ResolvedPoint:
         half = (0.0, 0.0)

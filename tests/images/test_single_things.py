@@ -38,6 +38,14 @@ def test_things_of_like_size_are_enlarged_alike_so_that_sizes_compare() -> None:
     assert max(other.size_px) <= LARGEST_PX
 
 
+def test_a_short_thing_beside_long_ones_keeps_their_factor_and_tiny_ones_share_one() -> None:
+    sides = (58, 116, 150, 12, 18)
+    shown = cut_outs([[(str(side), on_white(Box(300, 100, 300 + side, 100 + side)))] for side in sides])
+    scales = [pictures[0].frame.scale for pictures in shown]
+    assert scales[0] == scales[1] == scales[2]
+    assert scales[3] == scales[4] > scales[0]
+
+
 def test_a_tiny_thing_beside_a_huge_one_is_enlarged_more() -> None:
     (tiny,), (huge,) = cut_outs([[("a", on_white(Box(300, 100, 308, 108)))], [("b", on_white(Box(100, 20, 400, 300)))]])
     assert tiny.frame.scale > huge.frame.scale

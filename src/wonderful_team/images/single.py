@@ -23,8 +23,8 @@ LONG_SIDE_PX = 256
 """A cut-out's long side has at least about this many pixels."""
 LARGEST_PX = 420
 """The common factor makes no cut-out larger than this."""
-SMALLEST_PX = 160
-"""A cut-out that the common factor leaves smaller than this gets a factor of its own."""
+SMALLER = 3.0
+"""Things smaller than the largest one by more than this factor are enlarged by another factor than it, one for all of them."""
 MARGIN, LEAST_MARGIN_PX = 0.12, 6
 """Background left round a thing: this share of its longer side, at least so many view pixels."""
 MOST_SHARE = 0.7
@@ -81,16 +81,20 @@ def cut_outs(shots: Sequence[Sequence[tuple[str, View]]]) -> list[tuple[Picture,
     windows = [[thing_window(view) for _, view in views] for views in shots]
     sides = [[max(box.width, box.height) for box in boxes if box is not None] for boxes in windows]
     longest = [max(found) for found in sides if found]
-    common = 1.0
-    if longest:
-        common = float(max(1, min(math.ceil(LONG_SIDE_PX / min(longest)), int(LARGEST_PX / max(longest)))))
+    small = [side for side in longest if SMALLER * side < max(longest)]
+    large = [side for side in longest if side not in small]
     made = []
     for views, boxes, found in zip(shots, windows, sides, strict=True):
-        zoom = common
-        if found and common * max(found) < SMALLEST_PX:
-            zoom = float(math.ceil(LONG_SIDE_PX / max(found)))
+        zoom = _factor(small if found and max(found) in small else large)
         made.append(tuple(_cut(view, name, box, zoom) for (name, view), box in zip(views, boxes, strict=True)))
     return made
+
+
+def _factor(sides: Sequence[float]) -> float:
+    """One factor for things with these longer sides [view px]."""
+    if not sides:
+        return 1.0
+    return float(max(1, min(math.ceil(LONG_SIDE_PX / min(sides)), int(LARGEST_PX / max(sides)))))
 
 
 def changed_pair(before: tuple[str, View], after: tuple[str, View]) -> tuple[Picture, Picture] | None:

@@ -43,7 +43,7 @@ def _measures(slot: ShownSlot) -> dict[str, float]:
             f"the picture {{{slot.name}}} shows nothing that could define a word: {error}"
         ) from error
     return {
-        "tallest": side.box.height if len(slot.pictures) > 1 else 1.0,
+        "tallest": side.box.height / slot.pictures[-1].frame.scale if len(slot.pictures) > 1 else 1.0,
         "lightest": _lightness(example) + 1.0,
         "largest": float(np.sqrt(example.area_view_px)),
     }

@@ -146,6 +146,21 @@ def test_a_drawn_arrow_must_begin_at_its_box() -> None:
     assert not reviewed(RIGHT, wrong).approved
 
 
+def test_what_a_step_has_moved_begins_elsewhere_than_its_box() -> None:
+    text = "put the green star onto the blue square, then put it back where it was"
+    plan, shown = draft(text, SCENE), task(text, SCENE)
+    goals, targets = plan.to_subgoals(), plan.to_targets()
+    steps = ask(WriteSteps(shown, KINDS, goals, targets)).to_steps()
+    assert [step.pick for step in steps] == ["T1", "T1"]
+    to = shown.main.frame.point_to_picture
+    ways = [(to((500.0, 80.0)), to((300.0, 160.0))), (to((300.0, 160.0)), to((500.0, 80.0)))]
+    drawn = shown.main.marked(
+        BoxMark(shown.main.frame.box_to_picture(TARGET_BOX), label="T1"),
+        *(PathMark(way, str(number)) for number, way in enumerate(ways, start=1)),
+    )
+    assert ask(ReviewSteps(shown, goals, targets, steps, drawn)).approved
+
+
 def test_a_box_on_another_thing_is_seen() -> None:
     main = task(TEXT, SCENE).main
     elsewhere = main.marked(BoxMark(main.frame.box_to_picture(TARGET_BOX.shifted(-420, 0)), label="T1"))

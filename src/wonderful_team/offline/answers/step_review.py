@@ -181,17 +181,19 @@ def _order_problems(steps: Sequence[Step], subgoals: Sequence[Subgoal]) -> list[
 
 
 def _drawn_problems(overview: Picture, question: ReviewSteps, eyes: Eyes) -> list[Problem]:
-    """A drawn arrow must begin at the box of what is picked; a box must hold what its target's words name."""
+    """A drawn arrow must begin at the box of what is picked, until a step has moved it; a box must hold what its words name."""
     boxes = {mark.label.split()[0]: mark.box for mark in overview.marks if isinstance(mark, BoxMark) and mark.label}
     here = eyes_of(overview, question.task.slots)
     problems: list[Problem] = []
     arrows = [mark for mark in overview.marks if isinstance(mark, PathMark) and mark.points]
     numbered = {mark.label.split()[0].rstrip(".:"): mark for mark in arrows if mark.label}
+    moved: set[str] = set()
     for number, step in enumerate(question.steps, start=1):
         if not isinstance(step, PickPlaceStep):
             continue
-        box = boxes.get(step.pick)
+        box = None if step.pick in moved else boxes.get(step.pick)
         arrow = numbered.get(str(number))
+        moved.add(step.pick)
         if box is not None and arrow is not None and not box.scaled(1.3).contains(arrow.points[0]):
             text = f"The arrow of step {number} begins beside the box of {step.pick}; is its point right?"
             problems.append((step.pick, "wrong_point", text))

@@ -129,6 +129,9 @@ def test_heights_on_the_way_are_said_in_words() -> None:
         "step 1: held at 3.0 cm, put down on a surface at 0.0 cm; the highest surface under its way is at 12.0 cm, and it is "
         "carried 20.0 cm over the table"
     )
+    assert isinstance(planned.action, PickPlace)
+    tall = replace(planned, action=replace(planned.action, place_m=planned.action.place_m + (0, 0, 0.25)))
+    assert "carried 25.0 cm" in numbers_in_words([tall], {}, view(), LIMITS)[0], "as the gate has it: above both ends"
     (blind,) = numbers_in_words([planned], {}, view(depth=False), LIMITS)
     assert "heights are not known" in blind
     (pixels,) = numbers_in_words([replace(planned, action=None)], {}, view(), LIMITS)

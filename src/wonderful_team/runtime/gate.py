@@ -26,7 +26,7 @@ from wonderful_team.runtime.course import Course, Stage
 from wonderful_team.runtime.keep_out_checks import keep_out_checks, keep_out_px_checks
 from wonderful_team.runtime.seen_checks import height_checks, place_checks, way_checks
 from wonderful_team.runtime.staleness import MAX_AGE_S, staleness_checks, watched
-from wonderful_team.runtime.sweep import Sweep, carry_height_m, sweep_of, swept_path_px
+from wonderful_team.runtime.sweep import Sweep, sweep_of, swept_path_px
 
 TOOL_RADIUS_M = 0.01
 """Half-width of what moves [m]: a path may not come nearer than this to a keep-out region; a finger's width."""
@@ -235,7 +235,7 @@ def _axis_check(path: Array, axis: int, limits: Limits) -> GateCheck:
 
 
 def _carry_check(way: Carry, limits: Limits) -> GateCheck:
-    carry = carry_height_m(way, limits)
+    carry = way.height_m(limits.clearance_m)
     ends = max(way.start_m[2], way.end_m[2])
     room = float(carry - ends)
     return GateCheck(

@@ -13,11 +13,6 @@ from wonderful_team.core.pictures import Point
 from wonderful_team.core.values import Limits, PlannedAction
 
 
-def carry_height_m(way: Carry, limits: Limits) -> float:
-    """Height at which a picked object travels [m]: the world's clearance, or higher where an end lies higher."""
-    return float(max(limits.clearance_m, way.start_m[2], way.end_m[2]))
-
-
 @dataclass(frozen=True, eq=False)
 class Sweep:
     """The path of the tool in one action; straight in between.
@@ -48,7 +43,7 @@ def sweep_of(action: Action, limits: Limits, tool_m: Array | None) -> Sweep:
     match motion:
         case Carry(start_m=start, end_m=end):
             lifted, over = start.copy(), end.copy()
-            lifted[2] = over[2] = carry_height_m(motion, limits)
+            lifted[2] = over[2] = motion.height_m(limits.clearance_m)
             return Sweep(motion, np.array([start, lifted, over, end]), _high(tool_m, lifted), over)
         case Slide(start_m=start, end_m=end):
             over = np.array([*end[:2], max(limits.clearance_m, end[2])])

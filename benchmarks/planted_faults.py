@@ -15,7 +15,7 @@ from __future__ import annotations
 import argparse
 import asyncio
 import json
-from collections.abc import Callable, Iterator
+from collections.abc import AsyncIterator, Callable, Iterator
 from dataclasses import asdict, dataclass, field
 from functools import lru_cache
 from pathlib import Path
@@ -190,14 +190,13 @@ def spoil(right: PlanDraft, where: Scene, rng: np.random.Generator, kinds: list[
     return None
 
 
-async def check_plans(n: int, first: int) -> dict[str, Confusion]:
-    """Half of the plans are spoiled; Verification looks at each whole plan once."""
+async def spoiled_plans(n: int, first: int) -> AsyncIterator[tuple[Scene, AgentSession, str, PlanDraft]]:
+    """`n` plans with their scenes, in pairs: a right one ("none"), then the same with one fault, all kinds in turn."""
     rng = np.random.default_rng(first)
-    by_kind: dict[str, Confusion] = {}
     done, kinds = 0, list(PLAN_FAULTS)
     for where in scenes(first):
         if done >= n:
-            return by_kind
+            return
         session = desk_for(where.shown)
         try:
             right: PlanDraft = await session.ask(DraftPlan(where.shown.task, PICK_PLACE.step_kinds, True), stage="plan")
@@ -210,13 +209,20 @@ async def check_plans(n: int, first: int) -> dict[str, Confusion]:
         # The kind that was used goes to the end, so that all kinds come up as often as the scenes allow.
         kinds.sort(key=lambda kind: kind == spoiled[0])
         for kind, plan in (("none", right), spoiled):
-            question = ReviewPlan(where.shown.task, PICK_PLACE.step_kinds, plan.to_subgoals(), plan.to_targets())
-            said = await objection(session, question, "plan")
-            bad = kind != "none"
-            by_kind[kind] = by_kind.get(kind, Confusion()).add(bad=bad, objected=said is not None)
+            yield where, session, kind, plan
             done += 1
-            if bad != (said is not None):
-                print(f"    {where.task} seed {where.seed}, fault {kind}: {said or 'approved'}")
+
+
+async def check_plans(n: int, first: int) -> dict[str, Confusion]:
+    """Half of the plans are spoiled; Verification looks at each whole plan once."""
+    by_kind: dict[str, Confusion] = {}
+    async for where, session, kind, plan in spoiled_plans(n, first):
+        question = ReviewPlan(where.shown.task, PICK_PLACE.step_kinds, plan.to_subgoals(), plan.to_targets())
+        said = await objection(session, question, "plan")
+        bad = kind != "none"
+        by_kind[kind] = by_kind.get(kind, Confusion()).add(bad=bad, objected=said is not None)
+        if bad != (said is not None):
+            print(f"    {where.task} seed {where.seed}, fault {kind}: {said or 'approved'}")
     return by_kind
 
 

@@ -11,13 +11,9 @@ from __future__ import annotations
 import argparse
 import asyncio
 
-import numpy as np
-
-from benchmarks.planted_faults import PLAN_FAULTS, desk_for, scenes, show, spoil
-from wonderful_team.contracts import DraftPlan, PlanDraft
+from benchmarks.planted_faults import show, spoiled_plans
 from wonderful_team.core.actions import PICK_PLACE
 from wonderful_team.core.protocols import Event
-from wonderful_team.errors import WonderfulTeamError
 from wonderful_team.evals import Confusion
 from wonderful_team.models.wrappers import Injecting, Injection
 from wonderful_team.offline import OfflineModel
@@ -36,35 +32,19 @@ class Drafts:
 
 async def check_plans_in_team(n: int, first: int, config: TeamConfig) -> dict[str, Confusion]:
     """Half of the plans are spoiled; counted is whether it went back before actions came of it."""
-    rng = np.random.default_rng(first)
     by_kind: dict[str, Confusion] = {}
-    done, kinds = 0, list(PLAN_FAULTS)
-    for where in scenes(first):
-        if done >= n:
-            return by_kind
-        session = desk_for(where.shown)
-        try:
-            right: PlanDraft = await session.ask(DraftPlan(where.shown.task, PICK_PLACE.step_kinds, True), stage="plan")
-        except WonderfulTeamError as error:
-            print(f"    {where.task} seed {where.seed}: no draft to spoil: {error}")
-            continue
-        spoiled = spoil(right, where, rng, kinds)
-        if spoiled is None:
-            continue
-        kinds.sort(key=lambda kind: kind == spoiled[0])
-        for kind, plan in (("none", right), spoiled):
-            # A wrong plan states the moves of what it says: nothing in it contradicts itself.
-            drafted = with_moves(plan, where.shown.task, PICK_PLACE.step_kinds)
-            injection = Injection(("DraftPlan",), lambda value, request, drafted=drafted: drafted, f"plan: {kind}")
-            drafts = Drafts()
-            team = TeamPolicy(Injecting(OfflineModel(), [injection]), config, subscribers=[drafts])
-            made = await team.make_plan(where.world.observe(), where.world.instruction, PICK_PLACE, where.world.limits)
-            # A plan that could not be carried out goes back as well, with what was measured.
-            objected = bool(made.questions) or made.status != "planned" or drafts.count > 1
-            by_kind[kind] = by_kind.get(kind, Confusion()).add(bad=kind != "none", objected=objected)
-            done += 1
-            if (kind != "none") != objected:
-                print(f"    {where.task} seed {where.seed}, fault {kind}: {made.status}, approved {made.verified}")
+    async for where, _, kind, plan in spoiled_plans(n, first):
+        # A wrong plan states the moves of what it says: nothing in it contradicts itself.
+        drafted = with_moves(plan, where.shown.task, PICK_PLACE.step_kinds)
+        injection = Injection(("DraftPlan",), lambda value, request, drafted=drafted: drafted, f"plan: {kind}")
+        drafts = Drafts()
+        team = TeamPolicy(Injecting(OfflineModel(), [injection]), config, subscribers=[drafts])
+        made = await team.make_plan(where.world.observe(), where.world.instruction, PICK_PLACE, where.world.limits)
+        # A plan that could not be carried out goes back as well, with what was measured.
+        objected = bool(made.questions) or made.status != "planned" or drafts.count > 1
+        by_kind[kind] = by_kind.get(kind, Confusion()).add(bad=kind != "none", objected=objected)
+        if (kind != "none") != objected:
+            print(f"    {where.task} seed {where.seed}, fault {kind}: {made.status}, approved {made.verified}")
     return by_kind
 
 

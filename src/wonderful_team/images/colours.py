@@ -192,3 +192,11 @@ def colour_shares(pixels_rgb: Array, at_least: float = 0.06) -> tuple[ColourShar
         L, a, b = (float(v) for v in np.median(lab[chosen], axis=0))
         found.append(ColourShare(name, share, (L, a, b), *darkness(name, (L, a, b))))
     return tuple(sorted(found, key=lambda colour: -colour.share))
+
+
+def commonest(rgb: Array) -> Array:
+    """The colour that most of a picture has, shape (3,): that of the table or ground."""
+    coarse = (rgb >> 4).reshape(-1, 3).astype(np.int32)
+    codes = coarse[:, 0] * 256 + coarse[:, 1] * 16 + coarse[:, 2]
+    best = int(np.bincount(codes, minlength=4096).argmax())
+    return np.asarray(np.median(rgb.reshape(-1, 3)[codes == best], axis=0))

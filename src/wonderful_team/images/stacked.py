@@ -5,8 +5,8 @@ from __future__ import annotations
 import cv2
 import numpy as np
 
-from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.values import View
+from wonderful_team.images.colours import commonest
 
 DIFFERS = 24
 """Levels (0 to 255) from which a pixel differs from the table, or from the same pixel of another picture."""
@@ -27,17 +27,9 @@ def lies_over(before: View, after: View) -> bool:
         return True
     first, second = before.rgb.astype(np.int16), after.rgb.astype(np.int16)
     changed = np.abs(first - second).max(axis=2) > DIFFERS
-    table = _dominant(before.rgb)
+    table = commonest(before.rgb)
     was, now = (np.abs(image - table).max(axis=2) > DIFFERS for image in (first, second))
     over = cv2.morphologyEx((changed & was & now).astype(np.uint8), cv2.MORPH_OPEN, np.ones((3, 3), np.uint8))
     shown_before, shown_after = int((changed & was).sum()), int((changed & now).sum())
     hidden = shown_before - shown_after
     return bool(over.sum() > LEAST_SHARE * over.size and hidden > HIDDEN_SHARE * max(shown_before, 1))
-
-
-def _dominant(rgb: Array) -> Array:
-    """The colour that most of a picture has, shape (3,)."""
-    coarse = (rgb >> 4).reshape(-1, 3).astype(np.int32)
-    codes = coarse[:, 0] * 256 + coarse[:, 1] * 16 + coarse[:, 2]
-    best = int(np.bincount(codes, minlength=4096).argmax())
-    return np.asarray(np.median(rgb.reshape(-1, 3)[codes == best], axis=0))

@@ -16,6 +16,7 @@ from wonderful_team.core.geometry import Box, Frame
 from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.pictures import BoxMark, Picture, Point, Tiles
 from wonderful_team.core.values import View
+from wonderful_team.images.colours import commonest
 from wonderful_team.images.resample import resampled
 
 ROWS = 3
@@ -149,7 +150,7 @@ def thing_alone(view: View) -> Box | None:
     What touches the picture's edge belongs to the ground.
     """
     rgb = cv2.GaussianBlur(np.ascontiguousarray(view.rgb), (3, 3), 0).astype(np.int16)
-    ground = _commonest(rgb)
+    ground = commonest(rgb)
     mask = (np.abs(rgb - ground).max(axis=2) > DIFFERENT).astype(np.uint8)
     count, _, stats, _ = cv2.connectedComponentsWithStats(mask, connectivity=8)
     height, width = mask.shape
@@ -171,11 +172,3 @@ LEAST_SHARE = 0.0008
 """A smaller thing than this share of the picture is none."""
 OTHER_SHARE = 0.25
 """Two things, where the second covers more than this share of the first."""
-
-
-def _commonest(rgb: Array) -> Array:
-    """The commonest colour, coarsely: that of the ground."""
-    coarse = (rgb // 16).reshape(-1, 3)
-    keys = coarse[:, 0] * 256 + coarse[:, 1] * 16 + coarse[:, 2]
-    found = keys == np.bincount(keys).argmax()
-    return np.asarray(np.median(rgb.reshape(-1, 3)[found], axis=0))

@@ -32,11 +32,10 @@ from wonderful_team.errors import (
     NotFoundError,
     NotUnderstoodError,
     PlanError,
-    WonderfulTeamError,
 )
 from wonderful_team.models.budget import Budget
 from wonderful_team.models.client import DEADLINE_S, ModelClient
-from wonderful_team.planning import acting, grounding, judging, plan_loop
+from wonderful_team.planning import acting, endings, grounding, judging, plan_loop
 from wonderful_team.planning.config import TeamConfig
 from wonderful_team.planning.functions import write_functions
 from wonderful_team.planning.looking import done_lines, first_part, is_uncertain
@@ -160,7 +159,7 @@ class TeamPolicy:
             NotUnderstoodError,
             NeedsClarification,
         ) as error:
-            plan = _failed(progress.plan, error)
+            plan = endings.failed(progress.plan, error)
         finally:
             await settle(session)
         session.tell_skipped()
@@ -184,24 +183,24 @@ class TeamPolicy:
         asked = advice
         for turn in range(1 + self.config.bounds.returns):
             state = await plan_loop.draft(session, scene, advice, done)
-            progress.plan = _with_state(progress.plan, state, "draft")
+            progress.plan = endings.with_state(progress.plan, state, "draft")
             if until == "draft":
                 return progress.plan
             if until == "actions":
                 state = await plan_loop.verify_where_needed(session, scene, state, failed=bool(advice))
             else:
                 state = await plan_loop.verify(session, scene, state)
-            progress.plan = _with_state(progress.plan, state, "checked")
+            progress.plan = endings.with_state(progress.plan, state, "checked")
             if self._not_approved(state):
-                return _refused(progress.plan, "plan")
+                return endings.refused(progress.plan, "plan")
             if until == "checked":
                 return progress.plan
             state = await plan_loop.extract_targets(session, scene, state)
             if (absent and not _asks_anew(state, absent)) or (last is not None and _same_plan(state, last)):
                 break
-            progress.plan = _with_state(progress.plan, state, "checked")
+            progress.plan = endings.with_state(progress.plan, state, "checked")
             if not state.subgoals:
-                return _nothing_to_do(progress.plan)
+                return endings.nothing_to_do(progress.plan)
             try:
                 plan, absent = await self._carry_out(session, scene, progress, state, until)
             except GeometryError as error:
@@ -210,7 +209,7 @@ class TeamPolicy:
             else:
                 if not absent:
                     return plan
-                failed, last = NotFoundError(_not_found(absent)), None
+                failed, last = NotFoundError(endings.not_found(absent)), None
                 told = tuple(f"{item.target.id} ({item.target.words}) was not found in the picture." for item in absent)
             advice = (*asked, *told)
             if turn < self.config.bounds.returns:
@@ -233,11 +232,11 @@ class TeamPolicy:
                 return plan, absent
             # Each change has used up a question, so this ends at their bound.
             state = await plan_loop.verify(session, scene, changed)
-            progress.plan = _with_state(progress.plan, state, "checked")
+            progress.plan = endings.with_state(progress.plan, state, "checked")
             if self._not_approved(state):
-                return _refused(progress.plan, "plan"), []
+                return endings.refused(progress.plan, "plan"), []
             if not state.subgoals:
-                return _nothing_to_do(progress.plan), []
+                return endings.nothing_to_do(progress.plan), []
 
     async def _ground_and_act(
         self, session: AgentSession, scene: SceneShown, progress: _Progress, state: PlanState, until: Until
@@ -280,9 +279,9 @@ class TeamPolicy:
             return progress.plan, [item for item in acted.grounded.values() if item.status != "found"], None
         actions = acted.actions
         acting.remember_angles(session, scene, acted.state, acted.steps)
-        plan = replace(_with_state(progress.plan, acted.state, "planned"), steps=acted.steps, actions=actions)
+        plan = replace(endings.with_state(progress.plan, acted.state, "planned"), steps=acted.steps, actions=actions)
         if self.config.strict and not acted.state.verified:
-            plan = _refused(plan, "steps")
+            plan = endings.refused(plan, "steps")
         pixels = " (no camera given: pixels only)" if any(item.action is None for item in actions) else ""
         session.stage("actions", counted(len(actions), "action") + pixels)
         return plan, [], None
@@ -371,41 +370,6 @@ def _scene_of(situation: Situation) -> SceneShown:
     )
 
 
-def _with_state(plan: Plan, state: PlanState, status: str) -> Plan:
-    return replace(
-        plan,
-        status=status,
-        subgoals=state.subgoals,
-        targets=state.targets,
-        mode=state.mode,
-        verified=state.verified,
-        questions=state.questions,
-        first_draft=plan.first_draft or state.first_draft,
-    )
-
-
-_STATUS: tuple[tuple[type[WonderfulTeamError], str], ...] = (
-    (NotFoundError, "not_found"),
-    (NotUnderstoodError, "not_understood"),
-    (NeedsClarification, "needs_clarification"),
-    (BudgetReached, "budget"),
-)
-
-
-def _nothing_to_do(plan: Plan) -> Plan:
-    return replace(plan, status="planned", message="nothing to do: the instruction is already fulfilled")
-
-
-def _refused(plan: Plan, what: str) -> Plan:
-    return replace(plan, status="refused", message=f"Verification did not approve the {what} (strict)", stage="plan")
-
-
-def _failed(plan: Plan, error: WonderfulTeamError) -> Plan:
-    status = next((name for kind, name in _STATUS if isinstance(error, kind)), "failed")
-    choices = error.choices if isinstance(error, NeedsClarification) else ()
-    return replace(plan, status=status, message=str(error), stage=error.stage or "plan", choices=choices)
-
-
 def _asks_anew(state: PlanState, absent: Sequence[GroundedTarget]) -> bool:
     """Whether a revised plan looks for something else than what was not found."""
     missing = {(item.target.words, item.target.where, item.target.like) for item in absent}
@@ -415,10 +379,6 @@ def _asks_anew(state: PlanState, absent: Sequence[GroundedTarget]) -> bool:
 def _same_plan(state: PlanState, last: PlanState) -> bool:
     """Whether a plan that could not be carried out came back unchanged."""
     return (state.subgoals, state.targets) == (last.subgoals, last.targets)
-
-
-def _not_found(absent: Sequence[GroundedTarget]) -> str:
-    return "; ".join(f"{item.target.id} not found: {item.target.words}" for item in absent)
 
 
 def _named(item: GroundedTarget) -> str:

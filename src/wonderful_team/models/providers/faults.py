@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
 import re
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -22,6 +24,7 @@ from wonderful_team.errors import (
     WonderfulTeamError,
 )
 from wonderful_team.models.providers.bounded import ReplyTooLargeError
+from wonderful_team.models.providers.settings import LONGEST_WAIT_S
 from wonderful_team.redaction import redact
 
 _LONGEST_BODY = 300
@@ -229,3 +232,25 @@ def _said(error: BaseException) -> str:
     text = " ".join(redact(text).split())
     text = text if len(text) <= _LONGEST_BODY else text[: _LONGEST_BODY - 1] + "…"
     return f"status {status}: {text}" if status is not None else text
+
+
+@contextlib.contextmanager
+def before_sending(*, first: bool = True) -> Iterator[None]:
+    """What is refused here has not been sent, where no try came first."""
+    try:
+        yield
+    except WonderfulTeamError as error:
+        error.sent = not first
+        raise
+
+
+def told(error: WonderfulTeamError, tries: int, wait_s: float, left_s: float) -> WonderfulTeamError:
+    """The error with what was tried."""
+    extra = ""
+    if tries > 1:
+        extra = f"; {tries} tries"
+    if wait_s > LONGEST_WAIT_S:
+        extra += f"; it asks to wait {wait_s:.0f} s, at most {LONGEST_WAIT_S:.0f} s are waited"
+    elif wait_s >= left_s:
+        extra += "; no time is left for another try"
+    return type(error)(f"{error}{extra}", stage=error.stage) if extra else error

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import asyncio
-import contextlib
 import functools
 import hashlib
 import math
 import time
-from collections.abc import AsyncGenerator, Iterator, Mapping
+from collections.abc import AsyncGenerator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 from weakref import WeakKeyDictionary
@@ -31,7 +30,7 @@ from wonderful_team.models.conventions import Convention
 from wonderful_team.models.prices import Prices
 from wonderful_team.models.providers import library
 from wonderful_team.models.providers.facts import UNKNOWN
-from wonderful_team.models.providers.faults import Fault, fault_of, key_refused
+from wonderful_team.models.providers.faults import Fault, before_sending, fault_of, key_refused, told
 from wonderful_team.models.providers.learned import Learned
 from wonderful_team.models.providers.server_facts import server_facts
 from wonderful_team.models.providers.settings import LONGEST_WAIT_S, TIMED_OUT_TRIES, Settings, Thinking
@@ -150,7 +149,7 @@ class Provider:
             BudgetReached: A cap was met before another try.
         """
         # The first request of a loop builds the client, which takes time that is not the service's.
-        with _before_sending():
+        with before_sending():
             await self._client()
         ticket, started = current_ticket(), time.monotonic()
         # A little earlier than whoever waits, so that the error can say what was tried.
@@ -166,7 +165,7 @@ class Provider:
         while True:
             if self._learned.crowded:
                 own_ends += await turn.take()
-            with _before_sending(first=not tries):
+            with before_sending(first=not tries):
                 composed = self._compose(request)
                 limit = self._limit(request, ticket)
             if tries:
@@ -194,7 +193,7 @@ class Provider:
             wait_s = self._wait(outcome, request, tries)
             again = outcome.retry and tries < self.settings.tries and timed_out < TIMED_OUT_TRIES
             if not again or wait_s > LONGEST_WAIT_S or wait_s >= left:
-                raise _told(outcome.error, tries, wait_s, left) from None
+                raise told(outcome.error, tries, wait_s, left) from None
             await asyncio.sleep(wait_s)
 
     async def aclose(self) -> None:
@@ -383,28 +382,6 @@ async def _keep_open(client: Any) -> AsyncGenerator[None]:
         yield
     finally:
         await client.aclose()
-
-
-@contextlib.contextmanager
-def _before_sending(*, first: bool = True) -> Iterator[None]:
-    """What is refused here has not been sent, where no try came first."""
-    try:
-        yield
-    except WonderfulTeamError as error:
-        error.sent = not first
-        raise
-
-
-def _told(error: WonderfulTeamError, tries: int, wait_s: float, left_s: float) -> WonderfulTeamError:
-    """The error with what was tried."""
-    extra = ""
-    if tries > 1:
-        extra = f"; {tries} tries"
-    if wait_s > LONGEST_WAIT_S:
-        extra += f"; it asks to wait {wait_s:.0f} s, at most {LONGEST_WAIT_S:.0f} s are waited"
-    elif wait_s >= left_s:
-        extra += "; no time is left for another try"
-    return type(error)(f"{error}{extra}", stage=error.stage) if extra else error
 
 
 def _whole(request: Request, value: Any) -> bool:

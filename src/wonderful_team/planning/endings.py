@@ -1,0 +1,60 @@
+"""How planning ends: the plan with its status, and why it did not come to more."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from wonderful_team.core.values import GroundedTarget, Plan
+from wonderful_team.errors import (
+    BudgetReached,
+    NeedsClarification,
+    NotFoundError,
+    NotUnderstoodError,
+    WonderfulTeamError,
+)
+from wonderful_team.planning.plan_loop import PlanState
+
+
+def with_state(plan: Plan, state: PlanState, status: str) -> Plan:
+    """The plan with what is known of it so far."""
+    return replace(
+        plan,
+        status=status,
+        subgoals=state.subgoals,
+        targets=state.targets,
+        mode=state.mode,
+        verified=state.verified,
+        questions=state.questions,
+        first_draft=plan.first_draft or state.first_draft,
+    )
+
+
+STATUS: tuple[tuple[type[WonderfulTeamError], str], ...] = (
+    (NotFoundError, "not_found"),
+    (NotUnderstoodError, "not_understood"),
+    (NeedsClarification, "needs_clarification"),
+    (BudgetReached, "budget"),
+)
+
+
+def nothing_to_do(plan: Plan) -> Plan:
+    """The end of a plan without subgoals."""
+    return replace(plan, status="planned", message="nothing to do: the instruction is already fulfilled")
+
+
+def refused(plan: Plan, what: str) -> Plan:
+    """The end of a plan that may run only with Verification's approval (strict)."""
+    return replace(plan, status="refused", message=f"Verification did not approve the {what} (strict)", stage="plan")
+
+
+def failed(plan: Plan, error: WonderfulTeamError) -> Plan:
+    """The best so far, with what ended it."""
+    status = next((name for kind, name in STATUS if isinstance(error, kind)), "failed")
+    choices = error.choices if isinstance(error, NeedsClarification) else ()
+    return replace(plan, status=status, message=str(error), stage=error.stage or "plan", choices=choices)
+
+
+def not_found(absent: Sequence[GroundedTarget]) -> str:
+    """What was looked for in vain, in one line."""
+    return "; ".join(f"{item.target.id} not found: {item.target.words}" for item in absent)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from typing import Any
 
@@ -19,6 +20,11 @@ LONG_PLAN = f"the plan has {MAX_SUBGOALS + 1} subgoals, at most {MAX_SUBGOALS} a
 MANY = f"the plan has {MAX_TARGETS + 1} targets, at most {MAX_TARGETS} are allowed"
 
 
+def move(turn: float) -> dict[str, Any]:
+    """A move that is turned so far [degrees]."""
+    return {"pick": "T1", "place": {"target": "T2", "how": "at", "side": None}, "rotate_deg": turn}
+
+
 def draft(place: str, value: Any, says: str) -> list[tuple[str, dict[str, Any], str]]:
     """The same defect in a plan that is drafted and in one that is revised."""
     return [("DraftPlan", {place: value}, says), ("RevisePlan", {f"plan.{place}": value}, says)]
@@ -34,6 +40,8 @@ REFUSED: list[tuple[str, dict[str, Any], str]] = [
     *draft("subgoals.1.targets", [], "subgoal G2 names no target"),
     *draft("subgoals.0.text", "", "subgoals.0.text.*at least 1 character"),
     *draft("subgoals.0.text", None, "subgoals.0.text.*valid string"),
+    *[row for turn in (361.0, -1e18, math.inf, math.nan) for row in draft("subgoals.0.move", move(turn), "move.rotate_deg")],
+    *draft("subgoals.0.move", {**move(0.0), "pick": "T9"}, "unknown target in the move of G1 'T9'; valid: T1, T2"),
     *draft("targets.1.id", "T1", "target ids must be unique; these occur twice: T1"),
     *draft("targets.0.words", "", "targets.0.words.*at least 1 character"),
     *draft("targets.0.kind", "robot", "targets.0.kind.*'object' or 'area'"),

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Sequence
-from typing import Literal
+from dataclasses import fields
+from typing import Any, Literal
 
 from pydantic import Field
 
@@ -41,14 +42,16 @@ class TargetDraft(AnswerModel):
         )
 
 
+_TURN: dict[str, Any] = dict(next(item.metadata for item in fields(PickPlaceStep) if item.name == "rotate_deg"))
+"""A turn is limited and described here as in the steps that models write."""
+
+
 class MoveDraft(AnswerModel):
     """One pick and one place that carry out a whole subgoal."""
 
     pick: str = Field(description="Id of the target that is picked up.")
     place: PlaceDraft
-    rotate_deg: float = Field(
-        description="How far it is turned on the way, clockwise seen from above; 0 for not at all."
-    )
+    rotate_deg: float = Field(**_TURN)
 
     def to_step(self, subgoal: str) -> PickPlaceStep:
         """The step that says the same. Raises ValueError for a place beside a target without a side."""

@@ -15,6 +15,7 @@ import pytest
 
 from tests.desk import read_record
 from tests.interrupting import listen
+from wonderful_team.cli import app
 from wonderful_team.core.interrupts import Interrupted, ends_on_signal, held
 
 PATIENCE_S = 60
@@ -233,6 +234,33 @@ def test_ctrl_c_after_the_work_is_done(later_s: float, start) -> None:
     _, told = process.communicate(timeout=PATIENCE_S)
     assert process.returncode in (0, 130), told
     assert "Traceback" not in told
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+def test_no_moment_between_the_work_and_the_end_has_pythons_own_handler(number: signal.Signals, start) -> None:
+    """A command's own handling is over, and the program has not begun to leave."""
+    program = (
+        "import os, time\n"
+        "from wonderful_team.core.interrupts import ends_on_signal, exits_at_once\n"
+        "exits_at_once()\n"
+        "with ends_on_signal(force=True):\n    pass\n"
+        f"os.kill(os.getpid(), {int(number)})\n"
+        "time.sleep(30)\n"
+    )
+    process = start("-c", program)
+    _, told = process.communicate(timeout=PATIENCE_S)
+    assert (process.returncode, told) == (128 + number, "")
+
+
+def test_a_command_has_it_so(monkeypatch: pytest.MonkeyPatch) -> None:
+    """`main` says so before the command begins."""
+    told: list[str] = []
+    monkeypatch.setattr(app, "exits_at_once", lambda: told.append("exits at once"))
+    monkeypatch.setattr(app, "run", lambda argv: told.append("runs") or 0)
+    monkeypatch.setattr(app, "leave", lambda code: told.append("leaves"))
+    monkeypatch.setattr(app, "redact_streams", lambda: None)
+    app.main()
+    assert told == ["exits at once", "runs", "leaves"]
 
 
 def test_a_study_ends_with_the_signals_number(own: Path, start, tmp_path: Path) -> None:

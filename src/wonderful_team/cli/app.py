@@ -13,7 +13,7 @@ import click
 
 from wonderful_team._version import __version__
 from wonderful_team.cli.output import Document, say, wants_json
-from wonderful_team.core.interrupts import Interrupted, ends_on_signal, leave
+from wonderful_team.core.interrupts import Interrupted, ends_on_signal, exits_at_once, leave
 from wonderful_team.redaction import redact_streams, redacted_streams
 
 if TYPE_CHECKING:
@@ -101,6 +101,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     redact_streams()
     if argv is not None:
         sys.exit(run(list(argv)))
+    exits_at_once()
     leave(run(sys.argv[1:]))
 
 

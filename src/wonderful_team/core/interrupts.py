@@ -73,7 +73,7 @@ def ends_on_signal(*, force: bool = False) -> Iterator[None]:
         yield
         return
     before = {number: signal.getsignal(number) for number in SIGNALS}
-    ours = [number for number in SIGNALS if before[number] in (signal.SIG_DFL, signal.default_int_handler)]
+    ours = [number for number in SIGNALS if before[number] in _UNHANDLED]
     _state.active, _state.force, _state.came, _state.pending, _state.holding = True, force, None, None, 0
     for number in ours:
         signal.signal(number, _on_signal)
@@ -135,6 +135,25 @@ def as_keyboard() -> Iterator[None]:
 def exit_code() -> int:
     """128 + the number of the signal that came last; that of Ctrl-C where none is known."""
     return 128 + (_state.came or signal.SIGINT)
+
+
+def exits_at_once() -> None:
+    """From now on a signal that nothing else handles ends the program at once, with 128 + its number and no traceback.
+
+    What `ends_on_signal` restores at its end is this, so there is no moment between the work and the program's end in which
+    Python's own answer to a signal holds.
+    """
+    for number in SIGNALS:
+        if signal.getsignal(number) in _UNHANDLED:
+            signal.signal(number, _at_once)
+
+
+def _at_once(number: int, frame: FrameType | None) -> None:
+    os._exit(128 + number)
+
+
+_UNHANDLED = (signal.SIG_DFL, signal.default_int_handler, _at_once)
+"""What signals do before anything of ours handles them."""
 
 
 def _on_signal(number: int, frame: FrameType | None) -> None:
@@ -224,9 +243,7 @@ def leave(code: int) -> NoReturn:
 
     Python's own taking down of the interpreter, during which a signal kills it whatever the program has set, is left out.
     """
-    for number in SIGNALS:
-        if signal.getsignal(number) in (signal.SIG_DFL, signal.default_int_handler):
-            signal.signal(number, lambda number, frame: os._exit(128 + number))
+    exits_at_once()
     if not any(thread.is_alive() for thread in _threads):
         # Threads of the user's own code are waited for, as Python does.
         threading._shutdown()  # type: ignore[attr-defined]

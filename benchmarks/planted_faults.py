@@ -24,6 +24,7 @@ from typing import Any
 import numpy as np
 
 from benchmarks.offline_success import VIMA
+from wonderful_team.agents.scene import SceneShown
 from wonderful_team.contracts import (
     DraftPlan,
     PlanDraft,
@@ -45,7 +46,6 @@ from wonderful_team.offline import OfflineModel
 from wonderful_team.planning import TeamConfig, TeamPolicy
 from wonderful_team.planning.jobs import Job
 from wonderful_team.planning.judged import judge_box
-from wonderful_team.planning.scene import SceneShown
 from wonderful_team.planning.session import AgentSession
 from wonderful_team.sims.tabletop import TabletopWorld, make_world
 

@@ -44,7 +44,7 @@ class Scene:
 @lru_cache(maxsize=80)
 def scene_of(task: str, seed: int) -> Scene:
     """The scene of a task and seed, as a question shows it."""
-    from wonderful_team.planning.scene import SceneShown
+    from wonderful_team.agents.scene import SceneShown
     from wonderful_team.sims.tabletop import make_world
 
     world = make_world(task, seed=seed)

@@ -11,10 +11,10 @@ import pytest
 from tests.agents.question_samples import picture
 from tests.planning.helpers import photo
 from wonderful_team.agents.rendering import target_words
+from wonderful_team.agents.scene import SceneShown
 from wonderful_team.contracts import DraftPlan, ExtractTargets, PlanDraft, RevisePlan, ShownSlot, ShownTask, TargetDraft
 from wonderful_team.core.actions import PICK_PLACE
 from wonderful_team.core.values import NO_WORKSPACE, Critique, Instruction, Plan, Slot, Subgoal, Target
-from wonderful_team.planning.scene import SceneShown
 from wonderful_team.record.plan_file import plan_from_json, plan_to_json
 
 TASK = ShownTask(

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from wonderful_team.agents.scene import SceneShown
 from wonderful_team.contracts import GiveBox, JudgeBox, LocatePoints, Presence, ReadScene, Strip
 from wonderful_team.core.actions import PICK_PLACE
 from wonderful_team.core.geometry import Box
@@ -17,7 +18,6 @@ from wonderful_team.models.client import ModelClient
 from wonderful_team.offline import OfflineModel
 from wonderful_team.planning import TeamConfig, TeamPolicy
 from wonderful_team.planning.boxes import Job
-from wonderful_team.planning.scene import SceneShown
 from wonderful_team.planning.session import AgentSession
 from wonderful_team.sims.tabletop import make_world
 

@@ -10,6 +10,7 @@ import cv2
 import numpy as np
 import pytest
 
+from wonderful_team.agents.scene import SceneShown
 from wonderful_team.contracts.shown import ShownTask
 from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.values import Subgoal, Target, View
@@ -17,7 +18,6 @@ from wonderful_team.errors import NotUnderstoodError
 from wonderful_team.images import whole
 from wonderful_team.offline.answers.drafting import draft
 from wonderful_team.offline.answers.reviewing import findings
-from wonderful_team.planning.scene import SceneShown
 from wonderful_team.sims.tabletop import make_world
 
 HERE = Path(__file__).parent

@@ -9,6 +9,7 @@ from tests.planning.helpers import asked, draft, plan_with, scripted, subgoal
 from tests.planning.rounds import photo
 from tests.planning.test_doubted_targets import of_target, verdict
 from wonderful_team.agents import build_request
+from wonderful_team.agents.scene import SceneShown
 from wonderful_team.contracts import JudgeBox, Tolerance
 from wonderful_team.core.actions import PICK_PLACE
 from wonderful_team.core.geometry import Box
@@ -20,7 +21,6 @@ from wonderful_team.models.stub_model import stub_model
 from wonderful_team.planning import TeamConfig
 from wonderful_team.planning.grounding import make_jobs
 from wonderful_team.planning.judged import judge_box
-from wonderful_team.planning.scene import SceneShown
 from wonderful_team.planning.session import AgentSession
 
 LEAN = TeamConfig(mode="lean")

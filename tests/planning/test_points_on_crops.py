@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from tests.planning.helpers import asked, scripted
+from wonderful_team.agents.scene import SceneShown
 from wonderful_team.contracts import ChoosePoint
 from wonderful_team.core.actions import PICK_PLACE
 from wonderful_team.core.geometry import Box
@@ -18,7 +19,6 @@ from wonderful_team.models.client import ModelClient
 from wonderful_team.planning import TeamConfig
 from wonderful_team.planning.boxes import Job
 from wonderful_team.planning.points import choose_points
-from wonderful_team.planning.scene import SceneShown
 from wonderful_team.planning.session import AgentSession
 
 LIMITS = Limits((-1.0, -1.0, 0.0), (1.0, 1.0, 1.0))

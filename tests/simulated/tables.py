@@ -8,6 +8,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any
 
+from wonderful_team.agents.scene import SceneShown, show_views
 from wonderful_team.contracts import PlanDraft
 from wonderful_team.contracts.draft_plan import DraftPlan
 from wonderful_team.core.geometry import Box
@@ -15,7 +16,6 @@ from wonderful_team.core.protocols import Model
 from wonderful_team.core.values import Request, Target, Trial
 from wonderful_team.models.image_corruption import CHANGES, ImageCorruption
 from wonderful_team.planning import TeamConfig, TeamPolicy
-from wonderful_team.planning.scene import SceneShown, show_views
 from wonderful_team.runtime import rollout
 from wonderful_team.sims.tabletop import make_world
 from wonderful_team.simulated import PROFILES, SimulatedModel

@@ -7,13 +7,13 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from wonderful_team.agents import step_words
+from wonderful_team.agents.plan_drawn import plan_drawn
+from wonderful_team.agents.scene import SceneShown
 from wonderful_team.contracts import GROUNDING_KINDS, PlanReview, ReviewSteps, StepList, WalkedReview, WriteSteps
-from wonderful_team.core.actions import PickPlaceStep, Step
-from wonderful_team.core.pictures import BoxMark, PathMark, Picture, Point, PointMark, TurnMark
+from wonderful_team.core.actions import Step
+from wonderful_team.core.pictures import Picture, Point
 from wonderful_team.core.text import counted
-from wonderful_team.core.values import Critique, GroundedTarget, PlannedAction, View
-from wonderful_team.images import swept_width
-from wonderful_team.images.turn_marks import action_turns, stays
+from wonderful_team.core.values import Critique, GroundedTarget, PlannedAction
 from wonderful_team.motion import ground_actions
 from wonderful_team.motion.in_words import numbers_in_words
 from wonderful_team.planning.functions import write_functions
@@ -21,7 +21,6 @@ from wonderful_team.planning.grounding import ENDS, ground_again
 from wonderful_team.planning.jobs import Job
 from wonderful_team.planning.notes import steps_note
 from wonderful_team.planning.plan_loop import PlanState, remember_doubt, resolve, settled_lines, told
-from wonderful_team.planning.scene import SceneShown
 from wonderful_team.planning.session import AgentSession
 from wonderful_team.planning.spending import inferred_turns, steps_said
 from wonderful_team.planning.turns import settle_turns
@@ -114,7 +113,7 @@ async def check_steps(
         actions = compute(scene, steps, grounded, paths)
         if not session.members.verification:
             return Acted(state, steps, grounded, actions)
-        shown = overview_picture(scene, grounded, actions)
+        shown = plan_drawn(scene, grounded, actions)
         question = _review_question(session, scene, state, steps, shown, grounded, actions, settled.told)
         answer = await session.ask_whole(question, stage="act")
         review: PlanReview | WalkedReview = answer.value
@@ -199,51 +198,3 @@ def _review_question(
         plan_checked=state.reviewed,
         step_kinds=() if state.reviewed else scene.vocabulary.step_kinds,
     )
-
-
-def overview_picture(
-    scene: SceneShown, grounded: Mapping[str, GroundedTarget], actions: Sequence[PlannedAction]
-) -> Picture:
-    """The main view with every target's box and label, and the steps as numbered arrows.
-
-    A turn is an arc with its degrees and the outline after it; of a thing that is turned where it lies there is no arrow.
-    """
-    view = scene.views[0]
-    turns = {mark.label: _on(view, mark) for mark in action_turns(actions, grounded, scene.view)}
-    arrows = []
-    for number, action in enumerate(actions, start=1):
-        path, label = _path(view, action), str(number)
-        if len(path) >= 2 and not (label in turns and stays(path, turns[label])):
-            carried = isinstance(action.step, PickPlaceStep)
-            arrows.append(PathMark(path, label, _swept(scene, action), bowed=carried))
-    drawn = mark_targets(replace(view, name=f"{view.name} with the plan"), scene.view, grounded)
-    return drawn.marked(*arrows, *turns.values())
-
-
-def _on(picture: Picture, mark: TurnMark) -> TurnMark:
-    """A turn [view px] in pixels of a picture."""
-    at = picture.frame.point_to_picture
-    return replace(mark, centre=at(mark.centre), corners=tuple(at(corner) for corner in mark.corners))
-
-
-def mark_targets(picture: Picture, view: View, grounded: Mapping[str, GroundedTarget]) -> Picture:
-    """A whole view with the box (or point) and the id of every target found in that view."""
-    marks: list[BoxMark | PointMark] = []
-    for name, item in grounded.items():
-        if item.view_id != view.id:
-            continue
-        if item.box is not None:
-            marks.append(BoxMark(picture.frame.box_to_picture(item.box), "target", name))
-        elif item.points:
-            marks.append(PointMark(picture.frame.point_to_picture(next(iter(item.points.values()))), name))
-    return picture.marked(*marks)
-
-
-def _swept(scene: SceneShown, action: PlannedAction) -> float:
-    """How wide a strip the tool sweeps, in pixels of the shown view."""
-    width = swept_width(action.action, scene.limits.blade_m, scene.view.camera)
-    return width / float(scene.views[0].frame.T_view_picture[0, 0])
-
-
-def _path(picture: Picture, action: PlannedAction) -> tuple[Point, ...]:
-    return tuple(picture.frame.point_to_picture(source.point_px) for source in action.sources)

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from wonderful_team.agents.scene import SceneShown
 from wonderful_team.core.actions import PICK_PLACE
 from wonderful_team.core.values import NO_WORKSPACE, GroundedTarget, Instruction, Observation, Plan, Target
 from wonderful_team.errors import BudgetReached, ModelOutputError, NotUnderstoodError, WonderfulTeamError
 from wonderful_team.models.client import ModelClient
 from wonderful_team.planning import TeamConfig, grounding
-from wonderful_team.planning.scene import SceneShown
 from wonderful_team.planning.session import AgentSession, settle
 
 STATUS: dict[type[WonderfulTeamError], str] = {NotUnderstoodError: "not_understood", BudgetReached: "budget"}

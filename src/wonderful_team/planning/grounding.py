@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Literal, TypeAlias
 
+from wonderful_team.agents.scene import SceneShown, plan_lines
 from wonderful_team.contracts import LocatePoints, Points, ReadScene, SceneReading, SceneTarget
 from wonderful_team.core.geometry import Box
 from wonderful_team.core.pictures import Point
@@ -21,7 +22,6 @@ from wonderful_team.planning.jobs import Job
 from wonderful_team.planning.judged import said_of
 from wonderful_team.planning.notes import one_line
 from wonderful_team.planning.points import choose_points
-from wonderful_team.planning.scene import SceneShown, plan_lines
 from wonderful_team.planning.session import AgentSession
 from wonderful_team.planning.spending import target_reason
 from wonderful_team.planning.together import both, together

@@ -6,12 +6,12 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import Literal
 
+from wonderful_team.agents.scene import SceneShown
 from wonderful_team.contracts import ShownSlot, Strip, WrongPoint
 from wonderful_team.core.geometry import Box
 from wonderful_team.core.pictures import Axes, BoxMark, Picture, Point, PointMark
 from wonderful_team.core.values import Answer, GroundingEvent, PointRole, Provenance, Target
 from wonderful_team.images import crop, edge_strips
-from wonderful_team.planning.scene import SceneShown
 from wonderful_team.planning.session import AgentSession
 
 

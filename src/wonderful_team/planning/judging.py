@@ -6,10 +6,10 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from wonderful_team.agents import step_words
+from wonderful_team.agents.plan_drawn import mark_targets
+from wonderful_team.agents.scene import SceneShown, show_views
 from wonderful_team.contracts import Advice, JudgeOutcome, Outcome, Replan
 from wonderful_team.core.values import Observation, Plan, StepReport, SubgoalRun, Verdict
-from wonderful_team.planning.acting import mark_targets
-from wonderful_team.planning.scene import SceneShown, show_views
 from wonderful_team.planning.session import AgentSession
 
 

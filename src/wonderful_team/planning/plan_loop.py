@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
+from wonderful_team.agents.scene import SceneShown
 from wonderful_team.contracts import (
     DraftPlan,
     ExtractTargets,
@@ -24,7 +25,6 @@ from wonderful_team.core.text import counted
 from wonderful_team.core.values import Answer, Critique, Subgoal, Target
 from wonderful_team.errors import NeedsClarification
 from wonderful_team.planning.notes import one_line
-from wonderful_team.planning.scene import SceneShown
 from wonderful_team.planning.session import AgentSession
 from wonderful_team.planning.spending import plan_reasons
 

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal, TypeAlias
 
+from wonderful_team.agents.scene import SceneShown
 from wonderful_team.core.actions import Vocabulary
 from wonderful_team.core.caps import Caps
 from wonderful_team.core.pictures import Point
@@ -40,7 +41,6 @@ from wonderful_team.planning.config import TeamConfig
 from wonderful_team.planning.functions import write_functions
 from wonderful_team.planning.looking import done_lines, first_part, is_uncertain
 from wonderful_team.planning.plan_loop import PlanState
-from wonderful_team.planning.scene import SceneShown
 from wonderful_team.planning.session import AgentSession, settle
 from wonderful_team.planning.together import both
 

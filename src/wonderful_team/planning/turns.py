@@ -13,13 +13,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from wonderful_team.agents.scene import SceneShown
 from wonderful_team.agents.step_words import turn_words
 from wonderful_team.contracts import ReadTurn, TurnChoice
 from wonderful_team.core.actions import At, PickPlaceStep, Step
 from wonderful_team.core.values import GroundedTarget, GroundingEvent, Instruction, Slot, Target
 from wonderful_team.images.turn_marks import seen_from_above
 from wonderful_team.images.turned import Shown, reach_px, thing_alone, turn_misfits, turn_strip
-from wonderful_team.planning.scene import SceneShown
 from wonderful_team.planning.session import AgentSession
 
 COARSE_DEG = tuple(range(0, 360, 30))

@@ -23,11 +23,11 @@ from tests.offline.vision.drawn import (
     round_shape,
     striped,
 )  # fmt: skip
+from wonderful_team.agents.scene import SceneShown
 from wonderful_team.offline.answers.drafting import draft
 from wonderful_team.offline.description import Description, Related, Relation, Superlative
 from wonderful_team.offline.eyes import eyes_of_task
 from wonderful_team.offline.vision import NotSeen, resolve, see, study_example
-from wonderful_team.planning.scene import SceneShown
 from wonderful_team.sims.tabletop import make_world
 
 ROW = (

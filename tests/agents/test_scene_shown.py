@@ -10,13 +10,13 @@ import pytest
 from tests.images.test_stacked import BLUE, RED, Thing, table
 from wonderful_team.agents import build_request
 from wonderful_team.agents.rendering import caption
+from wonderful_team.agents.scene import SceneShown
 from wonderful_team.contracts import DraftPlan, ReadScene, ReviewPlan
 from wonderful_team.core.actions import PICK_PLACE
 from wonderful_team.core.geometry import Box
 from wonderful_team.core.pictures import Axes, Picture, RegionMark
 from wonderful_team.core.values import Instruction, KeepOut, Limits, Observation, Slot, SlotKind, Target, View, Words
 from wonderful_team.images.axes import Ticks, axis_ticks
-from wonderful_team.planning.scene import SceneShown
 
 SIZE = (320, 160)
 LIMITS = Limits((-1.0, -1.0, 0.0), (1.0, 1.0, 1.0))

@@ -35,7 +35,8 @@ from wonderful_team.errors import UnsupportedQuestion
 from wonderful_team.simulated import crops, drafting, grounding, outcome, turns
 from wonderful_team.simulated.context import Context
 from wonderful_team.simulated.error_sampler import ErrorSampler
-from wonderful_team.simulated.profiles import PROFILES, Profile
+from wonderful_team.simulated.profile import Profile
+from wonderful_team.simulated.profiles import PROFILES
 
 ANSWERS: dict[type[Question], Callable[[Context, Any], Any]] = {
     DraftPlan: drafting.answer_draft,

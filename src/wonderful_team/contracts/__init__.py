@@ -11,6 +11,7 @@ from wonderful_team.contracts.judge_outcome import JudgeOutcome, Outcome, Verdic
 from wonderful_team.contracts.judge_revision import JudgeRevision, RevisionVerdict
 from wonderful_team.contracts.locate_points import LocatePoints, Points
 from wonderful_team.contracts.move_box import BoxMove, MoveBox
+from wonderful_team.contracts.plan_directly import DirectPlan, PlanDirectly, PointedTarget, direct_plan_type, in_parts
 from wonderful_team.contracts.plans import ClarificationDraft, MoveDraft, PlanDraft, SubgoalDraft, TargetDraft
 from wonderful_team.contracts.presence import EdgePresence, Presence, PresenceAnswer, Strip
 from wonderful_team.contracts.read_scene import ReadScene, RolePoint, SceneReading, SceneTarget
@@ -66,6 +67,7 @@ QUESTIONS: tuple[type[Question], ...] = (
     Remember,
     JudgeOutcome,
     Replan,
+    PlanDirectly,
 )
 
 __all__ = [
@@ -80,6 +82,7 @@ __all__ = [
     "ChoosePoint",
     "ClarificationDraft",
     "CritiqueDraft",
+    "DirectPlan",
     "DraftPlan",
     "EDGES",
     "Edge",
@@ -100,11 +103,13 @@ __all__ = [
     "Outcome",
     "PathReview",
     "PlaceDraft",
+    "PlanDirectly",
     "PlanDraft",
     "PlanReview",
     "PlanRevision",
     "PointChoice",
     "PointPx",
+    "PointedTarget",
     "Points",
     "Presence",
     "PresenceAnswer",
@@ -139,5 +144,7 @@ __all__ = [
     "WriteFunction",
     "WriteSteps",
     "WrongPoint",
+    "direct_plan_type",
+    "in_parts",
     "step_list_type",
 ]

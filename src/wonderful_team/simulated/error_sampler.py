@@ -13,6 +13,7 @@ from wonderful_team.contracts import (
     BoxPx,
     BoxVerdict,
     BoxVerdicts,
+    DirectPlan,
     MarkChoice,
     Outcome,
     PointChoice,
@@ -60,7 +61,7 @@ class ErrorSampler:
                 return value.model_copy(update={"points": points})
             case BoxAnswer():
                 return value.model_copy(update={"box": self.box(value.box, question.view, "box")})
-            case SceneReading():
+            case SceneReading() | DirectPlan():
                 return value.model_copy(
                     update={"targets": [self._target(item, question.view) for item in value.targets]}
                 )

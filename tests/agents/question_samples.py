@@ -31,6 +31,7 @@ from wonderful_team.contracts import (
     ReviewPlan,
     ReviewSteps,
     RevisePlan,
+    SelectMarks,
     ShownSlot,
     ShownTask,
     Strip,
@@ -171,6 +172,7 @@ SAMPLES: tuple[Question, ...] = (
         ("pick_place", "push", "move", "open", "close", "rotate_gripper", "home", "navigate"),
         ("step 1: too far left",),
     ),
+    SelectMarks(TARGET, "grasp", picture("marks", MARKS), 2, EXAMPLES),
 )
 
 RIVALS = {

@@ -148,6 +148,7 @@ RIGHT["PlanDirectly"] = {
         }
     ],
 }
+RIGHT["SelectMarks"] = {"reasoning": "", "numbers": [3, 1]}
 
 LEAVE_OUT = object()
 """Given as a new value: the field is left out."""

@@ -29,6 +29,7 @@ from wonderful_team.contracts.review_plan import (
 )
 from wonderful_team.contracts.review_steps import ReviewSteps
 from wonderful_team.contracts.revise_plan import PlanRevision, RevisePlan
+from wonderful_team.contracts.select_marks import MarkSelection, SelectMarks
 from wonderful_team.contracts.shown import (
     EDGES,
     AnswerModel,
@@ -68,6 +69,7 @@ QUESTIONS: tuple[type[Question], ...] = (
     JudgeOutcome,
     Replan,
     PlanDirectly,
+    SelectMarks,
 )
 
 __all__ = [
@@ -97,6 +99,7 @@ __all__ = [
     "JudgeRevision",
     "LocatePoints",
     "MarkChoice",
+    "MarkSelection",
     "MemoryEntry",
     "MoveBox",
     "MoveDraft",
@@ -127,6 +130,7 @@ __all__ = [
     "RolePoint",
     "SceneReading",
     "SceneTarget",
+    "SelectMarks",
     "ShownSlot",
     "ShownTask",
     "StepList",

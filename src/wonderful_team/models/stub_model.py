@@ -100,6 +100,7 @@ def stub_script() -> dict[str, Any]:
             ],
         },
         "PlanDirectly": _whole_plan,
+        "SelectMarks": lambda _: {"reasoning": "", "numbers": [1]},
     }
     return dict(answers)
 

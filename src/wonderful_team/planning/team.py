@@ -13,6 +13,7 @@ from wonderful_team.core.pictures import Point
 from wonderful_team.core.plan_endings import ENDS_A_PLAN, ended_by
 from wonderful_team.core.protocols import Act, Decision, Done, GaveUp, Model, Situation, Subscriber
 from wonderful_team.core.text import counted
+from wonderful_team.core.together import both
 from wonderful_team.core.values import (
     NO_WORKSPACE,
     GroundedTarget,
@@ -33,7 +34,6 @@ from wonderful_team.planning.functions import write_functions
 from wonderful_team.planning.looking import done_lines, first_part, is_uncertain
 from wonderful_team.planning.plan_loop import PlanState
 from wonderful_team.planning.session import AgentSession, settle
-from wonderful_team.planning.together import both
 
 Until: TypeAlias = Literal["draft", "checked", "grounded", "actions"]
 UNTIL: tuple[Until, ...] = ("draft", "checked", "grounded", "actions")

@@ -14,7 +14,7 @@ from wonderful_team.errors import ConfigError, MethodCodeError, UnknownNameError
 from wonderful_team.models.budget import Budget
 from wonderful_team.models.client import DEADLINE_S, ModelClient
 from wonderful_team.planning import ABLATIONS, TeamConfig, TeamPolicy
-from wonderful_team.planning.baselines import direct
+from wonderful_team.planning.baselines import direct, pivot
 from wonderful_team.planning.config import Mode
 from wonderful_team.registry.files import is_file_name, make_from_file
 from wonderful_team.registry.models import DEFAULT_ROLE
@@ -117,6 +117,11 @@ METHODS: dict[str, MethodRow] = {
     "direct:axes": _direct("the same, with labelled axes on the main view", True, False),
     "direct:checked": _direct("direct; the model looks at its drawn plan, and may plan anew twice", False, True),
     "direct:axes:checked": _direct("the same, with labelled axes on the main view", True, True),
+    "pivot": MethodRow(
+        "points found among numbered marks in 3 iterations and 3 parallel runs (PIVOT, arXiv 2402.07872)",
+        lambda setup: pivot.Pivot(setup.client()),
+        roles=(pivot.PLANNER, pivot.SELECTOR),
+    ),
 }
 
 

@@ -15,6 +15,7 @@ from wonderful_team.contracts import (
     BoxVerdicts,
     DirectPlan,
     MarkChoice,
+    MarkSelection,
     Outcome,
     PointChoice,
     PointPx,
@@ -67,6 +68,8 @@ class ErrorSampler:
                 )
             case MarkChoice() | PointChoice():
                 return self._choice(value, len(question.candidates.points))
+            case MarkSelection():
+                return self._selection(value, len(question.candidates.points))
             case TurnChoice():
                 return self._choice(value, len(question.turns))
             case BoxVerdict():
@@ -118,6 +121,12 @@ class ErrorSampler:
         if value.number is None or not self.draws(self.profile.wrong_choice, "choice"):
             return value
         return value.model_copy(update={"number": self.other(value.number, range(1, count + 1), "other")})
+
+    def _selection(self, value: MarkSelection, count: int) -> MarkSelection:
+        if not value.numbers or not self.draws(self.profile.wrong_choice, "choice"):
+            return value
+        order = self._rng("other").permutation(count) + 1
+        return value.model_copy(update={"numbers": [int(number) for number in order[: len(value.numbers)]]})
 
     def _verdict(self, value: BoxVerdict, of: str = "") -> BoxVerdict:
         if value.wrong_points and self.draws(self.profile.accepts_wrong, f"accepts the points{of}"):

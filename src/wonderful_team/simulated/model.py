@@ -28,6 +28,7 @@ from wonderful_team.contracts import (
     ReviewPlan,
     ReviewSteps,
     RevisePlan,
+    SelectMarks,
     WriteSteps,
     direct_plan_type,
     in_parts,
@@ -72,6 +73,7 @@ ANSWERS: dict[type[Question], Callable[[Context, Any], Any]] = {
     Replan: outcome.answer_replan,
     Remember: outcome.answer_remember,
     PlanDirectly: answer_plan_directly,
+    SelectMarks: grounding.answer_select_marks,
 }
 """One function per kind of question."""
 

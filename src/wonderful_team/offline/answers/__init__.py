@@ -29,6 +29,7 @@ from wonderful_team.contracts import (
     ReviewPlan,
     ReviewSteps,
     RevisePlan,
+    SelectMarks,
     WriteSteps,
     direct_plan_type,
     in_parts,
@@ -47,6 +48,7 @@ from wonderful_team.offline.answers.grounding import (
     answer_give_box,
     answer_locate,
     answer_read_scene,
+    answer_select_marks,
 )
 from wonderful_team.offline.answers.moves import answer_draft
 from wonderful_team.offline.answers.outcome import answer_outcome, answer_replan
@@ -88,6 +90,7 @@ ANSWERS: dict[type[Question], Callable[..., Any]] = {
     JudgeOutcome: answer_outcome,
     Replan: answer_replan,
     PlanDirectly: answer_plan_directly,
+    SelectMarks: answer_select_marks,
 }
 """One function per kind of question; those that take independent samples also take the sample's number."""
 

@@ -32,6 +32,7 @@ from wonderful_team.core.actions import ARM
 from wonderful_team.core.values import Answer, Request
 from wonderful_team.models.scripted import ScriptedModel
 from wonderful_team.models.wrappers import Injecting, Injection
+from wonderful_team.registry.methods import METHODS
 from wonderful_team.registry.models import make_model
 
 HERE = Path(__file__).parent
@@ -39,7 +40,7 @@ PICTURES = "prompts"
 TABLE = "tabletop/everyday/tidy_up"
 HEAD = """# What the team is asked
 
-One request of each kind, with its pictures, taken from the records of real runs; `make prompts` writes this page. The answers come from
+And what its [rivals](methods.md) ask and it does not. One request of each kind, with its pictures, taken from the records of real runs; `make prompts` writes this page. The answers come from
 `offline` (classical vision and a grammar), which reads the structure behind a request and not its words, or where it says so from a script.
 They show the form of an answer and say nothing of a vision-language model.
 
@@ -47,6 +48,9 @@ A request is the role's standing words (the system message), then its parts in t
 `wonderful-team list prompts` shows the words alone, `--prompts DIR` replaces them, `show RUN --role ROLE` shows those of a run.
 """
 
+RIVALS = ("direct", "pivot")
+"""Rivals that together ask everything that the team is not asked."""
+ASKERS = {**ROLES, **{asker.name: asker for name in RIVALS for asker in METHODS[name].roles}}
 QUESTIONS_BY_NAME = {kind.contract: kind for kind in QUESTIONS}
 
 CIRCLE = """import math
@@ -90,9 +94,22 @@ def runs(out: Path) -> Iterator[Source]:
         if code != 0:
             raise SystemExit(f"`{command}` ended with exit code {code}; docs/prompts.md is left as it was")
         yield Source(out / name / "latest", f"`{command}`")
+    yield from _rivals(out)
     yield _again(out)
     yield _circle(out)
     yield _twisted(out)
+
+
+def _rivals(out: Path) -> Iterator[Source]:
+    """What rivals ask and the team does not."""
+    for method in RIVALS:
+        world = wt.make_world("tabletop/visual_manipulation", seed=3)
+        try:
+            trial = wt.rollout(wt.Method(method=method, out=out / method.replace(":", "-")), world, seed=3)
+        finally:
+            world.close()
+        assert trial.folder is not None
+        yield Source(trial.folder, f"`run tabletop/visual_manipulation --seed 3 --method {method}`")
 
 
 def _again(out: Path) -> Source:
@@ -206,12 +223,12 @@ def page(sources: Sequence[Source], images: Path) -> str:
     lines = [HEAD]
     asked = [
         (name, contract)
-        for name, role in ROLES.items()
+        for name, role in ASKERS.items()
         for contract in role.asks
         if contract in found and found[contract][2]["role"] == name
     ]
     lines += ["| role | is asked |", "|---|---|"]
-    for role in ROLES:
+    for role in ASKERS:
         names = [contract for other, contract in asked if other == role]
         if names:
             lines.append(f"| {role} | {', '.join(f'[{name}](#{name.lower()})' for name in names)} |")

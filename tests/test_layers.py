@@ -212,22 +212,41 @@ def test_simulators_and_the_team_never_meet() -> None:
         assert not ours(path) & {"models", "agents", "planning", "contracts"}, path
 
 
+SHARED_BY_RIVALS = "wonderful_team.planning.baselines.open_loop"
+"""The one file that rivals may share; it imports no planner itself."""
+
+
 def planners_met(path: Path, rival: bool) -> set[str]:
-    """What a planner's file imports of the other planners: a rival of all the others, the team of its rivals."""
+    """What a planner's file imports of the other planners: a rival of all but what rivals share, the team of its rivals."""
     planners = {name for name in imported(path) if name.startswith("wonderful_team.planning")}
-    return planners if rival else {name for name in planners if "baselines" in name.split(".")}
+    if rival:
+        return {name for name in planners if not name.startswith(f"{SHARED_BY_RIVALS}.")}
+    return {name for name in planners if "baselines" in name.split(".")}
 
 
 def test_the_team_and_its_rivals_never_meet(tmp_path: Path) -> None:
     """Comparisons are fair because neither can lean on the other."""
+    rivals = [path for path in _files("planning") if path.parent.name == "baselines"]
+    assert len(rivals) > 1
     for path in _files("planning"):
-        assert not planners_met(path, path.parent.name == "baselines"), path
+        assert not planners_met(path, path in rivals), path
+    shared = ROOT / "planning" / "baselines" / "open_loop.py"
+    assert not {name for name in imported(shared) if name.startswith("wonderful_team.planning")}
     planted = tmp_path / "planted.py"
-    planted.write_text("from wonderful_team.planning.session import AgentSession\n", encoding="utf-8")
-    assert planners_met(planted, rival=True)
-    assert not planners_met(planted, rival=False)
-    planted.write_text("from wonderful_team.planning.baselines import one\n", encoding="utf-8")
-    assert planners_met(planted, rival=False)
+    for line, of_rival, of_team in (
+        ("from wonderful_team.planning.session import AgentSession", True, False),
+        ("from wonderful_team.planning import baselines", True, True),
+        ("from wonderful_team.planning.baselines import open_loop", True, True),
+        ("from wonderful_team.planning.baselines.direct import Direct", True, True),
+        ("import wonderful_team.planning.baselines.direct", True, True),
+        (f"from {SHARED_BY_RIVALS} import OpenLoop", False, True),
+        (f"from {SHARED_BY_RIVALS}er import OpenLoop", True, True),
+    ):
+        planted.write_text(f"{line}\n", encoding="utf-8")
+        assert (bool(planners_met(planted, rival=True)), bool(planners_met(planted, rival=False))) == (
+            of_rival,
+            of_team,
+        )
 
 
 def test_tests_do_not_lean_on_the_benchmarks() -> None:

@@ -6,6 +6,7 @@ import zlib
 
 import numpy as np
 
+from wonderful_team.agents import ROLES
 from wonderful_team.contracts import (
     EDGES,
     ChooseMark,
@@ -19,6 +20,7 @@ from wonderful_team.contracts import (
     JudgeRevision,
     LocatePoints,
     MoveBox,
+    PlanDirectly,
     Presence,
     Question,
     ReadScene,
@@ -29,6 +31,7 @@ from wonderful_team.contracts import (
     ReviewPlan,
     ReviewSteps,
     RevisePlan,
+    SelectMarks,
     ShownSlot,
     ShownTask,
     Strip,
@@ -39,6 +42,7 @@ from wonderful_team.core.actions import Beside, MoveStep, OriginOf, PickPlaceSte
 from wonderful_team.core.geometry import Box, Frame
 from wonderful_team.core.pictures import Axes, BoxMark, Candidates, Mark, PathMark, Picture, PointMark, Tiles
 from wonderful_team.core.values import Critique, Subgoal, Target, Verdict
+from wonderful_team.registry.methods import METHODS
 
 WANTED = "Put the {base_obj} onto the tray."
 KINDS = ("pick_place", "push", "move", "open", "close", "rotate_gripper", "follow", "home", "navigate")
@@ -163,4 +167,19 @@ SAMPLES: tuple[Question, ...] = (
         TASK, SUBGOALS, (TARGET, AREA), ("[G1] pick T7",), (picture("top now"), picture("front now")), ("ok",)
     ),
     Replan(TASK, SUBGOALS, (Verdict("G2", "not_done", "it slipped", "mug on the floor"),), ("suction failed",), 2),
+    PlanDirectly(
+        TASK,
+        ("pick_place", "push", "move", "open", "close", "rotate_gripper", "home", "navigate"),
+        ("step 1: too far left",),
+    ),
+    SelectMarks(TARGET, "grasp", picture("marks", MARKS), 2, EXAMPLES),
 )
+
+RIVALS = {
+    contract: asker
+    for row in METHODS.values()
+    for asker in row.roles
+    for contract in asker.asks
+    if all(contract not in member.asks for member in ROLES.values())
+}
+"""Who asks what no member of the team asks, by contract."""

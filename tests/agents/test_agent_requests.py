@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from tests.agents.question_samples import AREA, SAMPLES, TASK, picture
+from tests.agents.question_samples import AREA, RIVALS, SAMPLES, TASK, picture
 from wonderful_team.agents import ROLES, build_request
 from wonderful_team.contracts import QUESTIONS, Question, ShownTask, Strip
 from wonderful_team.core.geometry import Box
@@ -30,7 +30,7 @@ def shown(request: Request) -> str:
 
 
 def build(question: Question, **options: Any) -> Request:
-    return build_request(question, id="q", stage="plan", **options)
+    return build_request(question, id="q", stage="plan", **{"role": RIVALS.get(question.contract), **options})
 
 
 def leaves(value: Any, name: str = "") -> Iterator[tuple[str, Any]]:
@@ -144,8 +144,9 @@ def test_request_carries_output_type_role_and_notes(question: Question) -> None:
     notes = (Note("which mug", "the striped one", "checker"),)
     request = build(question, notes=notes, sample=2)
     assert request.output is question.output()
-    assert question.contract in ROLES[request.role].asks
-    assert request.system == ROLES[request.role].system
+    asker = RIVALS.get(question.contract) or ROLES[request.role]
+    assert question.contract in asker.asks
+    assert (request.role, request.system) == (asker.name, asker.system)
     assert (request.notes, request.sample) == (notes, 2)
     assert "which mug: the striped one (from checker)" in shown(request)
     assert "which mug: the striped one" not in shown(build(question))
@@ -154,7 +155,7 @@ def test_request_carries_output_type_role_and_notes(question: Question) -> None:
 @EVERY
 def test_answers_that_hold_positions_name_their_picture(question: Question) -> None:
     text = shown(build(question))
-    if question.contract in ("LocatePoints", "GiveBox", "ReadScene"):
+    if question.contract in ("LocatePoints", "GiveBox", "ReadScene", "PlanDirectly"):
         name = question.view.name  # type: ignore[attr-defined]
         assert f'Answer with positions in picture "{name}": x from 0 to 64, y from 0 to 32.' in text
     else:

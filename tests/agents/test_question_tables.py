@@ -6,7 +6,7 @@ from dataclasses import fields
 
 import pytest
 
-from tests.agents.question_samples import SAMPLES
+from tests.agents.question_samples import RIVALS, SAMPLES
 from wonderful_team.agents import ROLES, build_request
 from wonderful_team.agents.rendering import words
 from wonderful_team.agents.role import Ask, role
@@ -28,7 +28,7 @@ def test_every_question_has_an_answer_in_every_table() -> None:
 
 @pytest.mark.parametrize("question", SAMPLES, ids=lambda question: question.contract)
 def test_the_stub_answers_every_question_in_its_form(question: Question) -> None:
-    request = build_request(question, id="q", stage="plan")
+    request = build_request(question, id="q", stage="plan", role=RIVALS.get(question.contract))
     said = stub_script()[question.contract](request)
     assert request.output.model_validate(said).model_dump() is not None
 

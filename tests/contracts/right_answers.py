@@ -121,6 +121,34 @@ RIGHT: dict[str, dict[str, Any]] = {
     },
     "Replan": {"reasoning": "", "decision": "replan", "cause": "it slipped", "advice": "Pick it at the rim."},
 }
+RIGHT["PlanDirectly"] = {
+    "reasoning": "",
+    "subgoals": [{"id": "G1", "text": "the mug is on the tray", "after": [], "targets": ["T1", "T2"]}],
+    "targets": [
+        {
+            **target("T1", like=("base_obj",), use=("pick",)),
+            "box": BOX,
+            "points": [{"role": "pick", "point": {"x": 12, "y": 6}}],
+        },
+        {
+            **target("T2", use=("place",)),
+            "box": None,
+            "points": [{"role": "place", "point": {"x": 50, "y": 20}}],
+        },
+        {**target("T3"), "box": None, "points": []},
+    ],
+    "absent": ["T3"],
+    "steps": [
+        {
+            "subgoal": "G1",
+            "kind": "pick_place",
+            "pick": "T1",
+            "place": {"target": "T2", "how": "at", "side": None},
+            "rotate_deg": 0,
+        }
+    ],
+}
+RIGHT["SelectMarks"] = {"reasoning": "", "numbers": [3, 1]}
 
 LEAVE_OUT = object()
 """Given as a new value: the field is left out."""

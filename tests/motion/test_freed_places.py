@@ -39,8 +39,10 @@ def test_a_thing_lower_than_the_rim_round_it_is_put_down_on_the_table_and_brough
     assert min(float(point[2]) for action in (there, back) for point in (action.pick_m, action.place_m)) >= 0.0
 
 
+@pytest.mark.parametrize("boxed", [True, False])
 @pytest.mark.parametrize("name", CAMERAS)
-def test_a_place_that_was_left_has_the_height_of_what_was_under_it(name: str) -> None:
+def test_a_place_that_was_left_has_the_height_of_what_was_under_it(name: str, boxed: bool) -> None:
+    """Known from boxes, and from one surface in the depth where a method gave points alone."""
     camera = CAMERAS[name]
     one, other = Block(0.40, -0.30, 0.46, -0.24, 0.05), Block(0.50, 0.10, 0.56, 0.16, 0.04)
     view = scene(camera, one, other)
@@ -51,8 +53,26 @@ def test_a_place_that_was_left_has_the_height_of_what_was_under_it(name: str) ->
         "A1": area("A1", (float(u), float(v))),
         "A2": area("A2", (float(a), float(b))),
     }
+    if not boxed:
+        grounded = {key: replace(item, box=None) for key, item in grounded.items()}
     steps = (PickPlaceStep("G1", "T2", At("A2")), PickPlaceStep("G2", "T1", At("A1")))
     last = ground_actions(steps, grounded, view, LIMITS)[1]
     assert isinstance(last.action, PickPlace)
     assert last.action.place_m[2] == pytest.approx(0.0, abs=0.002)
     assert "T2 has left it" in last.sources[1].how
+
+
+def test_without_boxes_what_stands_apart_from_what_leaves_keeps_its_height() -> None:
+    """Two blocks of one height beside each other: the table between them is no part of their tops."""
+    camera = CAMERAS["pinhole"]
+    blocks = [Block(0.40, y, 0.46, y + 0.06, 0.05) for y in (-0.30, -0.10, 0.10)]
+    u, v = camera.project([(0.35, 0.3, 0.0)])[0]
+    targets = {
+        **{f"T{k}": found(camera, f"T{k}", block) for k, block in enumerate(blocks, start=1)},
+        "A1": area("A1", (float(u), float(v))),
+    }
+    grounded = {key: replace(item, box=None) for key, item in targets.items()}
+    steps = (PickPlaceStep("G1", "T2", At("A1")), PickPlaceStep("G2", "T3", At("T1")))
+    last = ground_actions(steps, grounded, scene(camera, *blocks), LIMITS)[1]
+    assert isinstance(last.action, PickPlace)
+    assert last.action.place_m[2] == pytest.approx(0.05, abs=0.003)

@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from tests.agents.question_samples import SAMPLES
+from tests.agents.question_samples import RIVALS, SAMPLES
 from tests.servers.schemas import misfits, nodes
 from wonderful_team.agents import build_request
 from wonderful_team.contracts import Question
@@ -47,7 +47,7 @@ def test_everything_that_breaks_a_schema_is_found(value: Any, found: int) -> Non
 
 @pytest.mark.parametrize("asked", SAMPLES, ids=lambda asked: asked.contract)
 def test_right_answers_to_every_question_fit_and_all_words_of_its_schema_are_known(asked: Question) -> None:
-    request = build_request(asked, id="q", stage="plan")
+    request = build_request(asked, id="q", stage="plan", role=RIVALS.get(asked.contract))
     said = request.output.model_validate(stub_script()[asked.contract](request))
     right = said.model_dump(mode="json")
     if right.get("reasoning", "") is None:

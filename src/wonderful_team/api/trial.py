@@ -201,14 +201,17 @@ def model_of(model: str, isolate: str, world: World) -> Any:
     return {**dict.fromkeys(GROUNDING_ROLES, model), "*": truth}
 
 
-def check_isolation(isolate: str) -> None:
-    """Whether this part can be isolated.
+def check_isolation(isolate: str, methods: Sequence[str] = ()) -> None:
+    """Whether this part of these methods can be isolated.
 
     Raises:
-        ConfigError: Another word.
+        ConfigError: Another word, or a rival: its roles are not the team's.
     """
     if isolate not in ("planning", "grounding"):
         raise ConfigError(f"--isolate {isolate!r}: valid are planning (truth grounds), grounding (truth plans)")
+    for name in methods:
+        if name in registry.METHODS and registry.METHODS[name].team is None:
+            raise ConfigError(f"--isolate {isolate!r} is for the team's members; method {name!r} has none of them")
 
 
 def check_names(

@@ -11,6 +11,7 @@ from wonderful_team.contracts.judge_outcome import JudgeOutcome, Outcome, Verdic
 from wonderful_team.contracts.judge_revision import JudgeRevision, RevisionVerdict
 from wonderful_team.contracts.locate_points import LocatePoints, Points
 from wonderful_team.contracts.move_box import BoxMove, MoveBox
+from wonderful_team.contracts.plan_directly import DirectPlan, PlanDirectly, PointedTarget, direct_plan_type, in_parts
 from wonderful_team.contracts.plans import ClarificationDraft, MoveDraft, PlanDraft, SubgoalDraft, TargetDraft
 from wonderful_team.contracts.presence import EdgePresence, Presence, PresenceAnswer, Strip
 from wonderful_team.contracts.read_scene import ReadScene, RolePoint, SceneReading, SceneTarget
@@ -28,6 +29,7 @@ from wonderful_team.contracts.review_plan import (
 )
 from wonderful_team.contracts.review_steps import ReviewSteps
 from wonderful_team.contracts.revise_plan import PlanRevision, RevisePlan
+from wonderful_team.contracts.select_marks import MarkSelection, SelectMarks
 from wonderful_team.contracts.shown import (
     EDGES,
     AnswerModel,
@@ -66,6 +68,8 @@ QUESTIONS: tuple[type[Question], ...] = (
     Remember,
     JudgeOutcome,
     Replan,
+    PlanDirectly,
+    SelectMarks,
 )
 
 __all__ = [
@@ -80,6 +84,7 @@ __all__ = [
     "ChoosePoint",
     "ClarificationDraft",
     "CritiqueDraft",
+    "DirectPlan",
     "DraftPlan",
     "EDGES",
     "Edge",
@@ -94,17 +99,20 @@ __all__ = [
     "JudgeRevision",
     "LocatePoints",
     "MarkChoice",
+    "MarkSelection",
     "MemoryEntry",
     "MoveBox",
     "MoveDraft",
     "Outcome",
     "PathReview",
     "PlaceDraft",
+    "PlanDirectly",
     "PlanDraft",
     "PlanReview",
     "PlanRevision",
     "PointChoice",
     "PointPx",
+    "PointedTarget",
     "Points",
     "Presence",
     "PresenceAnswer",
@@ -122,6 +130,7 @@ __all__ = [
     "RolePoint",
     "SceneReading",
     "SceneTarget",
+    "SelectMarks",
     "ShownSlot",
     "ShownTask",
     "StepList",
@@ -139,5 +148,7 @@ __all__ = [
     "WriteFunction",
     "WriteSteps",
     "WrongPoint",
+    "direct_plan_type",
+    "in_parts",
     "step_list_type",
 ]

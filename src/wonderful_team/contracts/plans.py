@@ -58,13 +58,21 @@ class MoveDraft(AnswerModel):
         return PickPlaceStep(subgoal, self.pick, self.place.to_place(), self.rotate_deg)
 
 
-class SubgoalDraft(AnswerModel):
+class GoalDraft(AnswerModel):
     """One qualitative goal: no coordinates."""
 
     id: str = Field(description="G1, G2, ... in order of execution.")
     text: str = Field(min_length=1)
     after: list[str] = Field(description="Ids of subgoals that must be reached first.")
     targets: list[str] = Field(description="Ids of the targets it needs; empty when targets are extracted later.")
+
+    def to_subgoal(self) -> Subgoal:
+        return Subgoal(self.id, self.text, tuple(self.after), tuple(self.targets))
+
+
+class SubgoalDraft(GoalDraft):
+    """One qualitative goal, and how it is carried out where that is simple."""
+
     function: str | None = Field(description="What a helper function should compute (a path), or null.")
     move: MoveDraft | None = Field(
         None, description="The one pick and place that carries it out; null where it takes more."
@@ -104,7 +112,7 @@ class PlanDraft(AnswerModel):
         return tuple(draft.move.to_step(draft.id) for draft in self.subgoals if draft.move is not None)
 
 
-def check_subgoals(subgoals: Sequence[SubgoalDraft], target_ids: Sequence[str] | None) -> None:
+def check_subgoals(subgoals: Sequence[GoalDraft], target_ids: Sequence[str] | None) -> None:
     """Raise ValueError when ids repeat, refer to nothing, or order themselves in a circle."""
     ids = [draft.id for draft in subgoals]
     unique(ids, "subgoal ids")
@@ -115,9 +123,10 @@ def check_subgoals(subgoals: Sequence[SubgoalDraft], target_ids: Sequence[str] |
             raise ValueError(f"subgoal {draft.id} stands before {', '.join(late)}, which it says must come first")
         if target_ids is not None:
             known(draft.targets, target_ids, f"target of subgoal {draft.id}")
-        if target_ids is not None and draft.move is not None:
-            known([draft.move.pick, draft.move.place.target], target_ids, f"target in the move of {draft.id}")
-            draft.move.to_step(draft.id)
+        move = draft.move if isinstance(draft, SubgoalDraft) else None
+        if target_ids is not None and move is not None:
+            known([move.pick, move.place.target], target_ids, f"target in the move of {draft.id}")
+            move.to_step(draft.id)
 
 
 def settle_targets(

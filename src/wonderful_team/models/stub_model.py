@@ -99,6 +99,8 @@ def stub_script() -> dict[str, Any]:
                 for s in request.question.subgoals
             ],
         },
+        "PlanDirectly": _whole_plan,
+        "SelectMarks": lambda _: {"reasoning": "", "numbers": [1]},
     }
     return dict(answers)
 
@@ -133,6 +135,17 @@ def _draft(with_targets: bool) -> dict[str, Any]:
         "move": move if with_targets else None,
     }
     return {"reasoning": "", "subgoals": [subgoal], "targets": targets, "mode": "one_step", "clarification": None}
+
+
+def _whole_plan(request: Request) -> dict[str, Any]:
+    draft, targets = _draft(True), []
+    for number, target in enumerate(_TARGETS):
+        x, y = _place(number, request)
+        points = [{"role": role, "point": {"x": x, "y": y}} for role in ("pick", "place")[number : number + 1]]
+        targets.append({**target, "box": _around(x, y, request), "points": points})
+    goals = [{key: goal[key] for key in ("id", "text", "after", "targets")} for goal in draft["subgoals"]]
+    steps = [{"subgoal": goal["id"], "kind": "pick_place", **goal["move"]} for goal in draft["subgoals"]]
+    return {"reasoning": "", "subgoals": goals, "targets": targets, "absent": [], "steps": steps}
 
 
 def _place(number: int, request: Request) -> tuple[float, float]:

@@ -19,6 +19,8 @@ RING_SHARE = 0.15
 """How far round a box its surroundings are measured (share of its smaller side)."""
 DEPTH_NOISE_M = 0.01
 """Surfaces seen less than this below the table are the table; what lies deeper is beside it [m]."""
+SURFACE_SAMPLES = 20
+"""At how many points between two pixels one surface is looked for."""
 _WINDOW_PER_PX = 1 / 150
 """Half width of the depth window per pixel of the view's smaller side: 1 px in a 128 px view, 5 px in a 720 px one."""
 
@@ -92,6 +94,16 @@ class Deprojector:
             lower = [float(at[2]) for at in inside if at is not None and TABLE_Z_M <= at[2] < below_m]
             supports = [min(lower)] if lower else []
         return float(np.quantile(supports, 0.25)) if supports else self._plane_z_m
+
+    def one_surface(self, one: Point, other: Point) -> bool:
+        """Whether depth shows one surface over the table from a pixel straight to another."""
+        if self.camera is None or isinstance(self.camera, PlanarCamera) or self.view.depth_m is None:
+            return False
+        shares = np.linspace(0.0, 1.0, SURFACE_SAMPLES)
+        way = [(one[0] + (other[0] - one[0]) * a, one[1] + (other[1] - one[1]) * a) for a in shares]
+        seen = [self.surface(px, "way").position_m for px in way if self.inside(px)]
+        heights = [float(at[2]) for at in seen if at is not None]
+        return min(heights) > TABLE_Z_M and max(heights) - min(heights) < DEPTH_NOISE_M
 
     def to_px(self, position_m: Array) -> Point:
         """The pixel at which a point of the base frame shows; only with a camera."""

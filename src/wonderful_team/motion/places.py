@@ -214,8 +214,7 @@ class Places:
     def _freed(self, spot: ResolvedPoint, progress: MotionState, thing: str | None, place: str) -> ResolvedPoint:
         """The same spot, but at the height of the support where the picture shows a thing that will have left it."""
         for name in (*progress.moved, *([thing] if thing is not None else [])):
-            box = self.target(name).box if name != place else None
-            if box is None or spot.position_m is None or not box.contains(spot.px):
+            if name == place or spot.position_m is None or not self._stood_at(name, spot.px):
                 continue
             support_m, top_m = self.support_z_m(name), self._top_z_m(name)
             if support_m + EVEN_M < float(spot.position_m[2]) <= top_m + EVEN_M:
@@ -223,6 +222,14 @@ class Places:
                     spot.px, support_m, f"{spot.how}; {name} has left it, so z = {support_m:.3f} m"
                 )
         return spot
+
+    def _stood_at(self, name: str, px: Point) -> bool:
+        """Whether the picture shows a target at a pixel: in its box, or on one surface with its pick point where it has none."""
+        found = self.target(name)
+        if found.box is not None:
+            return found.box.contains(px)
+        held = next((point for role, point in found.points.items() if role in TO_PICK), None)
+        return held is not None and self.lift.one_surface(held, px)
 
     def _top_z_m(self, name: str) -> float:
         """Height of the point at which a thing is held; infinite without one."""

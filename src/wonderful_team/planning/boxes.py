@@ -21,11 +21,11 @@ from wonderful_team.contracts import (
 )
 from wonderful_team.core.geometry import Box
 from wonderful_team.core.pictures import Axes, BoxMark, Point
+from wonderful_team.core.together import together
 from wonderful_team.core.values import Answer, PointRole
 from wonderful_team.images import crop
 from wonderful_team.planning.jobs import Job
 from wonderful_team.planning.judged import judge_box, said_of
-from wonderful_team.planning.together import together
 
 BoxFate: TypeAlias = Literal["accepted", "rejected", "exhausted"]
 

@@ -7,9 +7,9 @@ from typing import Literal
 from wonderful_team.contracts import BoxAnswer, ChooseMark, GiveBox, LocatePoints, MarkChoice, Points
 from wonderful_team.core.geometry import Box
 from wonderful_team.core.pictures import Candidates, Point, PointMark
+from wonderful_team.core.together import together
 from wonderful_team.planning.jobs import Job
 from wonderful_team.planning.spending import agree
-from wonderful_team.planning.together import together
 
 
 async def propose(job: Job, purpose: Literal["centre", "place"]) -> list[Point]:

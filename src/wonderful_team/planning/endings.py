@@ -6,13 +6,6 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from wonderful_team.core.values import GroundedTarget, Plan
-from wonderful_team.errors import (
-    BudgetReached,
-    NeedsClarification,
-    NotFoundError,
-    NotUnderstoodError,
-    WonderfulTeamError,
-)
 from wonderful_team.planning.plan_loop import PlanState
 
 
@@ -30,14 +23,6 @@ def with_state(plan: Plan, state: PlanState, status: str) -> Plan:
     )
 
 
-STATUS: tuple[tuple[type[WonderfulTeamError], str], ...] = (
-    (NotFoundError, "not_found"),
-    (NotUnderstoodError, "not_understood"),
-    (NeedsClarification, "needs_clarification"),
-    (BudgetReached, "budget"),
-)
-
-
 def nothing_to_do(plan: Plan) -> Plan:
     """The end of a plan without subgoals."""
     return replace(plan, status="planned", message="nothing to do: the instruction is already fulfilled")
@@ -46,13 +31,6 @@ def nothing_to_do(plan: Plan) -> Plan:
 def refused(plan: Plan, what: str) -> Plan:
     """The end of a plan that may run only with Verification's approval (strict)."""
     return replace(plan, status="refused", message=f"Verification did not approve the {what} (strict)", stage="plan")
-
-
-def failed(plan: Plan, error: WonderfulTeamError) -> Plan:
-    """The best so far, with what ended it."""
-    status = next((name for kind, name in STATUS if isinstance(error, kind)), "failed")
-    choices = error.choices if isinstance(error, NeedsClarification) else ()
-    return replace(plan, status=status, message=str(error), stage=error.stage or "plan", choices=choices)
 
 
 def not_found(absent: Sequence[GroundedTarget]) -> str:

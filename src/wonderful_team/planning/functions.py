@@ -11,10 +11,10 @@ from collections.abc import Mapping, Sequence
 from wonderful_team.agents.scene import SceneShown
 from wonderful_team.contracts import FunctionCode, PathReview, ReviewPath, WriteFunction
 from wonderful_team.core.pictures import BoxMark, PathMark, Point
+from wonderful_team.core.together import together
 from wonderful_team.core.values import GroundedTarget, Subgoal
 from wonderful_team.errors import PlanError
 from wonderful_team.planning.session import AgentSession
-from wonderful_team.planning.together import together
 from wonderful_team.sandbox import SandboxError, run_path
 
 

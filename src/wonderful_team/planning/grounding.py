@@ -15,6 +15,7 @@ from wonderful_team.agents.scene import SceneShown, plan_lines
 from wonderful_team.contracts import LocatePoints, Points, ReadScene, SceneReading, SceneTarget
 from wonderful_team.core.geometry import Box
 from wonderful_team.core.pictures import Point
+from wonderful_team.core.together import both, together
 from wonderful_team.core.values import Critique, GroundedTarget, PointRole, Provenance, Subgoal, Target
 from wonderful_team.planning.boxes import BoxFate, judge_together, refine
 from wonderful_team.planning.centres import choose, give_box, propose
@@ -24,7 +25,6 @@ from wonderful_team.planning.notes import one_line
 from wonderful_team.planning.points import choose_points
 from wonderful_team.planning.session import AgentSession
 from wonderful_team.planning.spending import target_reason
-from wonderful_team.planning.together import both, together
 
 ENDS: tuple[PointRole, ...] = ("push_end", "place")
 """Uses of what something is brought to."""

@@ -11,12 +11,12 @@ from collections.abc import Sequence
 from wonderful_team.contracts import ChoosePoint, PointChoice
 from wonderful_team.core.geometry import Box
 from wonderful_team.core.pictures import BoxMark, Candidates, PathMark, Picture, Point
+from wonderful_team.core.together import together
 from wonderful_team.core.values import PointRole
 from wonderful_team.images import beside_points, crop, inside_points
 from wonderful_team.planning.jobs import Job
 from wonderful_team.planning.judged import said_of
 from wonderful_team.planning.spending import is_central
-from wonderful_team.planning.together import together
 
 GRID = 3
 """Candidates per side of the box in each round (nine inside)."""

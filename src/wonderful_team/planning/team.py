@@ -10,8 +10,10 @@ from wonderful_team.agents.scene import SceneShown
 from wonderful_team.core.actions import Vocabulary
 from wonderful_team.core.caps import Caps
 from wonderful_team.core.pictures import Point
+from wonderful_team.core.plan_endings import ENDS_A_PLAN, ended_by
 from wonderful_team.core.protocols import Act, Decision, Done, GaveUp, Model, Situation, Subscriber
 from wonderful_team.core.text import counted
+from wonderful_team.core.together import both
 from wonderful_team.core.values import (
     NO_WORKSPACE,
     GroundedTarget,
@@ -23,17 +25,7 @@ from wonderful_team.core.values import (
     Usage,
     Verdict,
 )
-from wonderful_team.errors import (
-    ActionRefusedError,
-    BudgetReached,
-    ConfigError,
-    GeometryError,
-    ModelOutputError,
-    NeedsClarification,
-    NotFoundError,
-    NotUnderstoodError,
-    PlanError,
-)
+from wonderful_team.errors import ActionRefusedError, ConfigError, GeometryError, NotFoundError
 from wonderful_team.models.budget import Budget
 from wonderful_team.models.client import DEADLINE_S, ModelClient
 from wonderful_team.planning import acting, endings, grounding, judging, plan_loop
@@ -42,7 +34,6 @@ from wonderful_team.planning.functions import write_functions
 from wonderful_team.planning.looking import done_lines, first_part, is_uncertain
 from wonderful_team.planning.plan_loop import PlanState
 from wonderful_team.planning.session import AgentSession, settle
-from wonderful_team.planning.together import both
 
 Until: TypeAlias = Literal["draft", "checked", "grounded", "actions"]
 UNTIL: tuple[Until, ...] = ("draft", "checked", "grounded", "actions")
@@ -151,15 +142,8 @@ class TeamPolicy:
             plan = await self._plan(session, scene, progress, until, tuple(advice), tuple(done))
             # What Memory is still writing belongs to this plan: whether it is kept must not be a matter of luck.
             await session.memory.barrier()
-        except (
-            PlanError,
-            NotFoundError,
-            ModelOutputError,
-            BudgetReached,
-            NotUnderstoodError,
-            NeedsClarification,
-        ) as error:
-            plan = endings.failed(progress.plan, error)
+        except ENDS_A_PLAN as error:
+            plan = ended_by(progress.plan, error)
         finally:
             await settle(session)
         session.tell_skipped()

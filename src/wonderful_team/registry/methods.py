@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import cast
 
+from wonderful_team.agents.role import Role
 from wonderful_team.core.caps import Caps
 from wonderful_team.core.protocols import Model, Policy, Subscriber
 from wonderful_team.core.renamed import RenamedKeys
@@ -13,6 +14,7 @@ from wonderful_team.errors import ConfigError, MethodCodeError, UnknownNameError
 from wonderful_team.models.budget import Budget
 from wonderful_team.models.client import DEADLINE_S, ModelClient
 from wonderful_team.planning import ABLATIONS, TeamConfig, TeamPolicy
+from wonderful_team.planning.baselines import direct, pivot
 from wonderful_team.planning.config import Mode
 from wonderful_team.registry.files import is_file_name, make_from_file
 from wonderful_team.registry.models import DEFAULT_ROLE
@@ -59,11 +61,21 @@ class MethodSetup:
 
 @dataclass(frozen=True)
 class MethodRow:
-    """A method: a line of help, its factory, and what its name says about the team (None for a rival)."""
+    """A method by name.
+
+    Attributes:
+        words: A line of help.
+        make: Its factory.
+        team: What its name says about the team; None for a rival.
+        roles: A rival's own roles.
+        privileged: It is told of a simulator's truth.
+    """
 
     words: str
     make: Callable[[MethodSetup], Policy]
     team: TeamMode | None = None
+    roles: tuple[Role, ...] = ()
+    privileged: bool = False
 
 
 def _team(setup: MethodSetup) -> Policy:
@@ -75,6 +87,12 @@ def _team(setup: MethodSetup) -> Policy:
         subscribers=setup.subscribers,
         concurrency=setup.concurrency,
         deadline_s=setup.deadline_s,
+    )
+
+
+def _direct(words: str, axes: bool, checked: bool) -> MethodRow:
+    return MethodRow(
+        words, lambda setup: direct.Direct(setup.client(), axes=axes, checked=checked), roles=(direct.PLANNER,)
     )
 
 
@@ -95,6 +113,15 @@ METHODS: dict[str, MethodRow] = {
         for name, members in ABLATIONS.items()
         if name != "full"
     },
+    "direct": _direct("one model, one call: plan and points together; no team", False, False),
+    "direct:axes": _direct("the same, with labelled axes on the main view", True, False),
+    "direct:checked": _direct("direct; the model looks at its drawn plan, and may plan anew twice", False, True),
+    "direct:axes:checked": _direct("the same, with labelled axes on the main view", True, True),
+    "pivot": MethodRow(
+        "points found among numbered marks in 3 iterations and 3 parallel runs (PIVOT, arXiv 2402.07872)",
+        lambda setup: pivot.Pivot(setup.client()),
+        roles=(pivot.PLANNER, pivot.SELECTOR),
+    ),
 }
 
 

@@ -14,7 +14,9 @@ from wonderful_team.contracts import (
     BoxMove,
     BoxPx,
     BoxVerdict,
+    DirectPlan,
     MarkChoice,
+    MarkSelection,
     Outcome,
     PointChoice,
     PointPx,
@@ -63,12 +65,14 @@ class ErrorSampler:
                 return value.model_copy(update={"points": points})
             case BoxAnswer():
                 return value.model_copy(update={"box": self.box(value.box, question.view, "box")})
-            case SceneReading():
+            case SceneReading() | DirectPlan():
                 return value.model_copy(
                     update={"targets": [self._target(item, question.view) for item in value.targets]}
                 )
             case MarkChoice() | PointChoice():
                 return self._choice(value, len(question.candidates.points))
+            case MarkSelection():
+                return self._selection(value, len(question.candidates.points))
             case TurnChoice():
                 return self._choice(value, len(question.turns))
             case BoxMove():
@@ -148,6 +152,12 @@ class ErrorSampler:
             return right
         problem = "" if decision == "accept" else right.problem or "the box looks loose"
         return right.model_copy(update={"decision": decision, "problem": problem})
+
+    def _selection(self, value: MarkSelection, count: int) -> MarkSelection:
+        if not value.numbers or not self.draws(self.profile.wrong_choice, "choice"):
+            return value
+        order = self._rng("other").permutation(count) + 1
+        return value.model_copy(update={"numbers": [int(number) for number in order[: len(value.numbers)]]})
 
     def _revision(self, value: RevisionVerdict) -> RevisionVerdict:
         judged = self.profile.judgement

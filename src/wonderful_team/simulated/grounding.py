@@ -11,12 +11,14 @@ from wonderful_team.contracts import (
     GiveBox,
     LocatePoints,
     MarkChoice,
+    MarkSelection,
     PointPx,
     Points,
     ReadScene,
     RolePoint,
     SceneReading,
     SceneTarget,
+    SelectMarks,
     ShownSlot,
 )
 from wonderful_team.core.geometry import Box
@@ -98,6 +100,23 @@ def answer_choose_mark(context: Context, question: ChooseMark) -> MarkChoice:
         return none
     best = min(on, key=lambda number: math.dist(points[number - 1], wanted))
     return MarkChoice(reasoning=f"the nearest of {len(on)} on it", number=best)
+
+
+def answer_select_marks(context: Context, question: SelectMarks) -> MarkSelection:
+    """The marks nearest to where the target's point should be, those on it first."""
+    found = find(context, question.target, question.view, question.examples)
+    if found is None:
+        return MarkSelection(reasoning=NOT_HERE.format(words=question.target.words), numbers=[])
+    seen, place = found
+    wanted, points = point_of(place, question.role, seen), question.candidates.points
+    name = place.meaning.thing if question.role in ("pick", "grasp") else None
+
+    def off(number: int) -> tuple[bool, float]:
+        point = points[number - 1]
+        return name is not None and seen.at(point, (name,)) is None, math.dist(point, wanted)
+
+    numbers = sorted(range(1, len(points) + 1), key=off)[: question.most]
+    return MarkSelection(reasoning=f"nearest to the {question.target.words}", numbers=numbers)
 
 
 def answer_give_box(context: Context, question: GiveBox) -> BoxAnswer:

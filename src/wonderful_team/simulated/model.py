@@ -8,6 +8,7 @@ from typing import Any
 from wonderful_team.contracts import (
     ChooseMark,
     ChoosePoint,
+    DirectPlan,
     DraftPlan,
     ExtractTargets,
     GiveBox,
@@ -17,6 +18,7 @@ from wonderful_team.contracts import (
     JudgeRevision,
     LocatePoints,
     MoveBox,
+    PlanDirectly,
     Presence,
     Question,
     ReadScene,
@@ -26,7 +28,10 @@ from wonderful_team.contracts import (
     ReviewPlan,
     ReviewSteps,
     RevisePlan,
+    SelectMarks,
     WriteSteps,
+    direct_plan_type,
+    in_parts,
 )
 from wonderful_team.core.caps import Estimate
 from wonderful_team.core.protocols import SceneTruth
@@ -37,6 +42,15 @@ from wonderful_team.simulated.context import Context
 from wonderful_team.simulated.error_sampler import ErrorSampler
 from wonderful_team.simulated.profile import Profile
 from wonderful_team.simulated.profiles import PROFILES
+
+
+def answer_plan_directly(context: Context, question: PlanDirectly) -> DirectPlan:
+    """What the team asks one after the other, in one answer."""
+    parts = in_parts(
+        question.task, question.step_kinds, question.advice, lambda part: ANSWERS[type(part)](context, part)
+    )
+    return direct_plan_type(question.step_kinds).model_validate(parts)
+
 
 ANSWERS: dict[type[Question], Callable[[Context, Any], Any]] = {
     DraftPlan: drafting.answer_draft,
@@ -59,6 +73,8 @@ ANSWERS: dict[type[Question], Callable[[Context, Any], Any]] = {
     JudgeOutcome: outcome.answer_outcome,
     Replan: outcome.answer_replan,
     Remember: outcome.answer_remember,
+    PlanDirectly: answer_plan_directly,
+    SelectMarks: grounding.answer_select_marks,
 }
 """One function per kind of question."""
 

@@ -17,7 +17,7 @@ from typing import Any
 import pytest
 from tools.tiny_model import NAME, write_model
 
-from tests.agents.question_samples import SAMPLES
+from tests.agents.question_samples import RIVALS, SAMPLES
 from tests.models.providers.asking import question, small_scene
 from tests.servers.real import KINDS, RealServer, Wanted, serving
 from tests.servers.schemas import misfits
@@ -126,7 +126,7 @@ def test_it_takes_the_words_pictures_and_schema_of_every_question_and_keeps_to_t
     asked: Question, server: RealServer
 ) -> None:
     model = provider(server)
-    request = build_request(asked, id=f"0/{asked.contract}", stage="plan")
+    request = build_request(asked, id=f"0/{asked.contract}", stage="plan", role=RIVALS.get(asked.contract))
     answer = answered(model, request)
     assert not model.schemas_refused
     assert model.picture_limit is None, "all pictures were taken"

@@ -8,6 +8,7 @@ from typing import Any
 from wonderful_team.contracts import (
     ChooseMark,
     ChoosePoint,
+    DirectPlan,
     DraftPlan,
     ExtractTargets,
     GiveBox,
@@ -17,6 +18,7 @@ from wonderful_team.contracts import (
     JudgeRevision,
     LocatePoints,
     MoveBox,
+    PlanDirectly,
     Presence,
     Question,
     ReadScene,
@@ -27,7 +29,10 @@ from wonderful_team.contracts import (
     ReviewPlan,
     ReviewSteps,
     RevisePlan,
+    SelectMarks,
     WriteSteps,
+    direct_plan_type,
+    in_parts,
 )
 from wonderful_team.offline.answers.crops import (
     answer_choose_point,
@@ -43,6 +48,7 @@ from wonderful_team.offline.answers.grounding import (
     answer_give_box,
     answer_locate,
     answer_read_scene,
+    answer_select_marks,
 )
 from wonderful_team.offline.answers.moves import answer_draft
 from wonderful_team.offline.answers.outcome import answer_outcome, answer_replan
@@ -53,6 +59,13 @@ from wonderful_team.offline.answers.revising import answer_revise
 from wonderful_team.offline.answers.step_review import answer_review_steps
 from wonderful_team.offline.answers.steps import answer_write_steps
 from wonderful_team.offline.answers.turns import answer_read_turn
+
+
+def answer_plan_directly(question: PlanDirectly) -> DirectPlan:
+    """What the team asks one after the other, in one answer."""
+    parts = in_parts(question.task, question.step_kinds, question.advice, lambda part: ANSWERS[type(part)](part))
+    return direct_plan_type(question.step_kinds).model_validate(parts)
+
 
 ANSWERS: dict[type[Question], Callable[..., Any]] = {
     DraftPlan: answer_draft,
@@ -76,6 +89,8 @@ ANSWERS: dict[type[Question], Callable[..., Any]] = {
     Remember: answer_remember,
     JudgeOutcome: answer_outcome,
     Replan: answer_replan,
+    PlanDirectly: answer_plan_directly,
+    SelectMarks: answer_select_marks,
 }
 """One function per kind of question; those that take independent samples also take the sample's number."""
 

@@ -13,12 +13,14 @@ from wonderful_team.contracts import (
     GiveBox,
     LocatePoints,
     MarkChoice,
+    MarkSelection,
     PointPx,
     Points,
     ReadScene,
     RolePoint,
     SceneReading,
     SceneTarget,
+    SelectMarks,
 )
 from wonderful_team.core.values import PointRole, Target
 from wonderful_team.offline.answers.finding import (
@@ -75,6 +77,24 @@ def answer_choose_mark(question: ChooseMark) -> MarkChoice:
     return MarkChoice(
         reasoning=f"no number lies on {question.target.words}; {len(found)} things fit the words", number=None
     )
+
+
+def answer_select_marks(question: SelectMarks) -> MarkSelection:
+    """The numbered points that are nearest to where the target's point should be, those on it first."""
+    eyes = eyes_of(question.view, question.examples)
+    found = candidates(question.target, eyes)
+    if not found:
+        return MarkSelection(reasoning=f"nothing in the picture fits {question.target.words!r}", numbers=[])
+    item, points = found[0], question.candidates.points
+    wanted = act_at(item, question.role, eyes)
+    held = item.thing if question.role in ("pick", "grasp") else None
+
+    def off(number: int) -> tuple[bool, float]:
+        point = points[number - 1]
+        return held is not None and not held.holds(point), float(np.hypot(*np.subtract(point, wanted)))
+
+    numbers = sorted(range(1, len(points) + 1), key=off)[: question.most]
+    return MarkSelection(reasoning=f"{told(item)}; nearest to its point", numbers=numbers)
 
 
 def answer_give_box(question: GiveBox) -> BoxAnswer:

@@ -20,7 +20,7 @@ from wonderful_team.agents import ROLES
 from wonderful_team.api.method import Method
 from wonderful_team.api.photo_trial import run_photo
 from wonderful_team.api.rollout import rollout
-from wonderful_team.api.trial_setup import UsageCounter, fingerprint, prepared
+from wonderful_team.api.trial_setup import UsageCounter, fingerprint, method_options, prepared
 from wonderful_team.core.actions import Action
 from wonderful_team.core.deadline import limited
 from wonderful_team.core.jsonable import to_jsonable
@@ -229,4 +229,6 @@ def check_names(
         if method in CONTROLS:
             continue
         for model in models:
-            Method(**asked, model=choice_of(model), method=method, max_tokens=max_tokens).policy()
+            Method(
+                **method_options(asked, method), model=choice_of(model), method=method, max_tokens=max_tokens
+            ).policy()

@@ -73,7 +73,7 @@ class RateLimitedModel:
 
 def prepared(spec: TrialSpec, settings: RunSettings, model: Any, world: World | None = None) -> Method:
     """The method of a trial with its model, capped, and limited together with all other workers."""
-    caps, asked = settings.caps, dict(settings.extra)
+    caps, asked = settings.caps, method_options(settings.extra, spec.condition.method)
     if settings.limiter is not None:
         options = model_options(
             asked.get("thinking"), asked.get("price"), bool(asked.get("local_only")), role_names(), asked.get("timeout")
@@ -96,6 +96,11 @@ def prepared(spec: TrialSpec, settings: RunSettings, model: Any, world: World | 
         command=reproduce(spec, asked),
         world=world,
     )
+
+
+def method_options(asked: Mapping[str, Any], method: str) -> dict[str, Any]:
+    """The options of a study that one of its methods takes: a detector is for those that look with one."""
+    return {key: value for key, value in asked.items() if key != "detector" or registry.looks_with_detector(method)}
 
 
 def reproduce(spec: TrialSpec, asked: Mapping[str, Any] | None = None) -> str:
@@ -122,7 +127,9 @@ def reproduce(spec: TrialSpec, asked: Mapping[str, Any] | None = None) -> str:
     ]
     timeout = (asked or {}).get("timeout")
     waits = [] if timeout is None or condition.method in CONTROLS else ["--timeout", f"{timeout:g}"]
-    return shlex.join(["wonderful-team", *words, *replans, "--method", condition.method, *models, *waits])
+    detector = (asked or {}).get("detector")
+    looks = ["--detector", detector] if detector and registry.looks_with_detector(condition.method) else []
+    return shlex.join(["wonderful-team", *words, *replans, "--method", condition.method, *looks, *models, *waits])
 
 
 def _of_role(role: str, value: str) -> str:

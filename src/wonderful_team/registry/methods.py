@@ -7,23 +7,25 @@ from dataclasses import dataclass
 from typing import cast
 
 from wonderful_team.core.caps import Caps
-from wonderful_team.core.protocols import Model, Policy, Subscriber
+from wonderful_team.core.protocols import Detector, Model, Policy, Subscriber
 from wonderful_team.core.renamed import RenamedKeys
 from wonderful_team.errors import ConfigError, MethodCodeError, UnknownNameError
 from wonderful_team.models.budget import Budget
 from wonderful_team.models.client import DEADLINE_S, ModelClient
 from wonderful_team.planning import ABLATIONS, TeamConfig, TeamPolicy
-from wonderful_team.planning.config import Mode
+from wonderful_team.planning.config import Grounding, Mode
+from wonderful_team.registry.detectors import make_detector
 from wonderful_team.registry.files import is_file_name, make_from_file
 from wonderful_team.registry.models import DEFAULT_ROLE
 
 
 @dataclass(frozen=True)
 class TeamMode:
-    """What a `team…` name means: the way of working and which members are switched off."""
+    """What a `team…` name means: the way of working, which members are switched off, and who says where targets are."""
 
     mode: Mode
     ablation: str = "full"
+    grounding: Grounding = "team"
 
 
 @dataclass(frozen=True)
@@ -35,6 +37,7 @@ class MethodSetup:
         rest: For roles that the team has not.
         config: How the team works; None for every other method.
         deadline_s: Longest wait for one answer, unless the model itself may take longer.
+        detector: Makes the detector that was named, for methods that look with one; weights are loaded once.
     """
 
     models: Mapping[str, Model]
@@ -44,6 +47,7 @@ class MethodSetup:
     concurrency: int = 8
     config: TeamConfig | None = None
     deadline_s: float = DEADLINE_S
+    detector: Callable[[], Detector] = make_detector
 
     def client(self) -> ModelClient:
         """Where a method asks its models: capped, and told to subscribers."""
@@ -59,11 +63,16 @@ class MethodSetup:
 
 @dataclass(frozen=True)
 class MethodRow:
-    """A method: a line of help, its factory, and what its name says about the team (None for a rival)."""
+    """A method: a line of help, its factory, and what its name says about the team (None for a rival).
+
+    Attributes:
+        detects: It looks with a detector (`--detector`).
+    """
 
     words: str
     make: Callable[[MethodSetup], Policy]
     team: TeamMode | None = None
+    detects: bool = False
 
 
 def _team(setup: MethodSetup) -> Policy:
@@ -75,6 +84,7 @@ def _team(setup: MethodSetup) -> Policy:
         subscribers=setup.subscribers,
         concurrency=setup.concurrency,
         deadline_s=setup.deadline_s,
+        detector=setup.detector() if setup.config is not None and setup.config.grounding == "detector" else None,
     )
 
 
@@ -87,6 +97,17 @@ METHODS: dict[str, MethodRow] = {
         "the whole team, lean: few waiting rounds, the paper's loop only for boxes that fail", _team, TeamMode("lean")
     ),
     "team:paper": MethodRow("the whole team, the algorithms as published", _team, TeamMode("paper")),
+    "single-call-grounding": MethodRow(
+        "the team, the grounding team replaced by one model call that gives all boxes and points",
+        _team,
+        TeamMode("lean", grounding="one_call"),
+    ),
+    "detector-grounding": MethodRow(
+        "the team, the grounding team replaced by a detector (--detector)",
+        _team,
+        TeamMode("lean", grounding="detector"),
+        detects=True,
+    ),
     **{
         f"{prefix}:{name}": MethodRow(
             f"{words} ablation setting {name[1:]}: {members.words}", _team, TeamMode(mode, name)
@@ -96,6 +117,11 @@ METHODS: dict[str, MethodRow] = {
         if name != "full"
     },
 }
+
+
+def looks_with_detector(name: str) -> bool:
+    """Whether a method looks with a detector; one of the user's own may."""
+    return name not in METHODS or METHODS[name].detects
 
 
 def team_mode(name: str) -> TeamMode | None:

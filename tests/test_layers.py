@@ -35,7 +35,8 @@ ARROWS: dict[str, set[str]] = {
     "evals": BASE | {"images"},
     "registry": BASE | {"agents", "detectors", "models", "offline", "simulated", "planning", "sims"},
     "api": BASE
-    | {"agents", "images", "models", "planning", "sims", "record", "pages", "runtime", "lab", "evals", "registry"},
+    | {"agents", "detectors", "images", "models", "planning", "sims", "record", "pages", "runtime", "lab", "evals"}
+    | {"registry"},
     "cli": BASE
     | {
         "agents",

@@ -109,7 +109,8 @@ def test_places_are_asked_of_the_model_in_one_call_and_the_run_says_so() -> None
     assert detector.asked == [(FIRST,)]
     (question,) = [request.question for request in asked(model, "ReadScene")]
     assert [target.id for target in question.targets] == ["T2"]
-    assert "T2: a detector finds things, not places; asked of the model in one call" in tape.warnings
+    (told,) = [event.content["text"] for event in tape.kinds("stage") if event.name == "places"]
+    assert told == "T2: a detector finds things, not places; asked of the model in one call"
 
 
 def test_what_only_a_picture_shows_is_not_found_and_says_why() -> None:

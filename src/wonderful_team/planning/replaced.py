@@ -105,7 +105,7 @@ async def ground_by_detector(jobs: Sequence[Job]) -> dict[str, GroundedTarget]:
     found = await session.look(view, [phrase_of(job.target) for job in named]) if named else ()
     if places:
         ids = ", ".join(job.target.id for job in places)
-        session.warn(f"{ids}: a detector finds things, not places; asked of the model in one call")
+        session.stage("places", f"{ids}: a detector finds things, not places; asked of the model in one call")
     grounded = await ground_in_one_call(places) if places else {}
     ends = {
         key: next((item.points[role] for role in ENDS if role in item.points), None) for key, item in grounded.items()

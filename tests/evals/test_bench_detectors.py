@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 import wonderful_team as wt
-from wonderful_team.api.trial_setup import method_options, reproduce
+from wonderful_team.api.trial_setup import fingerprint, method_options, reproduce
 from wonderful_team.cli.app import run
 from wonderful_team.errors import ConfigError, UnknownNameError
 from wonderful_team.evals.store import Store
@@ -70,3 +70,12 @@ def test_a_study_in_which_nothing_looks_with_a_detector_is_refused(tmp_path: Pat
         wt.Study("tabletop/rotate", detector="classical", store=tmp_path / "s.db")
     with pytest.raises(UnknownNameError, match="unknown detector 'owl'"):
         wt.Study("tabletop/rotate", methods="detector-grounding", detector="owl", store=tmp_path / "s.db")
+
+
+def test_a_result_names_the_detectors_file_by_its_hash(tmp_path: Path) -> None:
+    (tmp_path / "own.py").write_text(OWN, encoding="utf-8")
+    asked = {"detector": f"{tmp_path}/own.py:Blind"}
+    spec = TrialSpec("tabletop/rotate", 1000, Condition("detector-grounding", "offline"))
+    assert set(fingerprint(spec, asked)) - set(fingerprint(spec)) == {asked["detector"]}
+    team = TrialSpec("tabletop/rotate", 1000, Condition("team", "offline"))
+    assert fingerprint(team, asked) == fingerprint(team)

@@ -69,7 +69,7 @@ def test_the_drawn_picture_differs_from_the_view_along_the_boxes(planned: wt.Pla
 
 def test_the_page_names_the_detector_and_shows_its_picture(planned: wt.PlanResult) -> None:
     page = planned.page.read_text(encoding="utf-8")
-    assert "<b>classical, kind classical vision, no weights</b> was asked for red block (1 found)" in page
+    assert "<b>classical, weights none</b> was asked for red block (1 found)" in page
     assert "no grounding team took part" in page
 
 

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+import wonderful_team as wt
 from wonderful_team.detectors import loading
 from wonderful_team.errors import ConfigError, DetectorCodeError, MissingExtraError, UnknownNameError
 from wonderful_team.registry.detectors import DETECTORS, detector_label, make_detector
@@ -93,3 +94,14 @@ def test_a_missing_part_names_the_command_that_brings_it(name: str, monkeypatch:
     with pytest.raises(MissingExtraError, match="'detectors'") as told:
         make_detector(name)
     assert f"{sys.executable} -m pip install" in str(told.value)
+
+
+def test_a_method_of_ones_own_may_ask_for_the_chosen_detector(own: str, tmp_path: Path) -> None:
+    (tmp_path / "looking.py").write_text(
+        "import wonderful_team as wt\n\nclass Looking:\n    name = 'looking'\n\n    def __init__(self, make_detector):\n"
+        "        self.detector = make_detector()\n\n    def decide(self, situation):\n        return wt.Done('')\n",
+        encoding="utf-8",
+    )
+    for chosen, name in ((None, "classical"), (f"{own}:Corner", "corner")):
+        policy = wt.Method(method=f"{tmp_path}/looking.py:Looking", detector=chosen).policy()
+        assert policy.detector.name == name  # type: ignore[attr-defined]

@@ -55,7 +55,7 @@ def run_photo(spec: TrialSpec, settings: RunSettings) -> TrialRow:
         rounds=count.rounds,
         provenance=tuple(sorted(count.provenance)),
         instruction="; ".join(words),
-        versions=fingerprint(spec),
+        versions=fingerprint(spec, settings.extra),
     )
 
 

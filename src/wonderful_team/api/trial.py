@@ -69,7 +69,7 @@ def _trial(spec: TrialSpec, settings: RunSettings) -> TrialRow:
             by_role={role: to_jsonable(one) for role, one in by_role.items()},
             page=page,
             instruction="" if spec.condition.method in CONTROLS else world.instruction.plain_text,
-            versions=fingerprint(spec),
+            versions=fingerprint(spec, settings.extra),
         )
     finally:
         with contextlib.suppress(Exception):

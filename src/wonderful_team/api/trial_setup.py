@@ -136,11 +136,12 @@ def _of_role(role: str, value: str) -> str:
     return value if role == REST else f"{role}={value}"
 
 
-def fingerprint(spec: TrialSpec) -> dict[str, str]:
-    """What produced a result: package, commit, and hashes of the user's own files."""
+def fingerprint(spec: TrialSpec, asked: Mapping[str, Any] | None = None) -> dict[str, str]:
+    """What produced a result: package, commit, and hashes of the user's own files; `asked` holds the options of its models."""
     chosen = choice_of(spec.condition.model)
     models = [chosen] if isinstance(chosen, str) else list(chosen.values())
-    own = [name for name in (spec.task, spec.condition.method, *models) if is_file_name(name)]
+    detector = method_options(asked or {}, spec.condition.method).get("detector") or ""
+    own = [name for name in (spec.task, spec.condition.method, *models, detector) if is_file_name(name)]
     return {**_versions(), **{name: _file_hash(name) for name in own}}
 
 

@@ -24,7 +24,7 @@ class ClassicalDetector:
     """Classical vision and a grammar for noun phrases (`wonderful-team list words`)."""
 
     name = "classical"
-    setting: Mapping[str, str] = {"kind": "classical vision, no weights"}
+    setting: Mapping[str, str] = {"weights": "none"}
 
     def detect(self, rgb: Array, words: Sequence[str]) -> tuple[Detection, ...]:
         """Everything that fits each description, with its outline as a mask.

@@ -143,16 +143,21 @@ def make_method(name: str, setup: MethodSetup) -> Policy:
     Raises:
         ConfigError: A file's object has no `decide(situation)` or no name.
     """
-    return load_method(name, setup.client()) if is_file_name(name) else METHODS[name].make(setup)
+    if is_file_name(name):
+        return load_method(name, setup.client(), setup.detector)
+    return METHODS[name].make(setup)
 
 
-def load_method(name: str, client: ModelClient) -> Policy:
-    """A method from a user's file. Its class may ask for `client` by parameter name: questions asked there are budgeted and recorded.
+def load_method(name: str, client: ModelClient, detector: Callable[[], Detector] = make_detector) -> Policy:
+    """A method from a user's file. Its class may ask by parameter name for `client`, where questions are budgeted and recorded, and
+    for `make_detector`, a function that gives the chosen detector.
 
     Raises:
         ConfigError: The object has no `decide(situation)` or no name.
     """
-    made = make_from_file(name, "method", RenamedKeys({"client": client}, {"door": "client"}), MethodCodeError)
+    made = make_from_file(
+        name, "method", RenamedKeys({"client": client, "make_detector": detector}, {"door": "client"}), MethodCodeError
+    )
     if not callable(getattr(made, "decide", None)):
         raise ConfigError(f"method {name!r} needs a method decide(situation); {type(made).__name__} has none")
     if not isinstance(getattr(made, "name", None), str):

@@ -278,3 +278,25 @@ def test_the_configuration_that_was_loaded_is_said(weights: SimpleNamespace) -> 
     assert setting["model"] == str(weights.owlv2)
     assert (setting["device"], setting["dtype"], setting["threshold"]) == ("cpu", "float32", "0.1")
     assert json.loads((weights.owlv2 / "config.json").read_text())["model_type"] == "owlv2"
+
+
+def test_the_team_grounds_with_one_and_the_record_says_with_which_weights(
+    weights: SimpleNamespace, tmp_path: Path, runs_folder: Path
+) -> None:
+    """Random weights find anything; what counts is that they are asked, drawn, recorded and replayed."""
+    import wonderful_team as wt
+    from wonderful_team.api.replay import replay
+
+    name = f"langsam:{weights.dino}?sam={weights.sam}&box_threshold=0.1"
+    team = wt.Team(method="detector-grounding", detector=name)
+    made = team.ground(picture(120, 160), ["red block", "bowl"])
+    record = json.loads((made.folder / "record.json").read_text(encoding="utf-8"))
+    (look,) = record["planner"]["detections"]
+    assert record["configuration"]["detector"] == name
+    assert look["detector"]["model"] == str(weights.dino)
+    assert look["detector"]["box_threshold"] == "0.1"
+    assert {one["words"] for one in look["found"]} == {"red block", "bowl"}
+    assert any(one["mask"] for one in look["found"])
+    assert [target.status for target in made.targets] == ["found", "found"]
+    assert record["planner"]["requests"] == []
+    assert replay(made.folder).same

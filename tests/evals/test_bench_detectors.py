@@ -68,6 +68,8 @@ def test_a_detector_is_for_the_methods_that_look_with_one() -> None:
 def test_a_study_in_which_nothing_looks_with_a_detector_is_refused(tmp_path: Path) -> None:
     with pytest.raises(ConfigError, match="none of the methods looks with one: team"):
         wt.Study("tabletop/rotate", detector="classical", store=tmp_path / "s.db")
+    with pytest.raises(ConfigError, match="lets truth ground, and in 'detector-grounding' a detector does"):
+        wt.Study("tabletop/rotate", methods="detector-grounding", isolate="planning", store=tmp_path / "s.db")
     with pytest.raises(UnknownNameError, match="unknown detector 'owl'"):
         wt.Study("tabletop/rotate", methods="detector-grounding", detector="owl", store=tmp_path / "s.db")
 

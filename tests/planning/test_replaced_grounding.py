@@ -14,7 +14,7 @@ from wonderful_team.core.actions import PICK_PLACE
 from wonderful_team.core.caps import Caps
 from wonderful_team.core.geometry import Box
 from wonderful_team.core.values import Detection, DetectorRun, Instruction, Observation, Plan, Target, View
-from wonderful_team.errors import ConfigError, DetectorCodeError, UnknownNameError
+from wonderful_team.errors import ConfigError, DetectorCodeError, NotUnderstoodError, UnknownNameError
 from wonderful_team.planning import TeamConfig, TeamPolicy
 from wonderful_team.planning.replaced import phrase_of
 
@@ -131,6 +131,40 @@ def test_a_doubted_point_makes_way_for_the_next_box() -> None:
     plan = plan_by(detector, model)
     assert plan.grounded["T1"].box == Box(50, 60, 90, 100)
     assert detector.asked[1:] == [(FIRST,)]
+
+
+class Choosy(Finding):
+    """Refuses words that it does not know."""
+
+    def detect(self, rgb: np.ndarray, words: Sequence[str]) -> list[Detection]:
+        unknown = [text for text in words if text not in (FIRST, SECOND)]
+        if unknown:
+            raise NotUnderstoodError(f"I do not know: {unknown[0]}", stage="grounding")
+        return super().detect(rgb, words)
+
+
+def test_words_that_a_detector_refuses_leave_the_others_found_and_go_back_to_the_supervisor() -> None:
+    drafts = iter([draft(subgoal("G1"), words="gizmo"), draft(subgoal("G1"))])
+    model = scripted(DraftPlan=lambda request: next(drafts), WriteSteps=one_step_each)
+    tape = Tape()
+    plan = plan_by(Choosy(box(FIRST, 50, 60), box(SECOND, 400, 300)), model, tape=tape)
+    assert plan.status == "planned", plan.message
+    assert "T1 (gizmo) was not found" in tape.warnings
+    looks = [event.content for event in tape.kinds("detector")]
+    assert [(run.words, run.refused) for run in looks] == [
+        (("gizmo", SECOND), "I do not know: gizmo"),
+        (("gizmo",), "I do not know: gizmo"),
+        ((SECOND,), ""),
+        ((FIRST, SECOND), ""),
+    ]
+
+
+def test_where_a_detector_refuses_every_word_planning_ends_as_not_understood_at_grounding() -> None:
+    drafted = draft(subgoal("G1"), words="gizmo")
+    drafted["targets"][1]["words"] = "widget"
+    plan = plan_by(Choosy(), scripted(DraftPlan=drafted))
+    assert (plan.status, plan.stage) == ("not_understood", "grounding")
+    assert plan.message == "I do not know: gizmo"
 
 
 @pytest.mark.parametrize(

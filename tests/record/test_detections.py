@@ -136,3 +136,12 @@ def test_a_detector_that_would_change_nothing_is_refused(capsys: pytest.CaptureF
 def test_an_unknown_word_ends_as_not_understood(capsys: pytest.CaptureFixture[str]) -> None:
     assert run(["ground", str(DESK), "mug", "--detector", "classical"]) == 7
     assert "do not know: mug" in capsys.readouterr().out
+
+
+def test_a_refused_word_is_told_recorded_and_replayed(tmp_path: Path) -> None:
+    made = wt.Team(method="detector-grounding", out=tmp_path).ground(DESK, ["mug", "red block"])
+    assert [target.status for target in made.targets] == ["gave_up", "found"]
+    looks = record_of(made.folder)["planner"]["detections"]
+    assert ["do not know: mug" in look["refused"] for look in looks] == [True, True, False]
+    assert "and refused: detector" in made.page.read_text(encoding="utf-8")
+    assert replay(made.folder).same

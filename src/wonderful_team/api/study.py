@@ -122,7 +122,7 @@ class Study:
         parts = tuple("" if name == WHOLE else name for name in split_names(_listed(self.isolate))) or ("",)
         for part in parts:
             if part:
-                check_isolation(part)
+                check_isolation(part, self.methods)
         self.plan = StudyPlan(
             suites,
             tuple(self.methods),

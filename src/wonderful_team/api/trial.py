@@ -201,12 +201,17 @@ def model_of(model: str, isolate: str, world: World) -> Any:
     return {**dict.fromkeys(GROUNDING_ROLES, model), "*": truth}
 
 
-def check_isolation(isolate: str) -> None:
+def check_isolation(isolate: str, methods: Sequence[str] = ()) -> None:
     """Whether this part can be isolated.
 
     Raises:
-        ConfigError: Another word.
+        ConfigError: Another word, or truth would have to ground for a method in which a detector does.
     """
+    looking = [name for name in methods if name in registry.METHODS and registry.METHODS[name].detects]
+    if isolate == "planning" and looking:
+        raise ConfigError(
+            f"--isolate planning lets truth ground, and in {looking[0]!r} a detector does: leave one of them out"
+        )
     if isolate not in ("planning", "grounding"):
         raise ConfigError(f"--isolate {isolate!r}: valid are planning (truth grounds), grounding (truth plans)")
 

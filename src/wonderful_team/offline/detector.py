@@ -15,6 +15,7 @@ from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.values import Detection, View
 from wonderful_team.errors import NotUnderstoodError
 from wonderful_team.images import whole
+from wonderful_team.offline.description import Description
 from wonderful_team.offline.eyes import Eyes, eyes_of
 from wonderful_team.offline.language import describe
 from wonderful_team.offline.vision import Match, Thing, in_plain_light
@@ -34,10 +35,7 @@ class ClassicalDetector:
         Raises:
             NotUnderstoodError: The words hold something it does not know; says which.
         """
-        described = [(text, describe(text)) for text in words]
-        pictured = [text for text, one in described if one.like is not None]
-        if pictured:
-            raise NotUnderstoodError(f"detector 'classical' reads words alone; {pictured[0]!r} points to a picture")
+        described = [(text, _described(text)) for text in words]
         eyes = _eyes(np.asarray(rgb))
         return tuple(
             _detection(text, match, match.thing, rgb.shape[:2])
@@ -45,6 +43,18 @@ class ClassicalDetector:
             for match in eyes.find(description)
             if match.thing is not None
         )
+
+
+def _described(words: str) -> Description:
+    try:
+        description = describe(words)
+    except NotUnderstoodError as error:
+        raise NotUnderstoodError(f"detector 'classical', {words!r}: {error}", stage="grounding") from error
+    if description.like is not None:
+        raise NotUnderstoodError(
+            f"detector 'classical' reads words alone; {words!r} points to a picture", stage="grounding"
+        )
+    return description
 
 
 def _eyes(rgb: Array) -> Eyes:

@@ -148,6 +148,7 @@ def detected(record: dict[str, Any], album: Album) -> list[dict[str, Any]]:
                 f"{key} {value}" if key != "name" else value for key, value in look["detector"].items() if value
             ),
             "words": [(words, sum(one["words"] == words for one in look["found"])) for words in look["words"]],
+            "refused": look.get("refused", ""),
             "drawing": album.image(look["drawn"], f"what {look['detector'].get('name', 'the detector')} found", "wide"),
         }
         for look in record["planner"].get("detections", [])

@@ -14,6 +14,8 @@ What the paper leaves open, and what is done here:
 - Where to act in a box. `detectors.act_at`: on the mask for picking, the middle of the box for placing, beside it for pushing.
 - Places ("the free space left of the bowl", the place where a picture shows a thing). They have no outline, and a detector cannot
   find them: they are asked of the model in one call, and the story says so.
+- Words that a detector refuses (the classical one, for a noun that it does not know). That target ends as given up, and goes back
+  to the Supervisor as any that was not found; where it refuses all of them, planning ends as not understood.
 - Things that only a picture of the instruction shows. A detector reads words: such a target ends as not found, and says why.
 - What happens when Verification doubts a point or a box. The detector's next best box without a rejected point in it; one more
   question for one point where a model grounds. (Bounds: `regrounds`.)
@@ -27,10 +29,12 @@ from typing import Literal
 from wonderful_team.contracts import LocatePoints, Points, SceneTarget
 from wonderful_team.core.geometry import Box
 from wonderful_team.core.pictures import Point
-from wonderful_team.core.values import Detection, GroundedTarget, PointRole, Provenance, Target
+from wonderful_team.core.values import Detection, GroundedTarget, PointRole, Provenance, Target, View
 from wonderful_team.detectors import act_at, name_of
+from wonderful_team.errors import NotUnderstoodError
 from wonderful_team.planning.config import Grounding
 from wonderful_team.planning.jobs import ENDS, Job, read_scene
+from wonderful_team.planning.session import AgentSession
 from wonderful_team.planning.together import together
 
 SAME_BOX = 0.5
@@ -102,7 +106,7 @@ async def ground_by_detector(jobs: Sequence[Job]) -> dict[str, GroundedTarget]:
     places = [job for job in jobs if job.target.kind == "area"]
     pictured = [job for job in jobs if job.target.kind == "object" and "{" in phrase_of(job.target)]
     named = [job for job in jobs if job not in places and job not in pictured]
-    found = await session.look(view, [phrase_of(job.target) for job in named]) if named else ()
+    found, refused = await _looked(session, view, [phrase_of(job.target) for job in named])
     if places:
         ids = ", ".join(job.target.id for job in places)
         session.stage("places", f"{ids}: a detector finds things, not places; asked of the model in one call")
@@ -113,6 +117,10 @@ async def ground_by_detector(jobs: Sequence[Job]) -> dict[str, GroundedTarget]:
     taken: dict[str, list[Box]] = {}
     # What is pushed comes last: the side it is pushed from depends on where the others are.
     for job in sorted(named, key=lambda one: one.goal is not None):
+        if phrase_of(job.target) in refused:
+            job.tell("absent", refused[phrase_of(job.target)], provenance="detector")
+            grounded[job.target.id] = job.end("gave_up", None)
+            continue
         one = _surest(job, found, taken)
         job.towards = ends.get(job.goal or "") or job.towards
         grounded[job.target.id] = _detected(job, one, found)
@@ -121,6 +129,34 @@ async def ground_by_detector(jobs: Sequence[Job]) -> dict[str, GroundedTarget]:
         job.tell("absent", f"{phrase_of(job.target)!r} points to a picture, and a detector reads words alone")
         grounded[job.target.id] = job.end("absent", None)
     return {job.target.id: grounded[job.target.id] for job in jobs}
+
+
+async def _looked(
+    session: AgentSession, view: View, phrases: Sequence[str]
+) -> tuple[tuple[Detection, ...], dict[str, str]]:
+    """What is found of these, and why some could not be asked for.
+
+    Raises:
+        NotUnderstoodError: None could be.
+    """
+    if not phrases:
+        return (), {}
+    asked = tuple(dict.fromkeys(phrases))
+    try:
+        return await session.look(view, asked), {}
+    except NotUnderstoodError as error:
+        first = error
+        if len(asked) == 1:
+            raise
+    found, refused = list[Detection](), dict[str, str]()
+    for phrase in asked:
+        try:
+            found += await session.look(view, [phrase])
+        except NotUnderstoodError as error:
+            refused[phrase] = str(error)
+    if len(refused) == len(asked):
+        raise first
+    return tuple(found), refused
 
 
 def _surest(job: Job, found: Sequence[Detection], taken: dict[str, list[Box]]) -> Detection | None:

@@ -14,7 +14,7 @@ from wonderful_team.contracts import QUESTIONS, MemoryEntry, Question, Remember
 from wonderful_team.core.protocols import Detector
 from wonderful_team.core.values import Answer, Detection, DetectorRun, Note, View
 from wonderful_team.detectors import WITHIN_S, detect, found_words, identity_of, name_of
-from wonderful_team.errors import ConfigError, DetectorCodeError, ModelOutputError
+from wonderful_team.errors import ConfigError, DetectorCodeError, ModelOutputError, NotUnderstoodError
 from wonderful_team.models.client import ModelClient
 from wonderful_team.planning.config import Members, TeamConfig
 from wonderful_team.planning.memory import Notebooks, SystemMemory
@@ -79,6 +79,7 @@ class AgentSession:
         """What the detector finds in a view; told to subscribers.
 
         Raises:
+            NotUnderstoodError: It refuses some of the words.
             DetectorCodeError: It broke, or returned what are no detections.
             BudgetReached: The cap on seconds was met.
         """
@@ -93,6 +94,10 @@ class AgentSession:
         except DetectorCodeError as error:
             if left is not None and not budget.seconds_left:
                 raise budget.time_is_up(f"looking with detector {name_of(self.detector)!r}") from error
+            raise
+        except NotUnderstoodError as error:
+            run = DetectorRun(identity_of(self.detector), view, asked, (), time.monotonic() - started, str(error))
+            self.client.tell("detector", run.detector["name"], run)
             raise
         run = DetectorRun(identity_of(self.detector), view, asked, found, time.monotonic() - started)
         self.client.tell("detector", run.detector["name"], run)

@@ -9,7 +9,7 @@ from wonderful_team.core.geometry import Box
 from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.pictures import BoxMark, picture_hash
 from wonderful_team.core.values import Detection, DetectorRun, mask_from_runs, mask_to_runs
-from wonderful_team.errors import ReplayError, reading
+from wonderful_team.errors import NotUnderstoodError, ReplayError, reading
 from wonderful_team.images import whole
 from wonderful_team.record.picture_store import PictureStore
 
@@ -29,6 +29,7 @@ def detector_entry(run: DetectorRun, store: PictureStore) -> dict[str, Any]:
         "words": list(run.words),
         "found": [_detection_entry(one) for one in run.found],
         "drawn": store.keep_sent(picture.marked(*marks)),
+        "refused": run.refused,
     }
 
 
@@ -58,12 +59,15 @@ class RecordedDetector:
         """What was found then.
 
         Raises:
+            NotUnderstoodError: It refused these words then.
             ReplayError: The detector was not asked for these words in this picture.
         """
         view = picture_hash(rgb)
         for number, entry in enumerate(self._left):
             if entry["view"] == view and entry["words"] == list(words):
                 del self._left[number]
+                if entry.get("refused"):
+                    raise NotUnderstoodError(entry["refused"], stage="grounding")
                 with reading("the detections of the record"):
                     return [_detection(one, entry["size_px"]) for one in entry["found"]]
         raise ReplayError(

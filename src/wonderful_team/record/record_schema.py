@@ -232,7 +232,7 @@ class DetectionEntry(_Part):
 
 
 class DetectorEntry(_Part):
-    """One look of a detector at a view: who, at what (a key of `files`), for which words, and what it found, drawn (another key)."""
+    """One look of a detector at a view: who, at what (a key of `files`), for which words, what it found, drawn (another key), or why it refused."""
 
     detector: dict[str, str]
     view: str
@@ -241,6 +241,7 @@ class DetectorEntry(_Part):
     words: list[str]
     found: list[DetectionEntry]
     drawn: str
+    refused: str = ""
 
 
 class Planner(_Part):

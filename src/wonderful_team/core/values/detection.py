@@ -69,6 +69,7 @@ class DetectorRun:
         words: What was looked for.
         found: In the order of the words, the surest first; boxes in pixels of the view.
         seconds: How long it took [s].
+        refused: Why it could not be asked for these words; "" where it looked.
     """
 
     detector: Mapping[str, str]
@@ -76,6 +77,7 @@ class DetectorRun:
     words: tuple[str, ...]
     found: tuple[Detection, ...]
     seconds: float
+    refused: str = ""
 
 
 def mask_to_runs(mask: Array) -> list[int]:

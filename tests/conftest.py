@@ -15,6 +15,7 @@ SECRET_ENDINGS = ("_KEY", "_TOKEN", "_SECRET")
 OPT_IN = {
     "slow": "takes more than ten seconds",
     "install": "installs packages: takes minutes and needs the package index",
+    "detectors": "loads torch and transformers: takes a minute and needs the optional part detectors (docs/detectors.md)",
     "servers": "starts real model servers: takes minutes and needs one installed (docs/models.md)",
 }
 

@@ -20,7 +20,7 @@ PAGES = [ROOT / "README.md", ROOT / "CHANGELOG.md", *sorted((ROOT / "docs").glob
 CODE = [path for folder in ("src", "examples", "benchmarks", "tools") for path in sorted((ROOT / folder).rglob("*.py"))]
 PARTS = sorted(path.name for path in PACKAGE.iterdir() if path.is_dir() and (path / "__init__.py").is_file())
 NOT_OURS = {
-    "--runslow", "--runinstall", "--runservers", "--no-deps", "--dry-run", "--max-model-len", "--served-model-name", "--dtype",
+    "--runslow", "--runinstall", "--runservers", "--rundetectors", "--revision", "--index-url", "--no-deps", "--dry-run", "--max-model-len", "--served-model-name", "--dtype",
     "--mmproj", "--alias", "--port", "--build", "--target",
 }  # fmt: skip
 """Options of pytest, pip, uv, vLLM, llama.cpp and CMake that the documents name."""

@@ -26,15 +26,17 @@ ARROWS: dict[str, set[str]] = {
     "models": BASE | {"contracts", "images"},
     "offline": BASE | {"contracts", "images"},
     "simulated": BASE | {"contracts", "images", "models"},
-    "planning": BASE | {"contracts", "images", "motion", "sandbox", "agents", "models"},
+    "detectors": BASE,
+    "planning": BASE | {"contracts", "images", "motion", "sandbox", "agents", "models", "detectors"},
     "lab": BASE | {"contracts", "images", "agents", "models"},
     "record": BASE | {"images"},
     "pages": BASE | {"images", "record"},
     "runtime": BASE | {"images"},
     "evals": BASE | {"images"},
-    "registry": BASE | {"agents", "models", "offline", "simulated", "planning", "sims"},
+    "registry": BASE | {"agents", "detectors", "models", "offline", "simulated", "planning", "sims"},
     "api": BASE
-    | {"agents", "images", "models", "planning", "sims", "record", "pages", "runtime", "lab", "evals", "registry"},
+    | {"agents", "detectors", "images", "models", "planning", "sims", "record", "pages", "runtime", "lab", "evals"}
+    | {"registry"},
     "cli": BASE
     | {
         "agents",

@@ -22,9 +22,10 @@ if TYPE_CHECKING:
     from wonderful_team.api.team import Team, load_run
     from wonderful_team.core.actions import ARM, PICK_PLACE, At, Beside, PickPlace, PickPlaceStep, Vocabulary
     from wonderful_team.core.geometry import AffineCamera, Box, PinholeCamera, PlanarCamera, Pose
-    from wonderful_team.core.protocols import Act, Done, GaveUp, Model, Policy, Score, Situation, World
+    from wonderful_team.core.protocols import Act, Detector, Done, GaveUp, Model, Policy, Score, Situation, World
     from wonderful_team.core.values import (
         Answer,
+        Detection,
         Instruction,
         KeepOut,
         Limits,
@@ -38,6 +39,7 @@ if TYPE_CHECKING:
     )
     from wonderful_team.errors import WonderfulTeamError
     from wonderful_team.record.stored_run import StoredRun
+    from wonderful_team.registry.detectors import make_detector
     from wonderful_team.registry.models import make_model
     from wonderful_team.runtime import Approval
     from wonderful_team.sims.tabletop import Scene
@@ -51,6 +53,8 @@ _HOMES: dict[str, str] = {
     "At": "core.actions",
     "Beside": "core.actions",
     "Box": "core.geometry",
+    "Detection": "core.values",
+    "Detector": "core.protocols",
     "Done": "core.protocols",
     "FoundTarget": "api.results",
     "GaveUp": "core.protocols",
@@ -86,6 +90,7 @@ _HOMES: dict[str, str] = {
     "WonderfulTeamError": "errors",
     "World": "core.protocols",
     "instruction_with_pictures": "api.photos",
+    "make_detector": "registry.detectors",
     "make_model": "registry.models",
     "probe_model": "api.probe",
     "load_run": "api.team",
@@ -107,6 +112,8 @@ __all__ = [
     "At",
     "Beside",
     "Box",
+    "Detection",
+    "Detector",
     "Done",
     "FoundTarget",
     "GaveUp",
@@ -144,6 +151,7 @@ __all__ = [
     "__version__",
     "instruction_with_pictures",
     "load_run",
+    "make_detector",
     "make_model",
     "make_world",
     "probe_model",

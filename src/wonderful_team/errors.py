@@ -195,6 +195,10 @@ class ModelCodeError(ModelUnavailableError):
     """The code of a model raised something of its own; its traceback is kept."""
 
 
+class DetectorCodeError(ModelUnavailableError):
+    """A detector raised something of its own, hangs, or returned what are no detections; the trial is an error."""
+
+
 class CacheMissError(ModelUnavailableError):
     """`--cache only` forbids asking a model, and the cache holds no answer."""
 

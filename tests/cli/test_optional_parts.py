@@ -24,11 +24,19 @@ def test_nothing_says_to_install_the_package_by_name_alone() -> None:
     assert [str(file) for file in files if bare.search(file.read_text(encoding="utf-8"))] == []
 
 
-@pytest.mark.parametrize(("extra", "package"), [("vendors", "pydantic-ai-slim"), ("ray", "ray"), ("gym", "gymnasium")])
-def test_a_missing_part_names_its_packages_and_this_python(extra: str, package: str) -> None:
+@pytest.mark.parametrize(
+    ("extra", "packages"),
+    [
+        ("vendors", ["pydantic-ai-slim"]),
+        ("ray", ["ray"]),
+        ("gym", ["gymnasium"]),
+        ("detectors", ["torch", "transformers"]),
+    ],
+)
+def test_a_missing_part_names_its_packages_and_this_python(extra: str, packages: list[str]) -> None:
     words = shlex.split(str(MissingExtraError("it", extra)).partition(": ")[2])
     assert words[:4] == [sys.executable, "-m", "pip", "install"]
-    assert [re.split(r"[\[<>=]", word)[0] for word in words[4:]] == [package]
+    assert [re.split(r"[\[<>=]", word)[0] for word in words[4:]] == packages
 
 
 def test_doctor_names_the_command_for_a_missing_part(

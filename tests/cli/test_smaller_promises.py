@@ -39,7 +39,7 @@ def test_probe_says_the_same_number_of_pictures_on_both_streams(capsys):
     assert "pictures    at least 4 pictures" in out
 
 
-@pytest.mark.parametrize("kind", ["world", "method", "task", "model"])
+@pytest.mark.parametrize("kind", ["world", "method", "task", "model", "detector"])
 def test_new_names_paths_that_can_be_typed(kind, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     assert run(["new", kind, "mine", "--out", "my files/here"]) == 0

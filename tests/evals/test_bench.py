@@ -84,7 +84,13 @@ def test_a_wrong_scorer_and_wrong_units_are_caught(tmp_path: Path, capsys: pytes
 
 @pytest.mark.parametrize(
     ("kind", "name", "seeds"),
-    [("task", "cups", "2"), ("world", "AgentSession", "4"), ("method", "Mine", "2"), ("model", "Mine", "1")],
+    [
+        ("task", "cups", "2"),
+        ("world", "AgentSession", "4"),
+        ("method", "Mine", "2"),
+        ("model", "Mine", "1"),
+        ("detector", "Mine", "2"),
+    ],  # fmt: skip
 )
 def test_new_files_run_pass_their_check_and_their_own_test(
     tmp_path: Path, kind: str, name: str, seeds: str, capsys: pytest.CaptureFixture[str]
@@ -92,10 +98,11 @@ def test_new_files_run_pass_their_check_and_their_own_test(
     assert run(["new", kind, name, "--out", str(tmp_path)]) == 0
     file = tmp_path / f"{name.lower()}.py"
     assert run(["check", f"{file}:{name}", "--seeds", seeds]) == 0, capsys.readouterr().out
-    if kind in ("task", "world"):
-        sheet = tmp_path / f"{name.lower()}_{name}.png"
-        assert sheet.read_bytes().startswith(b"\x89PNG")
-        assert "the scorer tells the oracle from doing nothing" in capsys.readouterr().out
+    if kind in ("task", "world", "detector"):
+        if kind != "detector":
+            sheet = tmp_path / f"{name.lower()}_{name}.png"
+            assert sheet.read_bytes().startswith(b"\x89PNG")
+            assert "the scorer tells the oracle from doing nothing" in capsys.readouterr().out
         environment = {**os.environ, "PYTEST_ADDOPTS": ""}
         tested = subprocess.run(
             [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", f"test_{file.name}"],

@@ -1,4 +1,4 @@
-"""`check` of one's own world, task, method or model: names become things, and the right checks are run on them."""
+"""`check` of one's own world, task, method, model or detector: names become things, and the right checks are run on them."""
 
 from __future__ import annotations
 
@@ -7,25 +7,33 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from wonderful_team import registry
 from wonderful_team.api.method import Method
 from wonderful_team.api.trial import run_trial
+from wonderful_team.core.geometry import Box
+from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.intervals import Rate
 from wonderful_team.core.protocols import privileged
 from wonderful_team.core.text import counted
-from wonderful_team.errors import ConfigError, FileNotWrittenError
+from wonderful_team.detectors import detect
+from wonderful_team.errors import ConfigError, DetectorCodeError, FileNotWrittenError, NotUnderstoodError
 from wonderful_team.evals.checking import SEEDS, Findings, check_controls, check_looks, contact_sheet
 from wonderful_team.evals.controls import CONTROLS, NO_MODEL
 from wonderful_team.evals.trials import Condition, RunSettings, TrialRow, TrialSpec
 from wonderful_team.evals.workers import run_safely
 from wonderful_team.registry.files import load_from_file
+from wonderful_team.runtime.loop import Caller
 
 TRIED_IN = "tabletop/rotate"
-"""Where methods and models are tried."""
+"""Where methods, models and detectors are tried."""
+LOOKED_FOR = ("red block", "blue block", "yellow block")
+"""What a detector is asked for."""
 
 
 def kind_of(name: str) -> str:
-    """What FILE.py:NAME is: world (tasks included), method or model.
+    """What FILE.py:NAME is: world (tasks included), method, model or detector.
 
     Raises:
         ConfigError: None of them.
@@ -33,12 +41,12 @@ def kind_of(name: str) -> str:
     thing = load_from_file(name, "check")
     if inspect.isfunction(thing) and registry.task_made_of(thing) is not None:
         return "world"
-    for kind, need in (("world", "observe"), ("method", "decide"), ("model", "answer")):
+    for kind, need in (("world", "observe"), ("method", "decide"), ("model", "answer"), ("detector", "detect")):
         if callable(getattr(thing, need, None)):
             return kind
     raise ConfigError(
         f"{name}: nothing that can be checked; valid: a task made with wonderful_team.task, a world (observe), "
-        "a method (decide) or a model (answer)"
+        "a method (decide), a model (answer) or a detector (detect)"
     )
 
 
@@ -50,7 +58,9 @@ def check(name: str, sheet: Path, seeds: int | None = None) -> Findings:
     """
     kind = kind_of(name)
     findings = Findings()
-    if kind == "world":
+    if kind == "detector":
+        _check_detector(name, range(seeds or 1), findings)
+    elif kind == "world":
         _check_world(name, sheet, range(seeds or SEEDS), findings)
     else:
         # A model may cost money: one scene unless more are asked for.
@@ -75,6 +85,42 @@ def _check_world(name: str, sheet: Path, seeds: Sequence[int], findings: Finding
         findings.notes.append("no truth (an attribute `privileged` with score, truth, oracle): trials stay unscored")
         return
     check_controls({control: _run(name, Condition(control, NO_MODEL), seeds) for control in CONTROLS}, findings)
+
+
+def _check_detector(name: str, seeds: Sequence[int], findings: Findings) -> None:
+    detector = registry.make_detector(name)
+    findings.good.append("loads as a detector")
+    with Caller() as caller:
+
+        def look(rgb: Array) -> list[tuple[str, Box, float]]:
+            found = caller.wait_for(detect(detector, rgb, LOOKED_FOR))
+            return [(one.words, one.box, one.score) for one in found]
+
+        try:
+            for seed in seeds:
+                rgb = _picture(seed)
+                first, again = look(rgb), look(rgb)
+                findings.notes.append(f"{TRIED_IN}, seed {seed}: {counted(len(first), 'detection')} of {LOOKED_FOR}")
+                same = first == again
+                findings.add(
+                    same, "the same picture gives the same twice", "the same picture gave two different answers"
+                )
+            empty = look(np.full_like(_picture(seeds[0]), 128))
+        except (DetectorCodeError, NotUnderstoodError) as error:
+            findings.bad.append(str(error))
+            return
+    findings.good.append("what it returns are detections that fit the picture and the words")
+    findings.add(
+        not empty, "it finds nothing in an empty picture", f"it found {len(empty)} in an empty picture: {empty[:3]}"
+    )
+
+
+def _picture(seed: int) -> Array:
+    world = registry.make_world(TRIED_IN, seed)
+    try:
+        return world.observe().main.rgb
+    finally:
+        world.close()
 
 
 def _check_thinking(kind: str, name: str, seeds: Sequence[int], findings: Findings) -> None:

@@ -10,7 +10,7 @@ from typing import Any, Self
 from wonderful_team import registry
 from wonderful_team.agents.prompts import ROLES, role_names
 from wonderful_team.core.caps import Caps
-from wonderful_team.core.protocols import Model, Policy, Subscriber, World
+from wonderful_team.core.protocols import Detector, Model, Policy, Subscriber, World
 from wonderful_team.core.renamed import renamed_attribute
 from wonderful_team.errors import ConfigError
 from wonderful_team.models.cache import CacheMode, cached_models
@@ -49,6 +49,8 @@ class Method:
         repeat: Number of this repetition: repetitions do not share kept answers.
         prompts: A folder with your own words for the team's roles.
         strict: Refuse a plan that Verification did not approve.
+        detector: Who finds things by words for methods that look with a detector: a name that `list detectors` shows, FILE.py:NAME,
+            or an object with `detect(rgb, words)`; None for `classical`.
         thorough: The lean team asks every question, however plain the scene: slower and dearer, for models that see badly.
         out: Where run folders go; default $WONDERFUL_TEAM_RUNS or `runs`.
         subscribers: Told of every event as it happens.
@@ -83,9 +85,11 @@ class Method:
     local_only: bool = False
     timeout: float | None = None
     world: World | None = None
+    detector: str | Detector | None = None
 
     def __post_init__(self) -> None:
         self._config = team_config(self.method, self.prompts, self.strict, self.thorough)
+        self._check_detector()
         options = model_options(self.thinking, self.price, self.local_only, role_names(), self.timeout)
         made = registry.make_models(self.model, role_names(), options, self.world)
         if self._config is not None and any(getattr(made[role], "weak_pointing", False) for role in POINTING_ROLES):
@@ -139,6 +143,21 @@ class Method:
         """The method at work in one trial."""
         return registry.make_method(self.method, self._setup(subscribers))
 
+    def _check_detector(self) -> None:
+        """Names and weights are wrong before anything is sent, never in the middle of a run."""
+        row = registry.METHODS.get(self.method)
+        if self.detector is not None and not registry.looks_with_detector(self.method):
+            looking = ", ".join(name for name, one in registry.METHODS.items() if one.detects)
+            raise ConfigError(
+                f"method {self.method!r} looks with no detector, so a detector changes nothing; methods that do: {looking}"
+            )
+        if row is not None and row.detects:
+            self.make_detector()
+
+    def make_detector(self) -> Detector:
+        """The detector that was chosen; weights are loaded once for each name."""
+        return registry.make_detector(registry.DEFAULT_DETECTOR if self.detector is None else self.detector)
+
     def _setup(self, subscribers: Sequence[Subscriber]) -> registry.MethodSetup:
         # Roles that are not the team's have the model of the roles that are not named.
         named = self.model if isinstance(self.model, Mapping) else {}
@@ -146,7 +165,7 @@ class Method:
         everyone = (*subscribers, *self.subscribers)
         return registry.MethodSetup(
             self._models, self._models[rest], self._caps, everyone, self.concurrency, self._config,
-            self.timeout or DEADLINE_S,
+            self.timeout or DEADLINE_S, self.make_detector,
         )  # fmt: skip
 
     def words(self) -> Mapping[str, str]:
@@ -173,8 +192,20 @@ class Method:
             "strict": self.strict,
             "thorough": self.thorough,
             "prompts": None if self._config is None else self._config.prompts.hash,
+            **self._grounding(),
             **({} if self.parent is None else {"parent": dict(self.parent)}),
         }
+
+    def _grounding(self) -> dict[str, Any]:
+        """Who says where targets are, where that is not the grounding team; and which detector looks."""
+        told: dict[str, Any] = {}
+        if self._config is not None and self._config.grounding != "team":
+            told["grounding"] = self._config.grounding
+        row = registry.METHODS.get(self.method)
+        if self.detector is not None or (row is not None and row.detects):
+            chosen = registry.DEFAULT_DETECTOR if self.detector is None else self.detector
+            told["detector"] = registry.detector_label(chosen)
+        return told
 
 
 def team_config(
@@ -191,7 +222,14 @@ def team_config(
     if mode is None:
         return None
     words = Prompts.default() if prompts is None else Prompts.load(Path(prompts))
-    return TeamConfig(mode=mode.mode, ablation=mode.ablation, strict=strict, thorough=thorough, prompts=words)
+    return TeamConfig(
+        mode=mode.mode,
+        ablation=mode.ablation,
+        grounding=mode.grounding,
+        strict=strict,
+        thorough=thorough,
+        prompts=words,
+    )
 
 
 def _known_names(model: ModelChoice, made: Mapping[str, Model]) -> ModelChoice:

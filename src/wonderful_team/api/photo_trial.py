@@ -11,6 +11,7 @@ from wonderful_team.api.method import Method, team_config
 from wonderful_team.api.observation import Observation
 from wonderful_team.api.trial_setup import UsageCounter, fingerprint, prepared
 from wonderful_team.core.geometry import Box
+from wonderful_team.core.protocols import Detector
 from wonderful_team.core.values import GroundedTarget, Instruction, Target, Usage
 from wonderful_team.errors import BudgetReached, ConfigError, ModelUnavailableError, WonderfulTeamError
 from wonderful_team.evals.photos import Located, PhotoScene, read_photos, score_photo
@@ -40,7 +41,8 @@ def run_photo(spec: TrialSpec, settings: RunSettings) -> TrialRow:
             result = _judged(scene, lambda: _by_own(caller, method, count, seen, words))
         else:
             client = method.client(count)
-            result = _judged(scene, lambda: _by_team(caller, client, config, seen, words))
+            detector = method.make_detector() if config.grounding == "detector" else None
+            result = _judged(scene, lambda: _by_team(caller, client, config, seen, words, detector))
             by_role = client.budget.by_role
     usage = sum(by_role.values(), Usage())
     return replace(
@@ -53,7 +55,7 @@ def run_photo(spec: TrialSpec, settings: RunSettings) -> TrialRow:
         rounds=count.rounds,
         provenance=tuple(sorted(count.provenance)),
         instruction="; ".join(words),
-        versions=fingerprint(spec),
+        versions=fingerprint(spec, settings.extra),
     )
 
 
@@ -73,11 +75,16 @@ def _judged(scene: PhotoScene, ask: Callable[[], list[Located]]) -> TrialRow:
 
 
 def _by_team(
-    caller: Caller, client: ModelClient, config: TeamConfig, seen: Observation, words: Sequence[str]
+    caller: Caller,
+    client: ModelClient,
+    config: TeamConfig,
+    seen: Observation,
+    words: Sequence[str],
+    detector: Detector | None,
 ) -> list[Located]:
     targets = [Target(f"T{number}", "object", text) for number, text in enumerate(words, start=1)]
     asked = Instruction("Find: " + "; ".join(words))
-    plan = caller.wait_for(find(client, config, seen, asked, targets))
+    plan = caller.wait_for(find(client, config, seen, asked, targets, detector))
     if plan.status == "budget":
         raise BudgetReached(plan.message)
     return [_of_team(plan.grounded.get(target.id)) for target in targets]

@@ -24,12 +24,13 @@ from wonderful_team.core.protocols import Event, Model, Subscriber
 from wonderful_team.core.values import Observation, Plan
 from wonderful_team.errors import ConfigError, WonderfulTeamError, reading
 from wonderful_team.models.replay import Branching, ReplayModel
+from wonderful_team.record.detections import RecordedDetector
 from wonderful_team.record.plan_file import has_short_id
 from wonderful_team.record.record_schema import read_record
 from wonderful_team.record.setup import Setup, read_setup, same_limits
 from wonderful_team.record.stored import stored_instruction, stored_observation
 from wonderful_team.record.story import recorded_plan, situations
-from wonderful_team.registry.files import names_no_code
+from wonderful_team.registry.files import check_names_no_code, names_no_code
 from wonderful_team.runtime.loop import Caller
 
 
@@ -69,8 +70,9 @@ def replay(folder: Path, *, tolerant: bool = False, subscribers: Sequence[Subscr
     record = read_record(folder)
     setup = read_setup(record, str(folder))
     model, plans = ReplayModel(record, tolerant=tolerant), _Plans()
+    detector = RecordedDetector(record) if "detector" in record["configuration"] else None
     with tempfile.TemporaryDirectory(prefix="wonderful-team-replay-") as place:
-        team = _team(folder, record, model, out=place, subscribers=(plans, *subscribers))
+        team = _team(folder, record, model, out=place, subscribers=(plans, *subscribers), detector=detector)
         try:
             if setup.entry == "run":
                 policy = team.policy()
@@ -150,6 +152,10 @@ def branch(
     parent = {"run": folder.name, "from": stage}
     setup = read_setup(record, str(folder))
     arguments = {**caps, "out": out, "subscribers": tuple(subscribers), "command": command, "parent": parent}
+    if "detector" in record["configuration"]:
+        # Another model may look for other things: the detector itself is asked, unless the record names code.
+        named = str(record["configuration"]["detector"])
+        arguments.setdefault("detector", check_names_no_code(named, f"{folder}: the record"))
     team = _team(folder, record, models, **arguments)
     if setup.entry == "run" and setup.scene.partition("/")[0] in registry.WORLDS:
         with names_no_code(f"{folder}: the scene of this record"):

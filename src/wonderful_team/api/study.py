@@ -53,6 +53,7 @@ class Study:
         repeats, replans, reobserve, shard: As `bench` has them.
         isolate: whole, planning, grounding: one or several. perturb: KIND=LEVEL: one or several; "" is the scene as it is.
         thinking, price, allow_unpriced, local_only, timeout, cache, cache_file, prompts: As `Method` takes them.
+        detector: Its name, for methods that look with one.
         controls: Those that run beside the methods; () refuses them all.
         caps: Of the whole study. trial_caps: of each trial.
         concurrency: Most model calls at once, over all workers.
@@ -87,6 +88,7 @@ class Study:
     timeout: float | None = None
     cache: CacheMode | None = None
     cache_file: str | Path | None = None
+    detector: str | None = None
     jobs: int | None = None
     at_once: int = 1
     ray: str | None = None
@@ -112,6 +114,10 @@ class Study:
         suites = resolve(words, list(registry.task_names()), known_suites(), is_file_name)
         _check_levels(suites)
         _check_scenes(suites, tiers)
+        if self.detector is not None and not any(map(registry.looks_with_detector, self.methods)):
+            raise ConfigError(
+                f"detector {self.detector!r}: none of the methods looks with one: {', '.join(self.methods)}"
+            )
         check_names(self.methods, models, self._asked(), self.trial_caps.tokens or self.caps.tokens)
         parts = tuple("" if name == WHOLE else name for name in split_names(_listed(self.isolate))) or ("",)
         for part in parts:
@@ -162,7 +168,10 @@ class Study:
             prompts=options["prompts"],
             thinking=read_roles(options["thinking"], "--thinking", "LEVEL"),
             price=read_roles(options["price"], "--price", "IN,OUT"),
-            **{name: options[name] for name in ("allow_unpriced", "local_only", "timeout", "cache", "cache_file")},
+            **{
+                name: options[name]
+                for name in ("allow_unpriced", "local_only", "timeout", "cache", "cache_file", "detector")
+            },
             jobs=options["jobs"],
             at_once=options["at_once"],
             ray=options["ray"],
@@ -194,6 +203,7 @@ class Study:
             "timeout": self.timeout,
             "cache": self.cache,
             "cache_file": self.cache_file,
+            "detector": self.detector,
         }
 
     def _how(self) -> str:
@@ -206,6 +216,7 @@ class Study:
             from wonderful_team.agents import Prompts
 
             said.append(f"own words {Prompts.load(Path(self.prompts)).hash[:8]}")
+        said += [f"detector {self.detector}"] if self.detector else []
         units = {"calls": "calls", "tokens": "tokens", "seconds": "s", "usd": "USD"}
         said += [f"at most {value:g} {units[name]}" for name, value in self.trial_caps.given.items()]
         return ", ".join(said)

@@ -144,7 +144,9 @@ class Team(Method):
         def make(recorder: Recorder) -> _Work:
             assert self._config is not None
             client = self.client(recorder)
-            return _Work(find(client, self._config, observation, wanted, targets), lambda: client.budget.by_role)
+            detector = self.make_detector() if self._config.grounding == "detector" else None
+            work = find(client, self._config, observation, wanted, targets, detector)
+            return _Work(work, lambda: client.budget.by_role)
 
         setup = setup_entry("ground", PICK_PLACE, NO_WORKSPACE, targets=targets)
         return self._recorded(observation, wanted, PICK_PLACE, NO_WORKSPACE, setup, make)

@@ -20,7 +20,7 @@ from wonderful_team.agents import ROLES
 from wonderful_team.api.method import Method
 from wonderful_team.api.photo_trial import run_photo
 from wonderful_team.api.rollout import rollout
-from wonderful_team.api.trial_setup import UsageCounter, fingerprint, prepared
+from wonderful_team.api.trial_setup import UsageCounter, fingerprint, method_options, prepared
 from wonderful_team.core.actions import Action
 from wonderful_team.core.deadline import limited
 from wonderful_team.core.jsonable import to_jsonable
@@ -69,7 +69,7 @@ def _trial(spec: TrialSpec, settings: RunSettings) -> TrialRow:
             by_role={role: to_jsonable(one) for role, one in by_role.items()},
             page=page,
             instruction="" if spec.condition.method in CONTROLS else world.instruction.plain_text,
-            versions=fingerprint(spec),
+            versions=fingerprint(spec, settings.extra),
         )
     finally:
         with contextlib.suppress(Exception):
@@ -205,8 +205,13 @@ def check_isolation(isolate: str, methods: Sequence[str] = ()) -> None:
     """Whether this part of these methods can be isolated.
 
     Raises:
-        ConfigError: Another word, or a rival: its roles are not the team's.
+        ConfigError: Another word, truth would have to ground where a detector does, or a rival: its roles are not the team's.
     """
+    looking = [name for name in methods if name in registry.METHODS and registry.METHODS[name].detects]
+    if isolate == "planning" and looking:
+        raise ConfigError(
+            f"--isolate planning lets truth ground, and in {looking[0]!r} a detector does: leave one of them out"
+        )
     if isolate not in ("planning", "grounding"):
         raise ConfigError(f"--isolate {isolate!r}: valid are planning (truth grounds), grounding (truth plans)")
     for name in methods:
@@ -232,4 +237,6 @@ def check_names(
         if method in CONTROLS:
             continue
         for model in models:
-            Method(**asked, model=choice_of(model), method=method, max_tokens=max_tokens).policy()
+            Method(
+                **method_options(asked, method), model=choice_of(model), method=method, max_tokens=max_tokens
+            ).policy()

@@ -73,7 +73,7 @@ class RateLimitedModel:
 
 def prepared(spec: TrialSpec, settings: RunSettings, model: Any, world: World | None = None) -> Method:
     """The method of a trial with its model, capped, and limited together with all other workers."""
-    caps, asked = settings.caps, dict(settings.extra)
+    caps, asked = settings.caps, method_options(settings.extra, spec.condition.method)
     if settings.limiter is not None:
         options = model_options(
             asked.get("thinking"), asked.get("price"), bool(asked.get("local_only")), role_names(), asked.get("timeout")
@@ -96,6 +96,11 @@ def prepared(spec: TrialSpec, settings: RunSettings, model: Any, world: World | 
         command=reproduce(spec, asked),
         world=world,
     )
+
+
+def method_options(asked: Mapping[str, Any], method: str) -> dict[str, Any]:
+    """The options of a study that one of its methods takes: a detector is for those that look with one."""
+    return {key: value for key, value in asked.items() if key != "detector" or registry.looks_with_detector(method)}
 
 
 def reproduce(spec: TrialSpec, asked: Mapping[str, Any] | None = None) -> str:
@@ -122,18 +127,21 @@ def reproduce(spec: TrialSpec, asked: Mapping[str, Any] | None = None) -> str:
     ]
     timeout = (asked or {}).get("timeout")
     waits = [] if timeout is None or condition.method in CONTROLS else ["--timeout", f"{timeout:g}"]
-    return shlex.join(["wonderful-team", *words, *replans, "--method", condition.method, *models, *waits])
+    detector = (asked or {}).get("detector")
+    looks = ["--detector", detector] if detector and registry.looks_with_detector(condition.method) else []
+    return shlex.join(["wonderful-team", *words, *replans, "--method", condition.method, *looks, *models, *waits])
 
 
 def _of_role(role: str, value: str) -> str:
     return value if role == REST else f"{role}={value}"
 
 
-def fingerprint(spec: TrialSpec) -> dict[str, str]:
-    """What produced a result: package, commit, and hashes of the user's own files."""
+def fingerprint(spec: TrialSpec, asked: Mapping[str, Any] | None = None) -> dict[str, str]:
+    """What produced a result: package, commit, and hashes of the user's own files; `asked` holds the options of its models."""
     chosen = choice_of(spec.condition.model)
     models = [chosen] if isinstance(chosen, str) else list(chosen.values())
-    own = [name for name in (spec.task, spec.condition.method, *models) if is_file_name(name)]
+    detector = method_options(asked or {}, spec.condition.method).get("detector") or ""
+    own = [name for name in (spec.task, spec.condition.method, *models, detector) if is_file_name(name)]
     return {**_versions(), **{name: _file_hash(name) for name in own}}
 
 

@@ -26,7 +26,7 @@ CRASHED = 70
 COMMANDS: dict[str, tuple[str, str]] = {
     "demo": ("demo", "Watch the team plan, catch two planted mistakes, and act, on a rendered scene."),
     "doctor": ("doctor", "Check this machine: versions, rendering, disk, keys, and what is missing."),
-    "list": ("listing", "List models, worlds, tasks, suites, methods, prompts, words or runs."),
+    "list": ("listing", "List models, worlds, tasks, suites, methods, detectors, prompts, words or runs."),
     "plan": ("plan", "Plan from pictures and an instruction; nothing moves."),
     "ground": ("ground", "Find things in a picture: boxes and points."),
     "run": ("run", "Plan, pass the gate, act in a world, look, replan."),
@@ -35,8 +35,8 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "probe": ("probe", "Measure a model: its coordinates, its limits, its errors; save a profile."),
     "bench": ("bench", "Compare methods and models on suites, with controls, in a durable store."),
     "report": ("report", "Turn stores into one page, tables and plots."),
-    "new": ("new", "Write a world, method, task or model of your own that runs, with a test."),
-    "check": ("check", "Check a world, method, task or model of your own."),
+    "new": ("new", "Write a world, method, task, model or detector of your own that runs, with a test."),
+    "check": ("check", "Check a world, method, task, model or detector of your own."),
 }
 
 

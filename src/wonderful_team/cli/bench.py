@@ -42,6 +42,11 @@ QUIET_S = 10.0
     help="Models; default offline. M,ROLE=X: M with X for one role; ROLE=X alone: for all of them.",
 )
 @click.option(
+    "--detector",
+    metavar="NAME",
+    help="Who finds things for methods that look with a detector: see `list detectors`. [default: classical]",
+)
+@click.option(
     "--thinking", multiple=True, metavar="LEVEL|ROLE=LEVEL", help="off, low, medium or high. [default: the model's own]"
 )
 @click.option(

@@ -1,4 +1,4 @@
-"""`check`: a world, task, method or model of one's own, tried before it is trusted."""
+"""`check`: a world, task, method, model or detector of one's own, tried before it is trusted."""
 
 from __future__ import annotations
 
@@ -12,11 +12,13 @@ from wonderful_team.core.text import counted
 
 
 @click.command(
-    short_help="Check a world, task, method or model of your own.",
+    short_help="Check a world, task, method, model or detector of your own.",
     epilog="\b\nwonderful-team check cups.py:cups\nwonderful-team check mine.py:Mine --seeds 5",
 )
 @click.argument("name", metavar="FILE.py:NAME")
-@click.option("--seeds", type=click.IntRange(1), help="How many. [default: 20; 1 for a model, which may cost money]")
+@click.option(
+    "--seeds", type=click.IntRange(1), help="How many. [default: 20; 1 for a model or a detector, which may be dear]"
+)
 @click.option("--sheet", type=PATH, metavar="FILE", help="The contact sheet. [default: FILE_NAME.png beside the file]")
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON document instead of text.")
 def command(name: str, seeds: int | None, sheet: Path | None, as_json: bool) -> int:
@@ -24,6 +26,7 @@ def command(name: str, seeds: int | None, sheet: Path | None, as_json: bool) -> 
 
     A world or task: shapes and units, the same scene for the same seed, the oracle succeeds, doing nothing and random
     actions do not, a contact sheet. A method or model: it loads, runs without an error, and the gate admits its actions.
+    A detector: what it returns fits the picture and the words, twice the same, and it finds nothing in an empty picture.
     """
     from wonderful_team.api.check import check
 

@@ -87,7 +87,13 @@ def _versions() -> Finding:
     return Finding("versions", not missing, text, f"pip install {' '.join(missing)}" if missing else "")
 
 
-EXTRAS = {"vendors": "pydantic_ai", "report": "pandas matplotlib", "gym": "gymnasium", "ray": "ray"}
+EXTRAS = {
+    "vendors": "pydantic_ai",
+    "report": "pandas matplotlib",
+    "gym": "gymnasium",
+    "ray": "ray",
+    "detectors": "torch transformers",
+}
 """Optional parts, and the modules that each brings."""
 
 

@@ -16,7 +16,8 @@ from wonderful_team.redaction import redact_all
 
 @click.command(
     short_help="Find things in a picture: boxes and points.",
-    epilog='\b\nwonderful-team ground desk.jpg "red cube" "the largest bowl" --area "free area left of the bowl"',
+    epilog='\b\nwonderful-team ground desk.jpg "red cube" "the largest bowl" --area "free area left of the bowl"\n'
+    'wonderful-team ground desk.jpg "red cube" "bowl" --detector classical',
 )
 @click.argument("image", type=PATH)
 @click.argument("descriptions", nargs=-1, metavar="DESCRIPTION...")
@@ -26,7 +27,10 @@ from wonderful_team.redaction import redact_all
 def command(
     common: Common, image: Path, descriptions: tuple[str, ...], area: tuple[str, ...], coco: Path | None
 ) -> int:
-    """Find each described thing: a box and points, or that it is not there."""
+    """Find each described thing: a box and points, or that it is not there.
+
+    With --detector a detector looks instead of the team, and the run folder holds a picture with all its boxes and scores.
+    """
     if not (descriptions or area):
         raise click.UsageError("say what to look for: at least one DESCRIPTION or --area DESCRIPTION")
     from wonderful_team.api.observation import Observation
@@ -36,7 +40,8 @@ def command(
 
     observation = Observation.from_files(image)
     progress = ProgressLine(live=not common.as_json)
-    team = Team(**common.team_arguments(), subscribers=(progress,))
+    looks = {"method": "detector-grounding"} if common.detector is not None and common.method == "team" else {}
+    team = Team(**{**common.team_arguments(), **looks}, subscribers=(progress,))
     progress.header(team)
     made = team.ground(observation, descriptions, area)
     unwritten = []

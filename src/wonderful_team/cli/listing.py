@@ -13,10 +13,12 @@ from wonderful_team.core.filesystem import make_private_folder, write_public
 from wonderful_team.core.text import counted, ending_words, visible
 from wonderful_team.errors import ConfigError, reading
 
-KINDS = ("models", "worlds", "tasks", "suites", "methods", "prompts", "words", "runs")
+KINDS = ("models", "worlds", "tasks", "suites", "methods", "detectors", "prompts", "words", "runs")
 
 
-@click.command(name="list", short_help="List models, worlds, tasks, suites, methods, prompts, words or runs.")
+@click.command(
+    name="list", short_help="List models, worlds, tasks, suites, methods, detectors, prompts, words or runs."
+)
 @click.argument("kind", type=click.Choice(KINDS))
 @click.option(
     "--out", type=PATH, metavar="DIR", help="For runs: where they lie. For prompts: write them there, to edit."
@@ -25,7 +27,7 @@ KINDS = ("models", "worlds", "tasks", "suites", "methods", "prompts", "words", "
 @click.option("--open", "open_page", is_flag=True, help="Open the table of --html.")
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON document instead of text.")
 def command(kind: str, out: Path | None, html: Path | None, open_page: bool, as_json: bool) -> int:
-    """List models, worlds, tasks, suites, methods, prompts, words (that `offline` reads) or runs, each with a line of help."""
+    """List models, worlds, tasks, suites, methods, detectors, prompts, words (that `offline` reads) or runs, each with a line of help."""
     if kind != "runs" and (html is not None or open_page):
         raise click.UsageError("--html and --open go with `list runs`")
     if open_page and html is None:
@@ -36,6 +38,7 @@ def command(kind: str, out: Path | None, html: Path | None, open_page: bool, as_
         "tasks": _tasks,
         "suites": _suites,
         "methods": _methods,
+        "detectors": _detectors,
         "prompts": _prompts,
         "words": _words,
         "runs": _runs,
@@ -100,6 +103,12 @@ def _methods(out: Path | None) -> dict[str, str]:
         **{name: row.words for name, row in METHODS.items()},
         "FILE.py:NAME": "your own: a class with the Policy interface",
     }
+
+
+def _detectors(out: Path | None) -> dict[str, str]:
+    from wonderful_team.registry.detectors import DETECTOR_FORMS, DETECTORS
+
+    return {**{name: row.words for name, row in DETECTORS.items()}, **DETECTOR_FORMS}
 
 
 def _prompts(out: Path | None) -> dict[str, str]:

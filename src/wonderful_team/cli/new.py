@@ -1,4 +1,4 @@
-"""`new`: a world, method, task or model of one's own that runs at once, with a test."""
+"""`new`: a world, method, task, model or detector of one's own that runs at once, with a test."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ from wonderful_team.cli.run_summary import program
 from wonderful_team.core.filesystem import write_public
 from wonderful_team.errors import ConfigError
 
-KINDS = ("world", "method", "task", "model")
+KINDS = ("world", "method", "task", "model", "detector")
 _FILES = Path(__file__).with_name("own")
 
 
 @click.command(
-    short_help="Write a world, method, task or model of your own that runs, with a test.",
+    short_help="Write a world, method, task, model or detector of your own that runs, with a test.",
     epilog="\b\nwonderful-team new task cups\nwonderful-team new method Mine --out methods",
 )
 @click.argument("kind", type=click.Choice(KINDS))

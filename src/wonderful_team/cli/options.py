@@ -47,6 +47,7 @@ class Common:
     local_only: bool
     timeout: float | None
     method: str
+    detector: str | None
     caps: Mapping[str, float]
     concurrency: int
     cache: str | None
@@ -68,6 +69,7 @@ class Common:
             "local_only": self.local_only,
             "timeout": self.timeout,
             "method": self.method,
+            "detector": self.detector,
             "concurrency": self.concurrency,
             "cache": self.cache,
             "cache_file": self.cache_file,
@@ -92,6 +94,7 @@ def common(command: Command) -> Callable[..., Any]:
             local_only=values.pop("local_only"),
             timeout=values.pop("timeout"),
             method=values.pop("method"),
+            detector=values.pop("detector"),
             caps={key: value for key, value in caps.items() if value is not None},
             concurrency=values.pop("concurrency"),
             cache=values.pop("cache"),
@@ -149,7 +152,12 @@ _COMMON: tuple[Callable[[Any], Any], ...] = (
         default="team",
         show_default=True,
         metavar="NAME",
-        help="team, team:paper, team:s1 to team:s8, or FILE.py:NAME.",
+        help="team, team:paper, team:s1 to team:s8, another that `list methods` shows, or FILE.py:NAME.",
+    ),
+    click.option(
+        "--detector",
+        metavar="NAME",
+        help="Who finds things for methods that look with a detector: see `list detectors`. [default: classical]",
     ),
     click.option("--max-calls", type=click.IntRange(1), help="Most calls of models."),
     click.option("--max-tokens", type=click.IntRange(1), help="Most tokens."),

@@ -12,6 +12,7 @@ from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.renamed import renamed_arguments, renamed_attribute
 from wonderful_team.core.values import (
     Answer,
+    Detection,
     GateReport,
     GroundTruthView,
     Instruction,
@@ -56,6 +57,29 @@ class Model(Protocol):
     """
 
     def answer(self, request: Request) -> Any | Awaitable[Any]: ...
+
+
+@runtime_checkable
+class Detector(Protocol):
+    """Anything that finds things in a picture by words: an open-vocabulary detector, or eyes of one's own.
+
+    `detect` may be plain or async. What it is asked for may be there once, several times or not at all: it returns one
+    Detection for each thing it found, in any order, and none for what is not there.
+
+    Attributes:
+        name: For records and pages.
+    """
+
+    name: str
+
+    def detect(self, rgb: Array, words: Sequence[str]) -> Sequence[Detection] | Awaitable[Sequence[Detection]]:
+        """What of these is in a picture.
+
+        Args:
+            rgb: Shape (H, W, 3), uint8, row 0 at the top, read-only.
+            words: One description of a thing each, such as "red block".
+        """
+        ...
 
 
 @runtime_checkable
@@ -248,6 +272,8 @@ __all__ = [
     "Act",
     "Answer",
     "Decision",
+    "Detection",
+    "Detector",
     "Done",
     "Event",
     "GaveUp",

@@ -16,12 +16,13 @@ from wonderful_team.pages.pictures import Album
 from wonderful_team.pages.plans import plans, replans
 from wonderful_team.pages.requests import Asked
 from wonderful_team.pages.running import actions, execution
-from wonderful_team.pages.strips import overviews, targets
+from wonderful_team.pages.strips import detected, overviews, targets
 from wonderful_team.pages.words import brief, money, pretty_name, seconds
 
 __all__ = [
     "actions",
     "before_after",
+    "detected",
     "execution",
     "head",
     "instruction",
@@ -58,6 +59,7 @@ _BADGES = {
     "cached": "answers came from the cache",
     "replayed": "answers were replayed from an earlier run",
     "scripted": "answers were written beforehand",
+    "detector": "a detector said where things are; no grounding team took part",
 }
 
 
@@ -89,6 +91,7 @@ def head(record: dict[str, Any], asked: Sequence[Asked], planted: str = "") -> d
     facts = [
         ("method", outcome.get("method") or settings.get("method")),
         ("model", outcome.get("model") or settings.get("model")),
+        ("detector", settings.get("detector")),
         ("scene", settings.get("scene")),
         ("seed", settings.get("seed")),
         ("time", seconds(record["clock"].get("seconds")) if record["clock"].get("seconds") is not None else None),

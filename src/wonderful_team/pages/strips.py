@@ -140,6 +140,21 @@ def targets(record: dict[str, Any], album: Album, asked: Sequence[Asked]) -> lis
     ]
 
 
+def detected(record: dict[str, Any], album: Album) -> list[dict[str, Any]]:
+    """5: every look of a detector: who, for what, and the picture with all boxes and scores."""
+    return [
+        {
+            "name": ", ".join(
+                f"{key} {value}" if key != "name" else value for key, value in look["detector"].items() if value
+            ),
+            "words": [(words, sum(one["words"] == words for one in look["found"])) for words in look["words"]],
+            "refused": look.get("refused", ""),
+            "drawing": album.image(look["drawn"], f"what {look['detector'].get('name', 'the detector')} found", "wide"),
+        }
+        for look in record["planner"].get("detections", [])
+    ]
+
+
 def _strips(
     record: dict[str, Any], current: dict[str, Any], album: Album, asked: Sequence[Asked]
 ) -> list[dict[str, Any]]:

@@ -76,6 +76,7 @@ def _content(record: dict[str, Any], album: Album) -> dict[str, Any]:
         "overviews": sections.overviews(record, album),
         "story": sections.story(record, asked),
         "plans": sections.plans(record),
+        "detected": sections.detected(record, album),
         "targets": sections.targets(record, album, asked),
         "actions": sections.actions(record),
         "execution": sections.execution(record, album),

@@ -17,8 +17,8 @@ from wonderful_team.core.values import Critique, GroundedTarget, PlannedAction
 from wonderful_team.motion import ground_actions
 from wonderful_team.motion.in_words import numbers_in_words
 from wonderful_team.planning.functions import write_functions
-from wonderful_team.planning.grounding import ENDS, ground_again
-from wonderful_team.planning.jobs import Job
+from wonderful_team.planning.grounding import ground_again
+from wonderful_team.planning.jobs import ENDS, Job
 from wonderful_team.planning.notes import steps_note
 from wonderful_team.planning.plan_loop import PlanState, remember_doubt, resolve, settled_lines, told
 from wonderful_team.planning.session import AgentSession

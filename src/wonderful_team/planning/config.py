@@ -2,13 +2,23 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field, fields, replace
 from typing import Literal, TypeAlias
 
 from wonderful_team.agents import Prompts
 from wonderful_team.errors import ConfigError, UnknownNameError
 
 Mode: TypeAlias = Literal["lean", "paper"]
+Grounding: TypeAlias = Literal["team", "supervisor", "one_call", "detector"]
+"""Who says where targets are."""
+GROUNDINGS: dict[Grounding, str] = {
+    "team": "the grounding team: Manager, Checker and Mover",
+    "supervisor": "the Supervisor: one point for each target",
+    "one_call": "one model call: boxes and points of all targets in one answer, which stands",
+    "detector": "a detector: its surest box for each target",
+}
+REPLACED: dict[Grounding, str] = {"one_call": "single-call-grounding", "detector": "detector-grounding"}
+"""What the methods are called in which something else takes the place of the grounding team."""
 
 
 @dataclass(frozen=True)
@@ -81,16 +91,18 @@ class TeamConfig:
         ablation: A name of SETTINGS.
         strict: A plan that Verification did not approve is refused.
         axes: Label the axes of whole views in `lean` too (for models that point badly).
+        grounding: Who says where targets are: one of GROUNDINGS, `supervisor` only by the settings without the grounding team.
         thorough: `lean` asks every question, however plain the scene: the plan is checked by itself, every box too, and the
             steps are always written by the Supervisor. Runs of earlier releases did so.
 
     Raises:
-        UnknownNameError: No such setting.
-        ConfigError: No such way of working.
+        UnknownNameError: No such setting, or nobody of that name grounds.
+        ConfigError: No such way of working, or a setting that switches members off that are not there.
     """
 
     mode: Mode = "lean"
     ablation: str = "full"
+    grounding: Grounding = "team"
     strict: bool = False
     axes: bool = False
     thorough: bool = False
@@ -102,6 +114,29 @@ class TeamConfig:
             raise ConfigError(f"way of working {self.mode!r}: valid are lean, paper")
         if self.ablation not in ABLATIONS:
             raise UnknownNameError("setting", self.ablation, ABLATIONS)
+        if self.grounding not in ("team", *REPLACED):
+            raise UnknownNameError("grounding", self.grounding, ("team", *REPLACED))
+        off = ABLATIONS[self.ablation]
+        if self.grounding != "team" and not (off.manager and off.checker and off.mover):
+            raise ConfigError(
+                f"grounding {self.grounding!r} takes the place of Manager, Checker and Mover; setting {self.ablation!r} "
+                "switches some of them off: choose one of the two"
+            )
+
+    @property
+    def grounded_by(self) -> Grounding:
+        """Who says where targets are, the settings without the grounding team counted in."""
+        if self.grounding != "team":
+            return self.grounding
+        return "team" if self.members.manager else "supervisor"
+
+    @property
+    def name(self) -> str:
+        """What the method is called."""
+        named = "team" if self.mode == "lean" else f"team:{self.mode}"
+        if self.grounding != "team":
+            named = f"{REPLACED[self.grounding]}{named.removeprefix('team')}"
+        return named if self.ablation == "full" else f"{named}:{self.ablation}"
 
     @property
     def sparing(self) -> bool:
@@ -110,4 +145,6 @@ class TeamConfig:
 
     @property
     def members(self) -> Members:
-        return ABLATIONS[self.ablation]
+        """Who takes part."""
+        members = ABLATIONS[self.ablation]
+        return members if self.grounding == "team" else replace(members, manager=False, checker=False, mover=False)

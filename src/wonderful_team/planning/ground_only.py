@@ -6,11 +6,12 @@ from collections.abc import Sequence
 
 from wonderful_team.agents.scene import SceneShown
 from wonderful_team.core.actions import PICK_PLACE
+from wonderful_team.core.protocols import Detector
 from wonderful_team.core.values import NO_WORKSPACE, GroundedTarget, Instruction, Observation, Plan, Target
 from wonderful_team.errors import BudgetReached, ModelOutputError, NotUnderstoodError, WonderfulTeamError
 from wonderful_team.models.client import ModelClient
 from wonderful_team.planning import TeamConfig, grounding
-from wonderful_team.planning.session import AgentSession, settle
+from wonderful_team.planning.session import AgentSession, needed_detector, settle
 
 STATUS: dict[type[WonderfulTeamError], str] = {NotUnderstoodError: "not_understood", BudgetReached: "budget"}
 
@@ -21,18 +22,14 @@ async def find(
     observation: Observation,
     instruction: Instruction,
     targets: Sequence[Target],
+    detector: Detector | None = None,
 ) -> Plan:
     """A plan that holds nothing but grounded targets; its status is grounded, not_found, not_understood or budget."""
-    session = AgentSession(client, config, instruction.text)
+    session = AgentSession(client, config, instruction.text, detector=needed_detector(config, detector))
     jobs = grounding.make_jobs(session, SceneShown(observation, instruction, PICK_PLACE, NO_WORKSPACE), targets, ())
     status, message, grounded = "grounded", "", {}
     try:
-        if not session.members.manager:
-            grounded = await grounding.ground_by_supervisor(jobs)
-        elif config.mode == "lean":
-            grounded = await grounding.settle_reading(jobs, *await grounding.read_scene(jobs))
-        else:
-            grounded = await grounding.ground_paper(jobs)
+        grounded = await grounding.ground(jobs)
     except (NotUnderstoodError, BudgetReached, ModelOutputError) as error:
         status, message = STATUS.get(type(error), "failed"), str(error)
     finally:

@@ -8,27 +8,24 @@ Source: Wang, Shen & Stadie 2024, arXiv:2407.19094, Algorithm 2.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from typing import Literal, TypeAlias
+from collections.abc import Sequence
 
 from wonderful_team.agents.scene import SceneShown, plan_lines
-from wonderful_team.contracts import LocatePoints, Points, ReadScene, SceneReading, SceneTarget
+from wonderful_team.contracts import SceneReading, SceneTarget
 from wonderful_team.core.geometry import Box
 from wonderful_team.core.pictures import Point
 from wonderful_team.core.together import both, together
 from wonderful_team.core.values import Critique, GroundedTarget, PointRole, Provenance, Subgoal, Target
 from wonderful_team.planning.boxes import BoxFate, judge_together, refine
 from wonderful_team.planning.centres import choose, give_box, propose
-from wonderful_team.planning.jobs import Job
+from wonderful_team.planning.jobs import ENDS, Job, read_scene
 from wonderful_team.planning.judged import said_of
 from wonderful_team.planning.notes import one_line
 from wonderful_team.planning.points import choose_points
+from wonderful_team.planning.replaced import ground_again_otherwise, ground_otherwise
 from wonderful_team.planning.session import AgentSession
 from wonderful_team.planning.spending import target_reason
 
-ENDS: tuple[PointRole, ...] = ("push_end", "place")
-"""Uses of what something is brought to."""
-Fate: TypeAlias = Literal["found", "absent", "gave_up"]
 REFUSED = ("Checker: reject", "not settled")
 """How the lines of a target's story begin that tell of a box that was given up."""
 MOVED_SHARE = 0.15
@@ -81,7 +78,7 @@ async def ground_object(job: Job) -> GroundedTarget:
     for _ in range(1 + job.session.config.bounds.new_centres):
         proposals = await propose(job, "centre")
         if not proposals:
-            return _end(job, "absent" if best is None else "gave_up", best)
+            return job.end("absent" if best is None else "gave_up", best)
         centre = await choose(job, proposals, "centre")
         if centre is None:
             job.reject(proposals, "it is not on the target")
@@ -92,11 +89,11 @@ async def ground_object(job: Job) -> GroundedTarget:
             continue
         fate, box = await refine(job, box)
         if fate == "accepted":
-            return _end(job, "found", box, await choose_points(job, box))
+            return job.end("found", box, await choose_points(job, box))
         if fate == "exhausted":
             best = box
         job.reject([centre], rejection(job, fate))
-    return _end(job, "gave_up", best)
+    return job.end("gave_up", best)
 
 
 async def ground_area(job: Job) -> GroundedTarget:
@@ -104,32 +101,26 @@ async def ground_area(job: Job) -> GroundedTarget:
     for _ in range(1 + job.session.config.bounds.new_centres):
         proposals = await propose(job, "place")
         if not proposals:
-            return _end(job, "absent", None)
+            return job.end("absent", None)
         point = await choose(job, proposals, "place")
         if point is not None:
-            return _end(job, "found", None, {role: point for role in job.target.roles})
+            return job.end("found", None, {role: point for role in job.target.roles})
         job.reject(proposals, "it is not a suitable place")
-    return _end(job, "gave_up", None)
+    return job.end("gave_up", None)
+
+
+async def ground(jobs: Sequence[Job]) -> dict[str, GroundedTarget]:
+    """All targets, by whoever says where they are."""
+    config = jobs[0].session.config
+    if config.grounded_by != "team":
+        return await ground_otherwise(jobs)
+    return await (settle_reading(jobs, *await read_scene(jobs)) if config.mode == "lean" else ground_paper(jobs))
 
 
 def rejection(job: Job, fate: BoxFate) -> str:
     """Why the box at a centre was given up, as the Manager is told."""
     said = f": {job.problem}" if job.problem else ""
     return f"the Checker refused the box there{said}" if fate == "rejected" else f"no box there became right{said}"
-
-
-async def read_scene(jobs: Sequence[Job]) -> tuple[SceneReading, Provenance]:
-    """`lean`, first round: boxes and points of all targets in one answer."""
-    session, scene = jobs[0].session, jobs[0].scene
-    targets = tuple(job.target for job in jobs)
-    view = scene.labelled if session.config.axes else scene.views[0]
-    # Where all targets are plain, the main view alone is enough to find them in.
-    plain = session.config.sparing and not any(target.where or target.part for target in targets)
-    context = () if plain else scene.views[1:]
-    examples = scene.examples(targets, session.config.axes)
-    question = ReadScene(targets, jobs[0].plan, view, context, examples, jobs[0].instruction)
-    answer = await session.ask_whole(question, stage="ground")
-    return answer.value, answer.provenance
 
 
 async def settle_reading(
@@ -193,7 +184,7 @@ def _note_reading(job: Job, reading: SceneReading) -> None:
 async def _settle_one(job: Job, provenance: Provenance) -> GroundedTarget:
     if job.first_box is None:
         job.tell("absent", "the Manager says it is not in the picture", provenance=provenance)
-        return _end(job, "absent", None)
+        return job.end("absent", None)
     first, points = job.first_box, dict(job.first_points)
     job.tell("box", "Manager's first box and points", first, tuple(points.values()), provenance)
     fate, box = await refine(job, first, points)
@@ -206,29 +197,9 @@ async def _settle_one(job: Job, provenance: Provenance) -> GroundedTarget:
     again = [role for role in points if role in stale or role in {wrong.use for wrong in job.wrong_points}]
     if again:
         points |= await choose_points(job, box, again)
-    grounded = _end(job, "found", box, points)
+    grounded = job.end("found", box, points)
     _remember(job, grounded)
     return grounded
-
-
-async def ground_by_supervisor(jobs: Sequence[Job]) -> dict[str, GroundedTarget]:
-    """Grounding team switched off: the Supervisor gives one point per target on the labelled view."""
-    return _by_id(jobs, await together([_point_by_supervisor(job) for job in jobs]))
-
-
-async def _point_by_supervisor(job: Job) -> GroundedTarget:
-    view, said = job.with_rejected(job.scene.labelled)
-    purpose: Literal["centre", "place"] = "place" if job.target.kind == "area" else "centre"
-    question = LocatePoints(
-        job.target, purpose, job.plan, view, job.scene.views[1:], job.examples, 1, said, job.instruction
-    )
-    answer: Points = await job.session.ask(question, stage="ground", branch=job.target.id, role="supervisor")
-    if not answer.points:
-        job.tell("absent", "the Supervisor says it is not in the picture")
-        return _end(job, "absent", None)
-    point = view.frame.point_to_view(answer.points[0].as_tuple)
-    job.tell("point", "the Supervisor's point", points=(point,))
-    return _end(job, "found", None, {role: point for role in job.target.roles})
 
 
 async def ground_again(job: Job, before: GroundedTarget, doubt: Critique) -> GroundedTarget:
@@ -247,16 +218,11 @@ async def ground_again(job: Job, before: GroundedTarget, doubt: Critique) -> Gro
     in_box = before.box is not None and job.session.members.manager and doubt.kind == "wrong_point"
     centre = () if before.box is None else (before.box.centre,)
     job.reject(points if doubt.kind == "wrong_point" else centre or points, f"by Verification: {doubt.question}")
-    if not job.session.members.manager:
-        return await _point_by_supervisor(job)
+    if job.session.config.grounded_by != "team":
+        return await ground_again_otherwise(job)
     if in_box and before.box is not None:
-        return _end(job, "found", before.box, await choose_points(job, before.box))
+        return job.end("found", before.box, await choose_points(job, before.box))
     return await _ground_one(job)
-
-
-def _end(job: Job, status: Fate, box: Box | None, points: Mapping[PointRole, Point] | None = None) -> GroundedTarget:
-    chosen: dict[str, Point] = {role: point for role, point in (points or {}).items()}
-    return GroundedTarget(job.target, status, job.scene.view.id, box, chosen, tuple(job.history))
 
 
 def _remember(job: Job, grounded: GroundedTarget) -> None:

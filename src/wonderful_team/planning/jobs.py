@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Literal
+from typing import Literal, TypeAlias
 
 from wonderful_team.agents.scene import SceneShown
-from wonderful_team.contracts import ShownSlot, Strip, WrongPoint
+from wonderful_team.contracts import ReadScene, SceneReading, ShownSlot, Strip, WrongPoint
 from wonderful_team.core.geometry import Box
 from wonderful_team.core.pictures import Axes, BoxMark, Picture, Point, PointMark
-from wonderful_team.core.values import Answer, GroundingEvent, PointRole, Provenance, Target
+from wonderful_team.core.values import Answer, GroundedTarget, GroundingEvent, PointRole, Provenance, Target
 from wonderful_team.images import crop, edge_strips
 from wonderful_team.planning.session import AgentSession
+
+ENDS: tuple[PointRole, ...] = ("push_end", "place")
+"""Uses of what something is brought to."""
+Fate: TypeAlias = Literal["found", "absent", "gave_up"]
 
 
 @dataclass(frozen=True)
@@ -105,3 +109,22 @@ class Job:
 
     def strips(self, box: Box) -> tuple[Strip, ...]:
         return tuple(Strip(edge, side, cut) for (edge, side), cut in edge_strips(self.scene.view, box).items())
+
+    def end(self, status: Fate, box: Box | None, points: Mapping[PointRole, Point] | None = None) -> GroundedTarget:
+        """How the target was grounded in the end; box and points are view pixels."""
+        chosen: dict[str, Point] = {role: point for role, point in (points or {}).items()}
+        return GroundedTarget(self.target, status, self.scene.view.id, box, chosen, tuple(self.history))
+
+
+async def read_scene(jobs: Sequence[Job]) -> tuple[SceneReading, Provenance]:
+    """Boxes and points of all targets in one answer."""
+    session, scene = jobs[0].session, jobs[0].scene
+    targets = tuple(job.target for job in jobs)
+    view = scene.labelled if session.config.axes else scene.views[0]
+    # Where all targets are plain, the main view alone is enough to find them in.
+    plain = session.config.sparing and not any(target.where or target.part for target in targets)
+    context = () if plain else scene.views[1:]
+    examples = scene.examples(targets, session.config.axes)
+    question = ReadScene(targets, jobs[0].plan, view, context, examples, jobs[0].instruction)
+    answer = await session.ask_whole(question, stage="ground")
+    return answer.value, answer.provenance

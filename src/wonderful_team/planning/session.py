@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 import asyncio
+import time
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
 from wonderful_team.agents import build_request
 from wonderful_team.agents.request import role_for
 from wonderful_team.contracts import QUESTIONS, MemoryEntry, Question, Remember
-from wonderful_team.core.values import Answer, Note
-from wonderful_team.errors import ModelOutputError
+from wonderful_team.core.protocols import Detector
+from wonderful_team.core.values import Answer, Detection, DetectorRun, Note, View
+from wonderful_team.detectors import WITHIN_S, detect, found_words, identity_of, name_of
+from wonderful_team.errors import ConfigError, DetectorCodeError, ModelOutputError, NotUnderstoodError
 from wonderful_team.models.client import ModelClient
 from wonderful_team.planning.config import Members, TeamConfig
 from wonderful_team.planning.memory import Notebooks, SystemMemory
@@ -26,11 +30,13 @@ class AgentSession:
 
     Attributes:
         attempt: Number of the plan within the trial; part of every request's id.
+        detector: Who finds things, where a detector takes the place of the grounding team.
     """
 
     client: ModelClient
     config: TeamConfig
     instruction: str
+    detector: Detector | None = None
     notebooks: Notebooks = field(default_factory=Notebooks)
     memory: SystemMemory = field(default_factory=SystemMemory)
     attempt: int = 0
@@ -68,6 +74,35 @@ class AgentSession:
         said = note_of(question, answer.value)
         write_down(Note(question.contract, said, "notebook") if said else None)
         return answer
+
+    async def look(self, view: View, words: Sequence[str]) -> tuple[Detection, ...]:
+        """What the detector finds in a view; told to subscribers.
+
+        Raises:
+            NotUnderstoodError: It refuses some of the words.
+            DetectorCodeError: It broke, or returned what are no detections.
+            BudgetReached: The cap on seconds was met.
+        """
+        assert self.detector is not None
+        asked, started = tuple(dict.fromkeys(words)), time.monotonic()
+        budget = self.client.budget
+        left = budget.seconds_left
+        try:
+            found = await detect(
+                self.detector, view.rgb, asked, within_s=WITHIN_S if left is None else min(WITHIN_S, max(left, 0.001))
+            )
+        except DetectorCodeError as error:
+            if left is not None and not budget.seconds_left:
+                raise budget.time_is_up(f"looking with detector {name_of(self.detector)!r}") from error
+            raise
+        except NotUnderstoodError as error:
+            run = DetectorRun(identity_of(self.detector), view, asked, (), time.monotonic() - started, str(error))
+            self.client.tell("detector", run.detector["name"], run)
+            raise
+        run = DetectorRun(identity_of(self.detector), view, asked, found, time.monotonic() - started)
+        self.client.tell("detector", run.detector["name"], run)
+        self.stage("detected", f"{run.detector['name']}: {found_words(found, asked)}")
+        return found
 
     def note(self, role: str, key: str, text: str) -> None:
         """Write a line into a role's notebook that no answer of its own brought."""
@@ -121,6 +156,19 @@ class AgentSession:
 
     def warn(self, text: str) -> None:
         self.client.tell("warning", "planning", text)
+
+
+def needed_detector(config: TeamConfig, detector: Detector | None) -> Detector | None:
+    """The detector where the team grounds with one; None elsewhere.
+
+    Raises:
+        ConfigError: It is needed and not there.
+    """
+    if config.grounding != "detector":
+        return None
+    if detector is None:
+        raise ConfigError("grounding 'detector' needs a detector: anything with a name and detect(rgb, words)")
+    return detector
 
 
 async def settle(session: AgentSession) -> None:

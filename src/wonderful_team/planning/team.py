@@ -11,7 +11,7 @@ from wonderful_team.core.actions import Vocabulary
 from wonderful_team.core.caps import Caps
 from wonderful_team.core.pictures import Point
 from wonderful_team.core.plan_endings import ENDS_A_PLAN, ended_by
-from wonderful_team.core.protocols import Act, Decision, Done, GaveUp, Model, Situation, Subscriber
+from wonderful_team.core.protocols import Act, Decision, Detector, Done, GaveUp, Model, Situation, Subscriber
 from wonderful_team.core.text import counted
 from wonderful_team.core.together import both
 from wonderful_team.core.values import (
@@ -25,15 +25,17 @@ from wonderful_team.core.values import (
     Usage,
     Verdict,
 )
+from wonderful_team.detectors import name_of
 from wonderful_team.errors import ActionRefusedError, ConfigError, GeometryError, NotFoundError
 from wonderful_team.models.budget import Budget
 from wonderful_team.models.client import DEADLINE_S, ModelClient
 from wonderful_team.planning import acting, endings, grounding, judging, plan_loop
 from wonderful_team.planning.config import TeamConfig
 from wonderful_team.planning.functions import write_functions
+from wonderful_team.planning.jobs import read_scene
 from wonderful_team.planning.looking import done_lines, first_part, is_uncertain
 from wonderful_team.planning.plan_loop import PlanState
-from wonderful_team.planning.session import AgentSession, settle
+from wonderful_team.planning.session import AgentSession, needed_detector, settle
 
 Until: TypeAlias = Literal["draft", "checked", "grounded", "actions"]
 UNTIL: tuple[Until, ...] = ("draft", "checked", "grounded", "actions")
@@ -54,6 +56,10 @@ class TeamPolicy:
         config: Way of working, setting, bounds, words.
         caps: Upper limits on calls, tokens, seconds and money, per trial.
         subscribers: Told of everything that happens.
+        detector: Who finds things where `config.grounding` is "detector".
+
+    Raises:
+        ConfigError: A detector is needed and not there.
     """
 
     def __init__(
@@ -65,11 +71,11 @@ class TeamPolicy:
         subscribers: Sequence[Subscriber] = (),
         concurrency: int = 8,
         deadline_s: float = DEADLINE_S,
+        detector: Detector | None = None,
     ) -> None:
         self.config = config or TeamConfig()
-        self.name = "team" if self.config.mode == "lean" else "team:paper"
-        if self.config.ablation != "full":
-            self.name += f":{self.config.ablation}"
+        self.name = self.config.name
+        self._detector = needed_detector(self.config, detector)
         self._caps = caps or Caps()
         self._client = ModelClient(
             model,
@@ -100,7 +106,15 @@ class TeamPolicy:
     def setting(self) -> Mapping[str, str]:
         """How the team is set up, for the record."""
         config = self.config
-        return {"way": config.mode, "members": config.ablation, "prompts": config.prompts.hash}
+        told = {"way": config.mode, "members": config.ablation, "prompts": config.prompts.hash}
+        if config.grounding != "team":
+            told["grounding"] = config.grounding
+        if self._detector is not None:
+            told["detector"] = name_of(self._detector)
+        return told
+
+    def _begin(self, instruction: Instruction) -> AgentSession:
+        return AgentSession(self._client, self.config, instruction.text, self._detector)
 
     def reset(self) -> None:
         """Forget the trial: notebooks, memory, budget."""
@@ -134,7 +148,7 @@ class TeamPolicy:
         if until not in UNTIL:
             raise ConfigError(f"until {until!r}: valid are {', '.join(UNTIL)}")
         scene = SceneShown(observation, instruction, vocabulary, limits, facts, tuple(keep_out))
-        session = self._session or AgentSession(self._client, self.config, instruction.text)
+        session = self._session or self._begin(instruction)
         self._session = session
         start = Plan(instruction, "failed", keep_out=tuple(keep_out), scene_hash=observation.hash, parent=parent)
         progress = _Progress(start)
@@ -227,11 +241,11 @@ class TeamPolicy:
     ) -> tuple[Plan, list[GroundedTarget], PlanState | None]:
         session.notebooks.begin_plan()
         jobs = grounding.make_jobs(session, scene, state.targets, state.subgoals)
-        lean = self.config.mode == "lean" and session.members.manager
+        lean = self.config.mode == "lean" and self.config.grounded_by == "team"
         needs_paths = any(subgoal.function for subgoal in state.subgoals)
         steps = acting.steps_of_plan(session, scene, state) if until == "actions" else None
         if lean:
-            reading, provenance = await grounding.read_scene(jobs)
+            reading, provenance = await read_scene(jobs)
             await session.memory.barrier()
             settling = grounding.settle_reading(jobs, reading, provenance)
             unwritten = until == "actions" and steps is None and not needs_paths
@@ -240,10 +254,8 @@ class TeamPolicy:
                 grounded, steps = await both(settling, acting.write_steps(session, scene, state, ()))
             else:
                 grounded = await settling
-        elif session.members.manager:
-            grounded = await grounding.ground_paper(jobs)
         else:
-            grounded = await grounding.ground_by_supervisor(jobs)
+            grounded = await grounding.ground(jobs)
         progress.plan = replace(progress.plan, grounded=grounded, status="grounded")
         session.stage("grounded", "   ".join(f"{name} {_named(item)}" for name, item in grounded.items()))
         absent = [item for item in grounded.values() if item.status != "found"]
@@ -313,7 +325,8 @@ class TeamPolicy:
         return await self._next_plan(situation, tuple(f"The safety gate refused: {reason}" for reason in reasons), plan)
 
     def _take_over(self, situation: Situation, plan: Plan) -> Decision:
-        self._session = AgentSession(self._client, self.config, situation.instruction.text, attempt=1)
+        self._session = self._begin(situation.instruction)
+        self._session.attempt = 1
         self._last = (_scene_of(situation), plan)
         return Act(plan.actions, plan)
 

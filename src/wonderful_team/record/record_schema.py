@@ -222,6 +222,28 @@ class RequestEntry(_Part):
     failed: FailedEntry | None = None
 
 
+class DetectionEntry(_Part):
+    """One thing that a detector found [px of the view]; the mask as COCO's uncompressed run lengths."""
+
+    words: str
+    box: tuple[float, float, float, float]
+    score: float = Field(ge=0, le=1)
+    mask: list[int] | None
+
+
+class DetectorEntry(_Part):
+    """One look of a detector at a view: who, at what (a key of `files`), for which words, what it found, drawn (another key), or why it refused."""
+
+    detector: dict[str, str]
+    view: str
+    view_id: str
+    size_px: tuple[int, int]
+    words: list[str]
+    found: list[DetectionEntry]
+    drawn: str
+    refused: str = ""
+
+
 class Planner(_Part):
     """All that the planner was asked, answered and did, without clock times."""
 
@@ -239,6 +261,7 @@ class Planner(_Part):
     verdicts: list[VerdictsEntry]
     warnings: list[str]
     crashes: list[CrashEntry] = []
+    detections: list[DetectorEntry] = []
     limits: dict[str, Any] | None = None
     requests: list[RequestEntry]
 
@@ -258,6 +281,7 @@ class Clock(_Part):
     stages: list[float]
     gates: list[float]
     executions: list[float]
+    detections: list[float] = []
     ended: str | None = None
     seconds: float | None = None
     usage_by_role: dict[str, dict[str, Any]] = {}

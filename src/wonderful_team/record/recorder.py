@@ -23,6 +23,7 @@ from wonderful_team.errors import ActionRefusedError, BudgetReached, FileNotWrit
 from wonderful_team.images import Ticks, action_arrows, action_turns, overview, swept_widths, to_png
 from wonderful_team.images.keep_out import outlines
 from wonderful_team.record import entries
+from wonderful_team.record.detections import detector_entry
 from wonderful_team.record.picture_store import DRAWING, PictureStore
 from wonderful_team.record.plan_file import plan_to_json
 from wonderful_team.record.record_schema import RECORD_SCHEMA_VERSION
@@ -91,6 +92,7 @@ class Recorder:
             "verdicts": self._on_verdicts,
             "warning": self._on_warning,
             "crash": self._on_crash,
+            "detector": self._on_detector,
             "done": self._on_done,
         }
         # Before anything has happened a folder that cannot be written to ends the run.
@@ -295,6 +297,10 @@ class Recorder:
         text = str(event.content)
         self._planner["warnings"].append(text)
         self._log("warning", text)
+
+    def _on_detector(self, event: Event) -> None:
+        self._planner.setdefault("detections", []).append(detector_entry(event.content, self._store))
+        self._clock.setdefault("detections", []).append(round(event.content.seconds, 4))
 
     def _on_crash(self, event: Event) -> None:
         """The user's own code raised: its traceback is kept, line by line in the log."""

@@ -1,6 +1,15 @@
 """Names to things: models, methods, worlds and tasks. The only place where a string picks an implementation."""
 
-from wonderful_team.registry.methods import METHODS, MethodSetup, TeamMode, load_method, make_method, team_mode
+from wonderful_team.registry.detectors import DEFAULT_DETECTOR, DETECTORS, detector_label, make_detector
+from wonderful_team.registry.methods import (
+    METHODS,
+    MethodSetup,
+    TeamMode,
+    load_method,
+    looks_with_detector,
+    make_method,
+    team_mode,
+)
 from wonderful_team.registry.models import (
     DEFAULT_ROLE,
     MODEL_FORMS,
@@ -23,7 +32,9 @@ from wonderful_team.registry.worlds import (
 )
 
 __all__ = [
+    "DEFAULT_DETECTOR",
     "DEFAULT_ROLE",
+    "DETECTORS",
     "METHODS",
     "MODELS",
     "MODEL_FORMS",
@@ -31,8 +42,11 @@ __all__ = [
     "TeamMode",
     "WORLDS",
     "check_ready",
+    "detector_label",
     "load_method",
+    "looks_with_detector",
     "made_in_main",
+    "make_detector",
     "make_method",
     "make_model",
     "make_models",

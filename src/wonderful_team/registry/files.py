@@ -93,14 +93,30 @@ def split_arguments(name: str) -> tuple[str, dict[str, str]]:
         ConfigError: What stands behind the question mark is not NAME=VALUE.
     """
     file, colon, rest = name.partition(".py:")
-    attribute, mark, words = rest.partition("?")
-    if not (colon and mark):
+    if not colon:
         return name, {}
-    pairs = [word.partition("=") for word in words.split("&")]
+    attribute, arguments = named_arguments(rest, name)
+    return f"{file}.py:{attribute}", arguments
+
+
+def named_arguments(words: str, whole: str) -> tuple[str, dict[str, str]]:
+    """`NAME?address=10.0.0.5&speed=0.2` in two: what stands before the question mark, and the arguments behind it.
+
+    Args:
+        words: What is read.
+        whole: What the user wrote, for the message.
+
+    Raises:
+        ConfigError: What stands behind the question mark is not NAME=VALUE.
+    """
+    name, mark, rest = words.partition("?")
+    if not mark:
+        return words, {}
+    pairs = [word.partition("=") for word in rest.split("&")]
     for key, equals, _ in pairs:
         if not (key.isidentifier() and equals):
-            raise ConfigError(f"{name!r}: {words!r} is not NAME=VALUE; valid: FILE.py:NAME?address=10.0.0.5&speed=0.2")
-    return f"{file}.py:{attribute}", {key: value for key, _, value in pairs}
+            raise ConfigError(f"{whole!r}: {rest!r} is not NAME=VALUE; valid: {name}?address=10.0.0.5&speed=0.2")
+    return name, {key: value for key, _, value in pairs}
 
 
 def make_from_file(
@@ -132,19 +148,32 @@ def make_from_file(
         return thing
     making = f"{whose}: {thing.__name__}(…)"
     with code_of(making, fault):
-        arguments = _arguments(thing, offers, given, whose)
+        arguments = arguments_of(thing, offers, given, whose)
         return deadline.bounded(making, lambda: thing(**arguments))
 
 
-def _arguments(thing: Any, offers: Mapping[str, Any], given: Mapping[str, Any], whose: str) -> dict[str, Any]:
-    """What a constructor is called with: what is given by name, and of `offers` what it asks for."""
+def arguments_of(
+    thing: Any, offers: Mapping[str, Any], given: Mapping[str, Any], whose: str, called: str = ""
+) -> dict[str, Any]:
+    """What a constructor or function is called with: what is given by name, and of `offers` what it asks for.
+
+    Args:
+        thing: What is called.
+        offers: Given to parameters that ask for them by name.
+        given: By name; texts become the numbers and truth values that annotations ask for.
+        whose: Begins messages.
+        called: What the user knows it as; default its own name.
+
+    Raises:
+        ConfigError: It needs a parameter that nobody gives, has none of a name, or a text is no number.
+    """
     parameters = inspect.signature(thing).parameters.values()
     named = {one.name: one for one in parameters if one.kind in (one.POSITIONAL_OR_KEYWORD, one.KEYWORD_ONLY)}
     takes_any = any(one.kind is one.VAR_KEYWORD for one in parameters)
     if not takes_any:
         for key in given:
             if key not in named:
-                raise UnknownNameError(f"argument of {thing.__name__}", key, named)
+                raise UnknownNameError(f"argument of {called or thing.__name__}", key, named)
     held = {key: offers[key] for key in named if key in offers}
     held |= {key: _typed(value, named.get(key), whose) for key, value in given.items()}
     for parameter in parameters:

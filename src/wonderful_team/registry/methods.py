@@ -8,24 +8,26 @@ from typing import cast
 
 from wonderful_team.agents.role import Role
 from wonderful_team.core.caps import Caps
-from wonderful_team.core.protocols import Model, Policy, Subscriber
+from wonderful_team.core.protocols import Detector, Model, Policy, Subscriber
 from wonderful_team.core.renamed import RenamedKeys
 from wonderful_team.errors import ConfigError, MethodCodeError, UnknownNameError
 from wonderful_team.models.budget import Budget
 from wonderful_team.models.client import DEADLINE_S, ModelClient
 from wonderful_team.planning import ABLATIONS, TeamConfig, TeamPolicy
 from wonderful_team.planning.baselines import direct, pivot
-from wonderful_team.planning.config import Mode
+from wonderful_team.planning.config import Grounding, Mode
+from wonderful_team.registry.detectors import make_detector
 from wonderful_team.registry.files import is_file_name, make_from_file
 from wonderful_team.registry.models import DEFAULT_ROLE
 
 
 @dataclass(frozen=True)
 class TeamMode:
-    """What a `team…` name means: the way of working and which members are switched off."""
+    """What a `team…` name means: the way of working, which members are switched off, and who says where targets are."""
 
     mode: Mode
     ablation: str = "full"
+    grounding: Grounding = "team"
 
 
 @dataclass(frozen=True)
@@ -37,6 +39,7 @@ class MethodSetup:
         rest: For roles that the team has not.
         config: How the team works; None for every other method.
         deadline_s: Longest wait for one answer, unless the model itself may take longer.
+        detector: Makes the detector that was named, for methods that look with one; weights are loaded once.
     """
 
     models: Mapping[str, Model]
@@ -46,6 +49,7 @@ class MethodSetup:
     concurrency: int = 8
     config: TeamConfig | None = None
     deadline_s: float = DEADLINE_S
+    detector: Callable[[], Detector] = make_detector
 
     def client(self) -> ModelClient:
         """Where a method asks its models: capped, and told to subscribers."""
@@ -69,6 +73,7 @@ class MethodRow:
         team: What its name says about the team; None for a rival.
         roles: A rival's own roles.
         privileged: It is told of a simulator's truth.
+        detects: It looks with a detector (`--detector`).
     """
 
     words: str
@@ -76,6 +81,7 @@ class MethodRow:
     team: TeamMode | None = None
     roles: tuple[Role, ...] = ()
     privileged: bool = False
+    detects: bool = False
 
 
 def _team(setup: MethodSetup) -> Policy:
@@ -87,6 +93,7 @@ def _team(setup: MethodSetup) -> Policy:
         subscribers=setup.subscribers,
         concurrency=setup.concurrency,
         deadline_s=setup.deadline_s,
+        detector=setup.detector() if setup.config is not None and setup.config.grounding == "detector" else None,
     )
 
 
@@ -105,6 +112,17 @@ METHODS: dict[str, MethodRow] = {
         "the whole team, lean: few waiting rounds, the paper's loop only for boxes that fail", _team, TeamMode("lean")
     ),
     "team:paper": MethodRow("the whole team, the algorithms as published", _team, TeamMode("paper")),
+    "single-call-grounding": MethodRow(
+        "the team, the grounding team replaced by one model call that gives all boxes and points",
+        _team,
+        TeamMode("lean", grounding="one_call"),
+    ),
+    "detector-grounding": MethodRow(
+        "the team, the grounding team replaced by a detector (--detector)",
+        _team,
+        TeamMode("lean", grounding="detector"),
+        detects=True,
+    ),
     **{
         f"{prefix}:{name}": MethodRow(
             f"{words} ablation setting {name[1:]}: {members.words}", _team, TeamMode(mode, name)
@@ -123,6 +141,11 @@ METHODS: dict[str, MethodRow] = {
         roles=(pivot.PLANNER, pivot.SELECTOR),
     ),
 }
+
+
+def looks_with_detector(name: str) -> bool:
+    """Whether a method looks with a detector; one of the user's own may."""
+    return name not in METHODS or METHODS[name].detects
 
 
 def team_mode(name: str) -> TeamMode | None:
@@ -144,16 +167,21 @@ def make_method(name: str, setup: MethodSetup) -> Policy:
     Raises:
         ConfigError: A file's object has no `decide(situation)` or no name.
     """
-    return load_method(name, setup.client()) if is_file_name(name) else METHODS[name].make(setup)
+    if is_file_name(name):
+        return load_method(name, setup.client(), setup.detector)
+    return METHODS[name].make(setup)
 
 
-def load_method(name: str, client: ModelClient) -> Policy:
-    """A method from a user's file. Its class may ask for `client` by parameter name: questions asked there are budgeted and recorded.
+def load_method(name: str, client: ModelClient, detector: Callable[[], Detector] = make_detector) -> Policy:
+    """A method from a user's file. Its class may ask by parameter name for `client`, where questions are budgeted and recorded, and
+    for `make_detector`, a function that gives the chosen detector.
 
     Raises:
         ConfigError: The object has no `decide(situation)` or no name.
     """
-    made = make_from_file(name, "method", RenamedKeys({"client": client}, {"door": "client"}), MethodCodeError)
+    made = make_from_file(
+        name, "method", RenamedKeys({"client": client, "make_detector": detector}, {"door": "client"}), MethodCodeError
+    )
     if not callable(getattr(made, "decide", None)):
         raise ConfigError(f"method {name!r} needs a method decide(situation); {type(made).__name__} has none")
     if not isinstance(getattr(made, "name", None), str):

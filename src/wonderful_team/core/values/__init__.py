@@ -1,6 +1,7 @@
 """The values that flow through the system: frozen, checked once when built, arrays read-only."""
 
 from wonderful_team.core.values.content import content_hash, file_hash
+from wonderful_team.core.values.detection import Detection, DetectorRun, mask_from_runs, mask_to_runs
 from wonderful_team.core.values.ground_truth import GroundTruthView, TrueThing
 from wonderful_team.core.values.limits import NO_WORKSPACE, KeepOut, Limits
 from wonderful_team.core.values.observation import Instruction, Observation, RobotState, Slot, SlotKind, View
@@ -34,6 +35,8 @@ __all__ = [
     "Alike",
     "Answer",
     "Critique",
+    "Detection",
+    "DetectorRun",
     "GateCheck",
     "GateReport",
     "GroundTruthView",
@@ -71,6 +74,8 @@ __all__ = [
     "Words",
     "content_hash",
     "file_hash",
+    "mask_from_runs",
+    "mask_to_runs",
     "refusal_words",
     "size_problem",
 ]

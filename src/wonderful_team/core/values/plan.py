@@ -19,7 +19,9 @@ from wonderful_team.core.values.content import content_hash
 from wonderful_team.core.values.limits import KeepOut
 from wonderful_team.core.values.observation import Instruction
 
-Provenance: TypeAlias = Literal["model", "offline", "simulated", "scripted", "cached", "injected", "replayed", "user"]
+Provenance: TypeAlias = Literal[
+    "model", "offline", "simulated", "scripted", "cached", "injected", "replayed", "user", "detector"
+]  # fmt: skip
 PointRole: TypeAlias = Literal["pick", "place", "push_start", "push_end", "grasp"]
 Alike: TypeAlias = Literal["both", "shape", "surface"]
 """What a thing has in common with the pictures that it is like: shape and surface, or one of the two."""

@@ -1,0 +1,1 @@
+"""Detectors: how any is asked, where to act on what it found, and those of `transformers`."""

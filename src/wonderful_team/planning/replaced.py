@@ -29,13 +29,13 @@ from typing import Literal
 from wonderful_team.contracts import LocatePoints, Points, SceneTarget
 from wonderful_team.core.geometry import Box
 from wonderful_team.core.pictures import Point
+from wonderful_team.core.together import together
 from wonderful_team.core.values import Detection, GroundedTarget, PointRole, Provenance, Target, View
 from wonderful_team.detectors import act_at, name_of
 from wonderful_team.errors import NotUnderstoodError
 from wonderful_team.planning.config import Grounding
 from wonderful_team.planning.jobs import ENDS, Job, read_scene
 from wonderful_team.planning.session import AgentSession
-from wonderful_team.planning.together import together
 
 SAME_BOX = 0.5
 """Two boxes are one thing from this intersection over union on."""

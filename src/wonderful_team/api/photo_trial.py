@@ -108,10 +108,10 @@ def _by_own(
     answers = list(caller.wait_for(policy.locate(seen, list(words))))
     if len(answers) != len(words):
         raise ConfigError(f"method {method.name!r}: locate gave {len(answers)} answers to {len(words)} descriptions")
-    return [_located(answer, method.name) for answer in answers]
+    return [located(answer, method.name) for answer in answers]
 
 
-def _located(answer: Any, name: str) -> Located:
+def located(answer: Any, name: str) -> Located:
     if answer is None:
         return Located()
     numbers = tuple(float(value) for value in (answer.as_tuple if isinstance(answer, Box) else answer))

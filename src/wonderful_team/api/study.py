@@ -24,6 +24,7 @@ from wonderful_team.evals.store import Store
 from wonderful_team.evals.study import StudyResult, run_study, started_by_spawn
 from wonderful_team.evals.suites import PARTITIONS, Suite, all_suites, read_seeds, resolve
 from wonderful_team.evals.summary import Summary, summarise
+from wonderful_team.evals.toy import is_toy
 from wonderful_team.evals.trials import Condition, RunSettings, TrialRow, TrialSpec
 from wonderful_team.evals.workers import run_safely
 from wonderful_team.models.cache import CacheMode
@@ -350,6 +351,10 @@ def _check_scenes(suites: Sequence[Suite], tiers: Sequence[str]) -> None:
         if task.endswith(".json"):
             if kinds:
                 raise ConfigError(f"--perturb: {task} is photos, and no tier is made of photos")
+            continue
+        if is_toy(task):
+            if kinds:
+                raise ConfigError(f"--perturb: no tier is made of the toy table ({task})")
             continue
         if is_file_name(task):
             registry.make_world(task).close()

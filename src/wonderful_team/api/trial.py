@@ -20,6 +20,7 @@ from wonderful_team.agents import ROLES
 from wonderful_team.api.method import Method
 from wonderful_team.api.photo_trial import run_photo
 from wonderful_team.api.rollout import rollout
+from wonderful_team.api.toy_trial import run_toy
 from wonderful_team.api.trial_setup import UsageCounter, fingerprint, method_options, prepared
 from wonderful_team.core.actions import Action
 from wonderful_team.core.deadline import limited
@@ -28,6 +29,7 @@ from wonderful_team.core.protocols import Policy, World, facts_of, privileged
 from wonderful_team.core.values import Instruction, Observation, StepReport, Trial, Usage, View
 from wonderful_team.errors import ConfigError
 from wonderful_team.evals.controls import CONTROLS, make_control
+from wonderful_team.evals.toy import is_toy
 from wonderful_team.evals.trials import Condition, RunSettings, TrialRow, TrialSpec
 from wonderful_team.registry.files import check_names_no_code, is_file_name
 from wonderful_team.registry.role_models import REST, choice_of
@@ -48,6 +50,8 @@ def run_trial(spec: TrialSpec, settings: RunSettings) -> TrialRow:
 def _trial(spec: TrialSpec, settings: RunSettings) -> TrialRow:
     if spec.task.endswith(".json"):
         return run_photo(spec, settings)
+    if is_toy(spec.task):
+        return run_toy(spec, settings)
     started = time.monotonic()
     world = make_scene(spec)
     try:

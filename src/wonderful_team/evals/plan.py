@@ -11,6 +11,7 @@ from typing import Any
 from wonderful_team.errors import ConfigError
 from wonderful_team.evals.names import CONTROLS, NO_MODEL
 from wonderful_team.evals.suites import Suite, default_seeds
+from wonderful_team.evals.toy import is_toy
 from wonderful_team.evals.trials import Condition, TrialSpec
 
 OFFLINE = "offline"
@@ -72,7 +73,7 @@ class StudyPlan:
     def conditions(self, suite: Suite) -> tuple[Condition, ...]:
         """What is compared on a suite; controls last."""
         replans = suite.protocol.replans if self.replans is None else self.replans
-        bounds = [] if of_photos(suite) else [name for name in self.controls if name in CONTROLS]
+        bounds = [] if of_pictures(suite) else [name for name in self.controls if name in CONTROLS]
         asked = []
         for perturb in self.perturb:
             asked += [self._condition(*names, perturb, replans) for names in self._named()]
@@ -146,6 +147,11 @@ class StudyPlan:
 def of_photos(suite: Suite) -> bool:
     """Whether a suite is photos with boxes: scenes without a simulator."""
     return suite.name.endswith(".json")
+
+
+def of_pictures(suite: Suite) -> bool:
+    """Whether nothing acts in a suite: photos, and questions about the toy table."""
+    return of_photos(suite) or all(is_toy(task) for task in suite.tasks)
 
 
 def _is_repeatable(condition: Condition) -> bool:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from wonderful_team.errors import ConfigError, UnknownNameError
+from wonderful_team.evals.toy import BOX_KINDS, BOXCHECK, POINTING
 from wonderful_team.evals.trials import DEVELOPMENT_BELOW
 
 VIMA_TASKS = (
@@ -76,6 +77,14 @@ def all_suites(known_tasks: Sequence[str], partitions: Mapping[str, Sequence[str
         suites["fruit"] = Suite(
             "fruit", fruit, IMPLICIT_GOAL, "sort fruits by colour: the paper's implicit goal, 4 variations"
         )
+    suites["pointing"] = Suite(
+        "pointing", (POINTING,), Protocol("toy table: 100 pictures, one question each", 100, 0),
+        "point at a circle on the toy table: the paper's Appendix F.1",
+    )  # fmt: skip
+    suites["boxcheck"] = Suite(
+        "boxcheck", tuple(f"{BOXCHECK}{kind}" for kind in BOX_KINDS), Protocol("toy table: 25 boxes of each of 4 kinds", 25, 0),
+        "judge boxes on the toy table: the paper's Appendix F.2",
+    )  # fmt: skip
     return suites
 
 

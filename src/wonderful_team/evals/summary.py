@@ -12,6 +12,7 @@ from wonderful_team.core.text import counted
 from wonderful_team.evals.controls import CONTROLS, ORACLE, control_faults
 from wonderful_team.evals.pairing import Pair, pair
 from wonderful_team.evals.plan import OFFLINE
+from wonderful_team.evals.toy import is_toy
 from wonderful_team.evals.trials import DEVELOPMENT_BELOW, Condition, Row, TrialRow
 
 SENTENCES = 3
@@ -241,7 +242,7 @@ class Summary:
         if (
             self.compared
             and not any(one.method in (ORACLE,) for one in self.bounds)
-            and not all(t.endswith(".json") for t in self.tasks)
+            and not all(task.endswith(".json") or is_toy(task) for task in self.tasks)
         ):
             found.append("controls were refused: nothing here shows that the scorers can tell success from failure")
         return found

@@ -91,7 +91,7 @@ def marked_scene(
     for centre, colour, shape in zip(
         _places(rng, size_px, radius, len(COLOURS) - absent), colours, shapes, strict=False
     ):
-        mask = _mask(size_px, centre, radius, SHAPES[shape])
+        mask = shape_mask(size_px, centre, radius, SHAPES[shape])
         rgb[mask] = COLOURS[colour]
         rows, columns = np.nonzero(mask)
         box = Box(float(columns.min()), float(rows.min()), float(columns.max() + 1), float(rows.max() + 1))
@@ -128,7 +128,7 @@ SHAPES: dict[str, Callable[[Array, Array, float], Array]] = {
 """Shapes whose middle is the middle of their box, so that "the middle" means one thing."""
 
 
-def _mask(
+def shape_mask(
     size_px: tuple[int, int], centre: Point, radius: float, shape: Callable[[Array, Array, float], Array]
 ) -> Array:
     width, height = size_px

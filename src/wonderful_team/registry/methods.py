@@ -14,7 +14,7 @@ from wonderful_team.errors import ConfigError, MethodCodeError, UnknownNameError
 from wonderful_team.models.budget import Budget
 from wonderful_team.models.client import DEADLINE_S, ModelClient
 from wonderful_team.planning import ABLATIONS, TeamConfig, TeamPolicy
-from wonderful_team.planning.baselines import direct, pivot
+from wonderful_team.planning.baselines import direct, pivot, point
 from wonderful_team.planning.config import Grounding, Mode
 from wonderful_team.registry.detectors import make_detector
 from wonderful_team.registry.files import is_file_name, make_from_file
@@ -135,6 +135,16 @@ METHODS: dict[str, MethodRow] = {
     "direct:axes": _direct("the same, with labelled axes on the main view", True, False),
     "direct:checked": _direct("direct; the model looks at its drawn plan, and may plan anew twice", False, True),
     "direct:axes:checked": _direct("the same, with labelled axes on the main view", True, True),
+    "point": MethodRow(
+        "one question a thing, and no plan: for the suites pointing and boxcheck, and for photos",
+        lambda setup: point.PointAlone(setup.client()),
+        roles=(point.POINTER,),
+    ),
+    "point:axes": MethodRow(
+        "the same with labelled axes",
+        lambda setup: point.PointAlone(setup.client(), axes=True),
+        roles=(point.POINTER,),
+    ),
     "pivot": MethodRow(
         "points found among numbered marks in 3 iterations and 3 parallel runs (PIVOT, arXiv 2402.07872)",
         lambda setup: pivot.Pivot(setup.client()),

@@ -54,7 +54,7 @@ def page_content(summary: Summary, warnings: Sequence[str], baseline: str | None
             (whole.label, [tables.variant_words(summary.cell(one), against) for one, against in members])
             for whole, members in summary.variants()
         ],
-        "facts": _facts(summary),
+        "facts": tables.fact_tables(summary),
         "gallery": _gallery(summary, page),
         "versions": sorted({f"{k} {v}" for row in summary.rows if row.result for k, v in row.result.versions.items()}),
     }
@@ -139,17 +139,6 @@ def _failures(one: Condition, summary: Summary, page: Path) -> dict[str, Any]:
         if row.spec.condition == one and row.result is not None and row.result.outcome == "error"
     ]
     return {"label": one.label, "stages": stages, "errors": errors[:EXAMPLES], "error_count": len(errors)}
-
-
-def _facts(summary: Summary) -> list[tuple[str, list[tuple[str, str]]]]:
-    """Means of what trials measured beside their outcome, such as the overlap of boxes on photos."""
-    found = []
-    for one in summary.compared:
-        cell = summary.cell(one)
-        names = dict.fromkeys(name for result in cell.results for name in result.facts)
-        if names:
-            found.append((one.label, [(name, tables.number(cell.fact(name), 3)) for name in names]))
-    return found
 
 
 def _gallery(summary: Summary, page: Path) -> list[dict[str, Any]]:

@@ -208,8 +208,21 @@ def rate_words(cell: Cell) -> str:
     return f"{100 * rate.successes / rate.n:.0f} % (n = {rate.n}; {100 * low:.0f} to {100 * high:.0f})"
 
 
+def fact_tables(summary: Summary) -> list[tuple[tuple[str, ...], list[tuple[str, ...]]]]:
+    """What trials measured beside their outcome, as means: a table for each set of figures, a line for each task of a condition."""
+    found: dict[tuple[str, ...], list[tuple[str, ...]]] = {}
+    for task in summary.tasks:
+        for one in summary.compared:
+            cell = summary.cell(one, task)
+            names = tuple(dict.fromkeys(name for result in cell.results for name in result.facts))
+            if names:
+                line = (one.label, task, str(len(cell.results)), *(number(cell.fact(name), 3) for name in names))
+                found.setdefault(names, []).append(line)
+    return [(("method · model", "task", "n", *names), lines) for names, lines in found.items()]
+
+
 def to_markdown(summary: Summary, baseline: str | None = None) -> str:
-    """Answer, warnings and the two main tables."""
+    """Answer, warnings and all tables."""
     parts = ["\n".join(summary.headline(baseline))]
     warnings = summary.warnings()
     if warnings:
@@ -222,6 +235,7 @@ def to_markdown(summary: Summary, baseline: str | None = None) -> str:
     for whole, members in summary.variants():
         lines = [variant_words(summary.cell(one), against) for one, against in members]
         parts.append(_markdown((whole.label, *VARIANT_HEAD[1:]), lines))
+    parts += [_markdown(head, lines) for head, lines in fact_tables(summary)]
     return visible("\n\n".join(parts) + "\n", layout=True)
 
 

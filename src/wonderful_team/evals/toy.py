@@ -1,0 +1,44 @@
+"""Suites of the toy table: what they are called, and how an answer is scored. The paper's Appendix F."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+from wonderful_team.core.pictures import Point
+from wonderful_team.evals.trials import TrialRow
+
+POINTING = "toy/pointing"
+BOXCHECK = "toy/boxcheck/"
+BOX_KINDS = ("perfect", "slightly_off", "around", "wrong_object")
+WITHIN = (1, 3, 4)
+"""Distances that the paper counts points within [radii of the target]."""
+WORDS = ("accept", "revise", "reject")
+
+
+def is_toy(task: str) -> bool:
+    """Whether a task is a question about the toy table."""
+    return task == POINTING or task.startswith(BOXCHECK)
+
+
+def score_point(point: Point | None, centre: Point, radius_px: float, rounds: Sequence[Point] = ()) -> TrialRow:
+    """Success within the circle; facts in radii. `rounds`: where the middle was said to be before, round by round."""
+    facts = {f"within {radii} radii" if radii > 1 else "within 1 radius": 0.0 for radii in WITHIN}
+    for number, earlier in enumerate(rounds):
+        facts[f"error in round {number} [radii]"] = math.dist(earlier, centre) / radius_px
+    if point is None:
+        return TrialRow("failure", "grounding", "not found", facts=facts)
+    off = math.dist(point, centre) / radius_px
+    facts |= {name: float(off <= radii) for name, radii in zip(list(facts)[: len(WITHIN)], WITHIN, strict=True)}
+    facts["error [radii]"] = off
+    if off <= 1.0:
+        return TrialRow("success", None, f"{off:.2f} radii off", facts=facts)
+    return TrialRow("failure", "grounding", f"{off:.2f} radii off; valid: at most 1", facts=facts)
+
+
+def score_verdict(said: str, right: str) -> TrialRow:
+    """Success when the verdict is right; the facts of all trials of a kind of box are its row of the confusion matrix."""
+    facts = {word: float(word == said) for word in WORDS}
+    if said == right:
+        return TrialRow("success", None, f"{said}, as is right", facts=facts)
+    return TrialRow("failure", "grounding", f"{said}; right: {right}", facts=facts)

@@ -189,6 +189,34 @@ def test_one_call_gives_all_boxes_and_points_and_they_stand() -> None:
     assert not {request.role for request in model.requests} & {"checker", "mover"}
 
 
+def test_a_doubted_point_of_one_call_is_asked_anew_with_what_was_wrong_marked() -> None:
+    doubts = iter([{"about": "T1", "kind": "wrong_point", "question": "that is another thing"}])
+
+    def review(request: Any) -> dict[str, Any]:
+        doubt = next(doubts, None)
+        return APPROVED if doubt is None else {"reasoning": "", "approved": False, "doubt": doubt}
+
+    model = scripted(DraftPlan=draft(subgoal("G1")), WriteSteps=one_step_each, ReviewSteps=review)
+    plan = plan_by(None, model, "one_call")
+    assert plan.status == "planned", plan.message
+    (request,) = asked(model, "LocatePoints")
+    assert request.role == "manager"
+    assert "that is another thing" in request.question.rejected[0]
+
+
+def test_what_is_pushed_starts_on_the_side_away_from_its_goal() -> None:
+    drafted = draft(subgoal("G1"))
+    drafted["targets"][0]["use"] = ["push_start"]
+    drafted["targets"][1]["use"] = ["push_end"]
+    push = {"subgoal": "G1", "kind": "push", "start": "T1", "end": {"target": "T2", "how": "at", "side": None}}
+    model = scripted(DraftPlan=drafted, WriteSteps={"reasoning": "", "steps": [push]})
+    plan = plan_by(Finding(box(FIRST, 300, 300), box(SECOND, 500, 300)), model)
+    x, y = plan.grounded["T1"].points["push_start"]
+    assert x < 300
+    assert y == pytest.approx(320)
+    assert dict(plan.grounded["T2"].points) == {"push_end": (520, 320)}
+
+
 def test_a_broken_detector_is_not_the_methods_failure() -> None:
     class Broken(Finding):
         def detect(self, rgb: np.ndarray, words: Sequence[str]) -> list[Detection]:

@@ -82,6 +82,14 @@ def test_a_replay_finds_what_was_found_without_the_detector(
     assert replay(planned.folder).same
 
 
+def test_another_model_goes_on_with_the_detector_itself(planned: wt.PlanResult, tmp_path: Path) -> None:
+    made = branch(planned.folder, "act", "offline", out=tmp_path)
+    record = record_of(made.folder)
+    assert (record["configuration"]["detector"], len(record["planner"]["detections"])) == ("classical", 1)
+    assert isinstance(made, wt.PlanResult)
+    assert made.status == "planned"
+
+
 def test_a_recorded_detector_answers_only_what_was_asked(planned: wt.PlanResult) -> None:
     detector = RecordedDetector(record_of(planned.folder))
     rgb = planned.observation.main.rgb

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 
 import pytest
 
 import wonderful_team as wt
+from wonderful_team.cli.app import run
 from wonderful_team.detectors import loading
 from wonderful_team.errors import ConfigError, DetectorCodeError, MissingExtraError, UnknownNameError
-from wonderful_team.registry.detectors import DETECTORS, detector_label, make_detector
+from wonderful_team.registry.detectors import DETECTORS, DetectorRow, detector_label, make_detector
 from wonderful_team.registry.files import names_no_code
 
 OWN = '''
@@ -105,3 +107,24 @@ def test_a_method_of_ones_own_may_ask_for_the_chosen_detector(own: str, tmp_path
     for chosen, name in ((None, "classical"), (f"{own}:Corner", "corner")):
         policy = wt.Method(method=f"{tmp_path}/looking.py:Looking", detector=chosen).policy()
         assert policy.detector.name == name  # type: ignore[attr-defined]
+
+
+def test_a_new_detector_is_its_file_and_one_row(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    class Corner:
+        name = "corner"
+
+        def __init__(self, model: str = "small", side: int = 10) -> None:
+            self.model, self.side = model, side
+
+        def detect(self, rgb: object, words: Sequence[str]) -> list[wt.Detection]:
+            return [wt.Detection(text, wt.Box(0, 0, self.side, self.side), 0.5) for text in words]
+
+    monkeypatch.setitem(DETECTORS, "corner", DetectorRow("everything in the corner", lambda: Corner))
+    made = make_detector("corner:large?side=20")
+    assert (made.model, made.side) == ("large", 20)  # type: ignore[attr-defined]
+    assert run(["list", "detectors"]) == 0
+    assert "everything in the corner" in capsys.readouterr().out
+    plan = wt.Team(method="detector-grounding", detector="corner").ground("examples/desk.png", "anything at all")
+    assert plan.targets[0].box_px == (0, 0, 10, 10)

@@ -1,8 +1,8 @@
 """Grounding without the grounding team: by points of the Supervisor, by one model call, or by a detector. Checker and Mover are asked nothing.
 
 Source: Wang, Shen & Stadie 2024, arXiv:2407.19094: settings 6 and 7 remove the grounding team ("the Supervisor handled all steps");
-section 5.1 replaces it "with a single VLLM for inferring object coordinates directly" and with "a separate vision-language model,
-OWL-ViT" (in the text of the appendix also LangSAM). Planning, Verification, steps and memory are the team's.
+its comparison on VIMA-Bench replaces it "with a single VLLM for inferring object coordinates directly" and with "a separate
+vision-language model, OWL-ViT" (its appendix speaks of LangSAM too). Planning, Verification, steps and memory are the team's.
 
 What the paper leaves open, and what is done here:
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
@@ -12,6 +13,8 @@ from wonderful_team.errors import ConfigError, DetectorCodeError, UnknownNameErr
 from wonderful_team.registry.files import arguments_of, is_file_name, make_from_file, named_arguments
 
 DEFAULT_DETECTOR = "classical"
+_LOADING = threading.Lock()
+"""Trials that begin at once load the same weights once."""
 
 
 @dataclass(frozen=True)
@@ -89,7 +92,8 @@ def make_detector(detector: str | Detector = DEFAULT_DETECTOR) -> Detector:
         return _checked(detector, type(detector).__name__)
     if is_file_name(detector):
         return _checked(make_from_file(detector, "detector", {}, DetectorCodeError), detector)
-    return _built_in(detector)
+    with _LOADING:
+        return _built_in(detector)
 
 
 @lru_cache(maxsize=4)

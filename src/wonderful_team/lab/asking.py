@@ -194,7 +194,7 @@ async def look(
     """
     picture = scene.picture.marked(Axes()) if labelled else scene.picture
     question = ReadScene(scene.targets(), (), picture, context=tuple(also))
-    request = build_request(question, id=f"probe/{scene.kind}{scene.seed}", stage="other")
+    request = build_request(question, id=f"probe/synthetic{scene.seed}", stage="other")
     if last:
         request = replace(request, parts=_moved_back(request.parts, picture))
     try:

@@ -70,8 +70,6 @@ _PATTERNS: tuple[tuple[str, Family], ...] = (
     (r"moondream", _family("moondream", "documented")),
 )
 
-FAMILIES: dict[str, Family] = {family.name: family for _, family in _PATTERNS}
-
 
 def guess_family(model_name: str) -> Family:
     """The family that a name suggests, or `UNKNOWN`, which asks for plain pixels with labelled axes."""

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
-import inspect
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
@@ -12,7 +10,7 @@ from wonderful_team.contracts import BoxPx, PointPx, SceneReading
 from wonderful_team.contracts.give_box import BoxAnswer
 from wonderful_team.core.protocols import Model
 from wonderful_team.core.values import Answer, Request
-from wonderful_team.models.client import as_answer, validate_answer
+from wonderful_team.models.client import as_answer, call_model, validate_answer
 
 
 @dataclass
@@ -43,11 +41,7 @@ class Injecting:
 
     async def answer(self, request: Request) -> Answer:
         """The model's answer, perhaps spoiled."""
-        if inspect.iscoroutinefunction(self.model.answer):
-            result = await self.model.answer(request)
-        else:
-            result = await asyncio.to_thread(self.model.answer, request)
-        answer = as_answer(result, self.model)
+        answer = as_answer(await call_model(self.model, request), self.model)
         for injection in self.injections:
             if injection.struck < injection.times and request.contract in injection.contracts:
                 value, _ = validate_answer(request, answer.value)

@@ -18,7 +18,7 @@ from wonderful_team.evals.controls import CONTROLS
 from wonderful_team.evals.estimate import Estimate, estimate
 from wonderful_team.evals.monitor import Report
 from wonderful_team.evals.perturb import IN_PICTURE, read_tier, read_tiers
-from wonderful_team.evals.photos import count_photos
+from wonderful_team.evals.photos import read_photos
 from wonderful_team.evals.plan import OFFLINE, WHOLE, StudyPlan, of_photos, read_shard, split_names
 from wonderful_team.evals.store import Store
 from wonderful_team.evals.study import StudyResult, run_study, started_by_spawn
@@ -294,9 +294,9 @@ class Study:
 
     def report(self, path: str | Path, baseline: str | None = None) -> Path:
         """Write the page; its CSV and LaTeX tables lie beside it."""
-        from wonderful_team.evals.report import write_report
+        from wonderful_team.evals.report import write_all
 
-        return write_report([self.store], path, baseline=baseline)
+        return write_all([self.store], path, baseline=baseline).page
 
     def to_pandas(self) -> Any:
         """One line per trial of the store, as a pandas frame."""
@@ -358,7 +358,7 @@ def _check_levels(suites: Sequence[Suite]) -> None:
 
 
 def _photo_counts(suites: Sequence[Suite]) -> dict[str, int]:
-    return {f"photos:{one.name}": count_photos(one.name) for one in suites if of_photos(one)}
+    return {f"photos:{one.name}": len(read_photos(one.name)) for one in suites if of_photos(one)}
 
 
 def known_suites() -> dict[str, Suite]:

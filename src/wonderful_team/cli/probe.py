@@ -74,8 +74,8 @@ def command(model: str, save: str | None, as_json: bool, **options: Any) -> int:
         "cost": spent,
     }
     if as_json and probed.stopped:
-        error = {"type": "BudgetReached", "message": probed.stopped, "stage": "budget"}
-        print_document("probe", code, result, error)
+        stopped = {"type": "BudgetReached", "message": probed.stopped, "stage": "budget"}
+        print_document("probe", code, result, stopped)
         return code
     return finish("probe", text=report(profile, saved), result=result, as_json=as_json, code=code, unwritten=unwritten)
 

@@ -38,6 +38,14 @@ PILOT = 6
 FREE = ("-", OFFLINE)
 """Models whose pilot trials cost no money; simulated ones beside them."""
 
+_OF_MODELS = ("allow_unpriced", "local_only", "timeout", "cache", "cache_file")
+_SAME_AS_OPTIONS = (
+    *("repeats", "replans", "reobserve", "isolate", "perturb", "concurrency", "pages", "out", "prompts"),
+    *("jobs", "at_once", "ray", "retry_errors"),
+    *_OF_MODELS,
+)
+"""Options of `bench` that a study takes as they are."""
+
 
 @renamed_arguments(looks="reobserve")
 @dataclass
@@ -147,27 +155,14 @@ class Study:
             read_choices(options["models"], OFFLINE),
             None if options["seeds"] is None else read_seeds(options["seeds"]),
             options["store"],
-            repeats=options["repeats"],
-            replans=options["replans"],
-            reobserve=options["reobserve"],
-            isolate=options["isolate"],
-            perturb=options["perturb"],
             shard=(1, 1) if options["shard"] is None else read_shard(options["shard"]),
             controls=() if "all" in refused else tuple(name for name in ALL_CONTROLS if name not in refused),
             caps=Caps(options["max_calls"], options["max_tokens"], options["max_seconds"], options["max_usd"]),
             trial_caps=Caps(*(options[f"trial_max_{name}"] for name in ("calls", "tokens", "seconds", "usd"))),
-            concurrency=options["concurrency"],
-            pages=options["pages"],
-            out=options["out"],
-            prompts=options["prompts"],
             thinking=read_roles(options["thinking"], "--thinking", "LEVEL"),
             price=read_roles(options["price"], "--price", "IN,OUT"),
-            **{name: options[name] for name in ("allow_unpriced", "local_only", "timeout", "cache", "cache_file")},
-            jobs=options["jobs"],
-            at_once=options["at_once"],
-            ray=options["ray"],
-            retry_errors=options["retry_errors"],
             command=options.get("command", ""),
+            **{name: options[name] for name in _SAME_AS_OPTIONS},
         )
 
     @property
@@ -186,15 +181,8 @@ class Study:
 
     def _asked(self) -> dict[str, Any]:
         """Options of the models, as `Method` takes them."""
-        return {
-            "thinking": self.thinking or None,
-            "price": self.price or None,
-            "allow_unpriced": self.allow_unpriced,
-            "local_only": self.local_only,
-            "timeout": self.timeout,
-            "cache": self.cache,
-            "cache_file": self.cache_file,
-        }
+        asked = {name: getattr(self, name) for name in _OF_MODELS}
+        return {"thinking": self.thinking or None, "price": self.price or None, **asked}
 
     def _how(self) -> str:
         """What of the options makes a trial another one, in words: it is part of what the store knows a trial by."""

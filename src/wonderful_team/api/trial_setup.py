@@ -18,6 +18,7 @@ from wonderful_team.core.text import user_path
 from wonderful_team.core.values import Request, Usage
 from wonderful_team.evals.controls import CONTROLS
 from wonderful_team.evals.trials import Limiter, RunSettings, TrialSpec
+from wonderful_team.models.around import AroundModel
 from wonderful_team.models.client import call_model
 from wonderful_team.models.providers import model_options
 from wonderful_team.record.versions import versions
@@ -48,15 +49,12 @@ class UsageCounter:
             self.provenance.add(answer.provenance)
 
 
-class RateLimitedModel:
+class RateLimitedModel(AroundModel):
     """A model whose calls wait for a place among those of all workers."""
 
     def __init__(self, model: Model, limiter: Limiter) -> None:
-        self.model, self.limiter = model, limiter
-        self.name = registry.model_label(model)
-
-    def __getattr__(self, name: str) -> Any:
-        return getattr(self.model, name)
+        super().__init__(model)
+        self.limiter, self.name = limiter, registry.model_label(model)
 
     async def answer(self, request: Request) -> Any:
         """The model's answer."""

@@ -19,6 +19,7 @@ from wonderful_team.core.values import Answer, Part, Request, Words
 from wonderful_team.errors import ModelOutputError
 from wonderful_team.lab.fit import Sighting
 from wonderful_team.lab.marks import MarkedScene
+from wonderful_team.models.around import AroundModel
 from wonderful_team.models.budget import Budget
 from wonderful_team.models.client import DEADLINE_S, ModelClient, call_model
 from wonderful_team.models.conventions import PIXELS, Convention
@@ -49,17 +50,8 @@ class Loose(Question):
         return answer, ()
 
 
-class Plain:
+class Plain(AroundModel):
     """The model under test, asked the question itself; all else that it says of itself stands."""
-
-    def __init__(self, model: Model) -> None:
-        self.model = model
-        self.name = str(getattr(model, "name", type(model).__name__))
-
-    def __getattr__(self, name: str) -> Any:
-        if name.startswith("__") or name == "model":
-            raise AttributeError(name)
-        return getattr(self.model, name)
 
     async def answer(self, request: Request) -> Any:
         question = request.question

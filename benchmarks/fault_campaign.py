@@ -20,6 +20,7 @@ from multiprocessing import get_context
 from typing import Any
 
 from tests.models.providers.asking import small_scene
+from tests.planning.stub_model import stub_model, stub_script
 from tests.servers.brains import AgentSession, Brain, Tapped, Unmatched, typed_brain
 from tests.servers.faults import ANSWER, LINE, SERVER, Fault
 from tests.servers.heard import Heard, Reply
@@ -30,7 +31,6 @@ from wonderful_team.core.actions import PICK_PLACE
 from wonderful_team.core.protocols import Event
 from wonderful_team.core.values import NO_WORKSPACE, Instruction, Observation, Plan
 from wonderful_team.errors import WonderfulTeamError
-from wonderful_team.models.stub_model import stub_model, stub_script
 from wonderful_team.planning import TeamConfig, TeamPolicy
 from wonderful_team.planning.config import Mode
 

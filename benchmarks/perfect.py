@@ -16,11 +16,11 @@ import time
 from dataclasses import dataclass
 from typing import Any
 
+from tests.simulated.image_corruption import CHANGES, ImageCorruption
 from wonderful_team import registry
 from wonderful_team.api.trial import model_of
 from wonderful_team.core.intervals import wilson_interval
 from wonderful_team.evals.suites import VIMA_TASKS
-from wonderful_team.models.image_corruption import CHANGES, ImageCorruption
 from wonderful_team.planning import ABLATIONS, TeamConfig, TeamPolicy
 from wonderful_team.runtime import rollout
 

@@ -23,6 +23,7 @@ from typing import Any
 
 import numpy as np
 
+from benchmarks.confusion import Confusion
 from benchmarks.offline_success import VIMA
 from wonderful_team.agents.scene import SceneShown
 from wonderful_team.contracts import (
@@ -39,7 +40,7 @@ from wonderful_team.core.actions import PICK_PLACE
 from wonderful_team.core.geometry import Box
 from wonderful_team.core.values import Target
 from wonderful_team.errors import WonderfulTeamError
-from wonderful_team.evals import Confusion, Rate
+from wonderful_team.evals import Rate
 from wonderful_team.models.client import ModelClient
 from wonderful_team.models.wrappers import Injecting, Injection
 from wonderful_team.offline import OfflineModel

@@ -11,10 +11,10 @@ from __future__ import annotations
 import argparse
 import asyncio
 
+from benchmarks.confusion import Confusion
 from benchmarks.planted_faults import show, spoiled_plans
 from wonderful_team.core.actions import PICK_PLACE
 from wonderful_team.core.protocols import Event
-from wonderful_team.evals import Confusion
 from wonderful_team.models.wrappers import Injecting, Injection
 from wonderful_team.offline import OfflineModel
 from wonderful_team.offline.answers.moves import with_moves

@@ -20,6 +20,7 @@ from typing import Any
 import numpy as np
 
 from tests.models.providers.asking import TARGETS
+from tests.planning.stub_model import stub_script
 from tests.servers.brains import AgentSession, Tapped, typed_brain
 from tests.servers.server import Rules, WireServer
 from tests.servers.wiring import WIRES
@@ -29,7 +30,6 @@ from wonderful_team.core.geometry import Box
 from wonderful_team.core.pictures import Axes, BoxMark, PointMark
 from wonderful_team.core.values import Request, View
 from wonderful_team.images import crop, draw, whole
-from wonderful_team.models.stub_model import stub_script
 from wonderful_team.models.wire import compose, ticks_of
 from wonderful_team.models.wire.png import fast_png
 

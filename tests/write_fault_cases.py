@@ -26,7 +26,7 @@ import numpy as np
 
 import wonderful_team as wt
 from wonderful_team.models.scripted import ScriptedModel
-from wonderful_team.models.stub_model import stub_script
+from tests.planning.stub_model import stub_script
 
 DONE = []
 

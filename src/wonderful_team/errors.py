@@ -104,7 +104,7 @@ def code_of(whose: str, error_class: type[WonderfulTeamError]) -> Iterator[None]
 
 
 @contextlib.contextmanager
-def reading(what: str, valid: str = "", error_class: type[WonderfulTeamError] | None = None) -> Iterator[None]:
+def reading(what: str, valid: str = "") -> Iterator[None]:
     """Read what somebody else wrote (a file, an option): whatever is wrong with it becomes one error that names it.
 
     This is for readers alone: what fails in here fails because of what was read.
@@ -112,22 +112,20 @@ def reading(what: str, valid: str = "", error_class: type[WonderfulTeamError] | 
     Args:
         what: Which file or option, as it begins the message.
         valid: What would be valid.
-        error_class: ConfigError, or one of its kind.
     """
-    kind = error_class or ConfigError
     try:
         yield
     except WonderfulTeamError:
         raise
     except RecursionError as error:
-        raise kind(f"{what} is nested too deeply{_valid(valid)}") from error
+        raise ConfigError(f"{what} is nested too deeply{_valid(valid)}") from error
     except MemoryError as error:
-        raise kind(f"{what} is too large for this machine's memory{_valid(valid)}") from error
+        raise ConfigError(f"{what} is too large for this machine's memory{_valid(valid)}") from error
     except OSError as error:
-        raise kind(f"{what} cannot be read: {error.strerror or error}{_valid(valid)}") from error
+        raise ConfigError(f"{what} cannot be read: {error.strerror or error}{_valid(valid)}") from error
     except Exception as error:
         said = redact(str(error) if type(error) is ValueError else f"{type(error).__name__}: {error}")
-        raise kind(f"{what} cannot be read: {said[:MESSAGE_LIMIT]}{_valid(valid)}") from error
+        raise ConfigError(f"{what} cannot be read: {said[:MESSAGE_LIMIT]}{_valid(valid)}") from error
 
 
 def _valid(text: str) -> str:

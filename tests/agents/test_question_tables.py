@@ -7,6 +7,7 @@ from dataclasses import fields
 import pytest
 
 from tests.agents.question_samples import RIVALS, SAMPLES
+from tests.planning.stub_model import stub_script
 from wonderful_team.agents import ROLES, build_request
 from wonderful_team.agents.rendering import words
 from wonderful_team.agents.role import Ask, role
@@ -15,7 +16,6 @@ from wonderful_team.api.trial import GROUNDING_ROLES
 from wonderful_team.contracts import QUESTIONS, Question, WriteFunction
 from wonderful_team.core.values import Words
 from wonderful_team.errors import ConfigError
-from wonderful_team.models.stub_model import stub_script
 from wonderful_team.offline.answers import ANSWERS, SAMPLED
 from wonderful_team.planning import ABLATIONS, Members
 

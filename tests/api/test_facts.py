@@ -10,10 +10,10 @@ import pytest
 
 import wonderful_team as wt
 from tests.agents.test_agent_requests import shown
+from tests.planning.stub_model import stub_script
 from wonderful_team.cli.app import run
 from wonderful_team.images import to_png
 from wonderful_team.models.scripted import ScriptedModel
-from wonderful_team.models.stub_model import stub_script
 
 PHOTO = np.full((120, 160, 3), 128, np.uint8)
 

@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 
 import wonderful_team as wt
+from tests.planning.stub_model import stub_script
 from wonderful_team.cli.wording import plan_lines
 from wonderful_team.models.scripted import ScriptedModel
-from wonderful_team.models.stub_model import stub_script
 
 PHOTO = np.full((120, 160, 3), 128, np.uint8)
 

@@ -153,9 +153,9 @@ def test_list_methods_says_what_each_setting_switches_off(capsys: pytest.Capture
 def test_json_on_a_terminal_holds_no_hidden_characters_and_the_same_values(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    from wonderful_team.cli.output import Document
+    from wonderful_team.cli.output import print_document
 
-    Document("plan", {"message": NASTY + "\x9b"}).print(0)
+    print_document("plan", 0, {"message": NASTY + "\x9b"})
     told = capsys.readouterr().out
     assert not set(told) & set("\x1b\x9b\u202e")
     assert json.loads(told)["result"]["message"] == NASTY + "\x9b"

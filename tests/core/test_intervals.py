@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from wonderful_team.evals import Confusion, Rate, wilson_interval
+from wonderful_team.evals import Rate, wilson_interval
 
 
 @pytest.mark.parametrize(
@@ -29,12 +29,3 @@ def test_no_trials_is_no_data_never_zero():
     assert str(Rate(0, 0)) == "no data"
     with pytest.raises(ValueError, match="at least 1"):
         wilson_interval(0, 0)
-
-
-def test_confusion_counts_by_hand():
-    matrix = Confusion()
-    for bad, objected in [(True, True), (True, True), (True, False), (False, False), (False, True)]:
-        matrix = matrix.add(bad=bad, objected=objected)
-    assert matrix == Confusion(caught=2, missed=1, false_alarms=1, passed=1)
-    assert matrix.catch_rate == Rate(2, 3)
-    assert matrix.alarm_rate == Rate(1, 2)

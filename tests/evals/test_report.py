@@ -224,7 +224,7 @@ def test_the_page_shows_the_plan_of_trials_and_stands_alone(tmp_path: Path) -> N
             assert claim is not None
             store.finish(claim.trial, owner, replace(rows[0].result, page=str(runs / name / "page.html")))  # type: ignore[type-var]
     html = write_all([tmp_path / "s.db"], tmp_path / "out" / "p.html").page.read_text(encoding="utf-8")
-    assert html.count('<img src="data:image/jpeg;base64,') == 2
+    assert html.count('<img src="data:image/webp;base64,') == 2
     assert 'href="../runs/a/page.html"' in html
 
 

@@ -14,7 +14,7 @@ from wonderful_team.core.geometry import AffineCamera, Box, PinholeCamera, Pose
 from wonderful_team.errors import ConfigError, UnknownNameError
 from wonderful_team.evals.estimate import estimate
 from wonderful_team.evals.perturb import moved, read_tiers
-from wonderful_team.evals.photos import Located, overlap, read_photos, score_photo
+from wonderful_team.evals.photos import Located, read_photos, score_photo
 from wonderful_team.evals.plan import StudyPlan, read_shard
 from wonderful_team.evals.suites import VIMA_TASKS, all_suites, default_seeds, read_seeds, resolve
 from wonderful_team.evals.trials import Condition, Row, TrialRow, TrialSpec
@@ -133,7 +133,6 @@ def test_photos_are_scored_by_boxes_and_points(tmp_path: Path) -> None:
     assert right.facts["points inside"] == 1.0
     wrong = score_photo(scene, [Located(Box(11, 11, 30, 30)), Located()])
     assert (wrong.outcome, wrong.stage, wrong.reason) == ("failure", "grounding", "cup: not found")
-    assert overlap(Box(0, 0, 2, 2), Box(1, 1, 3, 3)) == pytest.approx(1 / 7)
 
 
 def test_bad_photo_files_are_told(tmp_path: Path) -> None:

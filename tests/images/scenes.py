@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import cv2
 import numpy as np
 
+from wonderful_team.core.geometry import Box
 from wonderful_team.core.geometry.arrays import Array
+from wonderful_team.core.pictures import BoxMark, Picture
 from wonderful_team.core.values import View
+from wonderful_team.images import crop
 
 
 def table(width: int = 640, height: int = 480, *, shift: tuple[float, float] = (0.0, 0.0), seed: int = 0) -> Array:
@@ -32,3 +37,12 @@ def view(width: int = 640, height: int = 480, *, depth: bool = False, view_id: s
     """A view of `table`, with a slanted depth when asked."""
     depth_m = np.linspace(0.5, 0.9, width * height, dtype=np.float32).reshape(height, width) if depth else None
     return View(view_id, "top", 0.0, table(width, height), depth_m)
+
+
+def crop_pair(seen: View, before: Box, after: Box) -> tuple[Picture, Picture]:
+    """Two pictures of the same window, large enough for both boxes; each carries its own box."""
+    clean = crop(seen, before, "crop before", also=(after,))
+    return (
+        clean.marked(BoxMark(clean.frame.box_to_picture(before), "before")),
+        replace(clean, name="crop after").marked(BoxMark(clean.frame.box_to_picture(after), "after")),
+    )

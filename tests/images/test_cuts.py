@@ -7,11 +7,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tests.images.scenes import view
+from tests.images.scenes import crop_pair, view
 from wonderful_team.core.geometry import Box, Frame
 from wonderful_team.core.pictures import BoxMark, LineMark, Picture
 from wonderful_team.core.values import View
-from wonderful_team.images import beside_points, crop, crop_pair, edge_strips, inside_points, picture_of, whole
+from wonderful_team.images import beside_points, crop, edge_strips, inside_points, picture_of, whole
 
 SIZES = st.tuples(st.integers(20, 260), st.integers(20, 260))
 
@@ -186,7 +186,6 @@ def test_inside_points_are_cell_centres_row_by_row() -> None:
 def test_beside_points_stand_off_by_the_distance_clockwise_from_above() -> None:
     points = beside_points(Box(10, 10, 20, 30), 5)
     assert points == ((15, 5), (25, 5), (25, 20), (25, 35), (15, 35), (5, 35), (5, 20), (5, 5))
-    assert beside_points(Box(10, 10, 20, 30), 5, within=Box(0, 12, 22, 40)) == ((15, 35), (5, 35), (5, 20))
 
 
 def test_turned_frames_are_refused() -> None:

@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tests.images.scenes import view
+from tests.images.scenes import crop_pair, view
 from wonderful_team.core.geometry import Box
 from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.pictures import Axes, BoxMark, Candidates, PathMark, PointMark
@@ -23,7 +23,6 @@ from wonderful_team.images import (
     Ticks,
     beside_points,
     crop,
-    crop_pair,
     draw,
     edge_strips,
     inside_points,

@@ -15,10 +15,9 @@ from PIL import EpsImagePlugin, Image
 import wonderful_team as wt
 from tests.desk import WORDS, draw_desk, read_record
 from wonderful_team.errors import BadPictureError, ConfigError
-from wonderful_team.evals.report.content import _thumbnail
 from wonderful_team.images import load_depth, load_picture
+from wonderful_team.images.thumbnail import run_thumbnail
 from wonderful_team.pages import write_page
-from wonderful_team.pages.runs import thumbnail
 from wonderful_team.record import read_plan_scene
 from wonderful_team.record.plan_file import plan_from_json
 from wonderful_team.record.stored import stored_observation
@@ -66,7 +65,7 @@ def test_the_pictures_of_a_run(started, tmp_path, eps):
     for file in [*plan.folder.rglob("*.png")]:
         shutil.copy(eps, file)
     write_page(plan.folder)
-    assert thumbnail(plan.folder) == _thumbnail(plan.folder) == ""
+    assert run_thumbnail(plan.folder) == ""
     assert read_plan_scene(plan.folder, plan.plan) is None
     assert not started.exists()
 

@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from wonderful_team.lab.fit import Fit, Sighting, fit_convention, residuals_px
+from wonderful_team.lab.fit import Fit, Sighting, fit_convention
 from wonderful_team.lab.marks import marked_scene
 from wonderful_team.lab.probe import FIT_SIZES
 from wonderful_team.models.conventions import CONVENTIONS, Convention, Resize, Size
@@ -168,16 +168,3 @@ def test_outliers_are_counted_and_do_not_bend_the_fit() -> None:
     assert fit.outliers >= 2
     assert fit.convention.scale == (1.0, 1.0)
     assert error_in_use(fit, truth) < 0.001
-
-
-def test_the_rival_hypothesis_is_named() -> None:
-    fit = fit_convention(answers(spoken(CONVENTIONS["gemini"])))
-    assert fit.runner_up
-    assert fit.margin > 3
-
-
-def test_residuals_are_in_pixels_of_the_picture_sent() -> None:
-    sighting = Sighting((200, 100), np.array([[50.0, 20.0], [150.0, 80.0]]), np.array([[253.0, 200.0], [np.nan, 1.0]]))
-    off = residuals_px(CONVENTIONS["qwen3-vl"], sighting)
-    assert off[0] == pytest.approx(0.6)
-    assert math.isnan(off[1])

@@ -67,7 +67,6 @@ def test_an_unknown_name_gets_pixels_with_labelled_axes_and_no_native_boxes(mode
     family = guess_family(model)
     assert (family.name, family.convention.name, family.sure) == ("unknown", "pixels", "unknown")
     assert family.weak_pointing
-    assert not family.native_boxes
 
 
 def test_gpt_points_weakly() -> None:

@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
+import pytest
+
 from tests.planning.helpers import APPROVED, doubt, draft, plan_with, scripted, subgoal
-from wonderful_team.models.wrappers import Injecting, Injection, shift_box
+from wonderful_team.models.wrappers import SHIFT_RADII, Injecting, Injection, shift_box
 from wonderful_team.planning import TeamConfig
 
 
-def test_an_injected_box_is_labelled_and_shifted_by_the_stated_radii():
-    model = Injecting(scripted(), [Injection(("GiveBox",), shift_box(1.0), "first box beside its object")])
+def test_an_injected_box_is_labelled_and_shifted():
+    model = Injecting(scripted(), [Injection(("GiveBox",), shift_box, "first box beside its object")])
     clean, spoiled = plan_with(scripted()), plan_with(model)
     event = next(e for e in spoiled.grounded["T1"].history if e.what == "box")
     right = next(e for e in clean.grounded["T1"].history if e.what == "box")
     assert event.provenance == "injected"
-    assert abs(event.box.centre[0] - right.box.centre[0]) == right.box.width / 2
+    assert abs(event.box.centre[0] - right.box.centre[0]) == pytest.approx(SHIFT_RADII * right.box.width / 2)
     assert spoiled.grounded["T2"].history[1].provenance != "injected", "it strikes once"
 
 

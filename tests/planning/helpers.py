@@ -6,12 +6,12 @@ import asyncio
 from typing import Any
 
 from tests.planning.rounds import photo
+from tests.planning.stub_model import stub_script
 from wonderful_team.core.actions import PICK_PLACE, Vocabulary
 from wonderful_team.core.caps import Caps
 from wonderful_team.core.protocols import Event
 from wonderful_team.core.values import Instruction, Plan, Request
 from wonderful_team.models.scripted import ScriptedModel
-from wonderful_team.models.stub_model import stub_script
 from wonderful_team.planning import TeamConfig, TeamPolicy
 
 

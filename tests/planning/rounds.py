@@ -8,11 +8,11 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from tests.planning.stub_model import stub_model
 from tests.planning.virtual_time import run_virtual
 from wonderful_team.core.actions import PICK_PLACE
 from wonderful_team.core.protocols import Event
 from wonderful_team.core.values import Instruction, Observation, Plan, Request, View
-from wonderful_team.models.stub_model import stub_model
 from wonderful_team.planning import TeamConfig, TeamPolicy
 
 

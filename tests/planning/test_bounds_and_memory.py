@@ -9,12 +9,12 @@ import pytest
 
 from tests.planning.helpers import APPROVED, Tape, asked, doubt, plan_with, scripted
 from tests.planning.rounds import photo
+from tests.planning.stub_model import stub_script
 from wonderful_team.core.actions import ARM, PICK_PLACE
 from wonderful_team.core.caps import Caps
 from wonderful_team.core.values import Instruction, Usage, Words
 from wonderful_team.errors import ConfigError, ModelUnavailableError
 from wonderful_team.models.scripted import ScriptedModel
-from wonderful_team.models.stub_model import stub_script
 from wonderful_team.planning import TeamConfig, TeamPolicy
 
 

@@ -7,6 +7,7 @@ import pytest
 
 from tests.planning.helpers import asked, draft, plan_with, scripted, subgoal
 from tests.planning.rounds import photo
+from tests.planning.stub_model import stub_model
 from tests.planning.test_doubted_targets import of_target, verdict
 from wonderful_team.agents import build_request
 from wonderful_team.agents.scene import SceneShown
@@ -17,7 +18,6 @@ from wonderful_team.core.pictures import BoxMark, PointMark
 from wonderful_team.core.values import NO_WORKSPACE, Instruction, Slot, Target, View, Words
 from wonderful_team.images import crop, line_width_px
 from wonderful_team.models.client import ModelClient
-from wonderful_team.models.stub_model import stub_model
 from wonderful_team.planning import TeamConfig
 from wonderful_team.planning.grounding import make_jobs
 from wonderful_team.planning.judged import judge_box

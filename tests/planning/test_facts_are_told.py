@@ -9,6 +9,7 @@ from typing import Any
 import wonderful_team as wt
 from tests.planning.helpers import asked, plan_with, scripted
 from tests.planning.rounds import photo
+from tests.planning.stub_model import stub_script
 from tests.runtime.runtime_fakes import SquaresWorld
 from wonderful_team.api.photos import unknown_robot
 from wonderful_team.core.actions import PICK_PLACE, VOCABULARIES
@@ -16,7 +17,6 @@ from wonderful_team.core.geometry import Box
 from wonderful_team.core.pictures import RegionMark
 from wonderful_team.core.protocols import Situation, World, facts_of, offers
 from wonderful_team.core.values import Instruction, KeepOut, Request, Words
-from wonderful_team.models.stub_model import stub_script
 from wonderful_team.planning import TeamConfig, TeamPolicy
 from wonderful_team.runtime import rollout
 from wonderful_team.sims.tabletop import make_world

@@ -12,11 +12,11 @@ import pytest
 
 from tests.planning.helpers import APPROVED, asked, doubt, draft, plan_with, scripted, subgoal
 from tests.planning.rounds import photo
+from tests.planning.stub_model import stub_script
 from tests.runtime.runtime_fakes import COLOURS, HALF_PX, SIZE_PX, SquaresTruth, SquaresWorld
 from wonderful_team.core.actions import ARM, PICK_PLACE
 from wonderful_team.core.values import Instruction, Observation, Request, StepReport, View
 from wonderful_team.models.scripted import ScriptedModel
-from wonderful_team.models.stub_model import stub_script
 from wonderful_team.planning import TeamConfig, TeamPolicy
 from wonderful_team.runtime import rollout
 

@@ -8,10 +8,10 @@ from typing import Any
 import pytest
 
 from tests.planning.helpers import APPROVED, asked, doubt, draft, plan_with, scripted, subgoal
+from tests.planning.stub_model import stub_script
 from wonderful_team.contracts import QUESTIONS
 from wonderful_team.core.values import Note, Request
 from wonderful_team.models.scripted import ScriptedModel
-from wonderful_team.models.stub_model import stub_script
 from wonderful_team.planning import TeamConfig
 from wonderful_team.planning.memory import Notebooks
 from wonderful_team.planning.notes import LONGEST, note_of, one_line

@@ -6,7 +6,7 @@ from typing import Any
 
 from tests.agents.test_agent_requests import shown
 from tests.planning.helpers import APPROVED, asked, doubt, plan_with, scripted
-from wonderful_team.models.stub_model import stub_script
+from tests.planning.stub_model import stub_script
 from wonderful_team.planning import TeamConfig
 
 WANTED = "put the first thing into the second thing"

@@ -8,11 +8,11 @@ from typing import Any
 import pytest
 
 from tests.planning.helpers import APPROVED, Tape, asked, doubt, draft, plan_with, scripted, subgoal
+from tests.planning.stub_model import stub_script
 from wonderful_team.core.actions import PICK_PLACE, Vocabulary
 from wonderful_team.core.geometry import Box
 from wonderful_team.core.values import Request
 from wonderful_team.models.scripted import ScriptedModel
-from wonderful_team.models.stub_model import stub_script
 from wonderful_team.planning import Bounds, TeamConfig
 from wonderful_team.planning.spending import agree, is_central
 

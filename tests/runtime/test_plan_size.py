@@ -11,11 +11,11 @@ import pytest
 
 import wonderful_team as wt
 from tests.planning.helpers import plan_with
+from tests.planning.stub_model import stub_script
 from wonderful_team.core.actions import PICK_PLACE
 from wonderful_team.core.values import MAX_ACTIONS, Observation, Plan, PlannedAction, Subgoal, View
 from wonderful_team.errors import ConfigError
 from wonderful_team.models.scripted import ScriptedModel
-from wonderful_team.models.stub_model import stub_script
 from wonderful_team.record.plan_file import plan_from_json, plan_to_json
 from wonderful_team.runtime import check_gate
 

@@ -8,11 +8,12 @@ from typing import Any
 import pytest
 
 from tests.agents.question_samples import RIVALS, SAMPLES
+from tests.models.wire.writing import written
+from tests.planning.stub_model import stub_script
 from tests.servers.schemas import misfits, nodes
 from wonderful_team.agents import build_request
 from wonderful_team.contracts import Question
 from wonderful_team.models.conventions import CONVENTIONS
-from wonderful_team.models.stub_model import stub_script
 from wonderful_team.models.wire.form import Form
 
 SCHEMA = {
@@ -54,7 +55,7 @@ def test_right_answers_to_every_question_fit_and_all_words_of_its_schema_are_kno
         # A field that only answers of earlier releases have.
         del right["reasoning"]
     form = Form.of(request.output, CONVENTIONS["qwen2.5-vl"])
-    sent = form.write(right, (640, 480))
+    sent = written(form, right, (640, 480))
     assert misfits(json.loads(json.dumps(sent)), form.schema) == []
     known = {
         "$defs", "$ref", "additionalProperties", "anyOf", "const", "description", "discriminator", "enum", "exclusiveMaximum",

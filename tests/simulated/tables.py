@@ -8,13 +8,13 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any
 
+from tests.simulated.image_corruption import CHANGES, ImageCorruption
 from wonderful_team.agents.scene import SceneShown, show_views
 from wonderful_team.contracts import GiveBox, PlanDraft
 from wonderful_team.contracts.draft_plan import DraftPlan
 from wonderful_team.core.geometry import Box
 from wonderful_team.core.protocols import Model
 from wonderful_team.core.values import Request, Target, Trial
-from wonderful_team.models.image_corruption import CHANGES, ImageCorruption
 from wonderful_team.planning import TeamConfig, TeamPolicy
 from wonderful_team.runtime import rollout
 from wonderful_team.sims.tabletop import make_world

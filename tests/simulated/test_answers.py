@@ -9,6 +9,8 @@ from typing import Any
 import numpy as np
 import pytest
 
+from tests.images.scenes import crop_pair
+from tests.simulated.image_corruption import CHANGES, ImageCorruption
 from wonderful_team.contracts import (
     QUESTIONS,
     ChooseMark,
@@ -36,8 +38,7 @@ from wonderful_team.core.geometry import Box
 from wonderful_team.core.pictures import BoxMark, Candidates, Picture, PointMark
 from wonderful_team.core.values import Critique, Subgoal, Target, Verdict
 from wonderful_team.errors import UnsupportedQuestion
-from wonderful_team.images import crop, crop_pair, edge_strips
-from wonderful_team.models.image_corruption import CHANGES, ImageCorruption
+from wonderful_team.images import crop, edge_strips
 from wonderful_team.simulated.model import ANSWERS
 
 from .tables import Set, set_table, show_views

@@ -10,11 +10,11 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from tests.simulated.image_corruption import CHANGES
 from wonderful_team.core.geometry import Box, Frame
 from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.pictures import BoxMark, Picture
 from wonderful_team.images import crop, edge_strips, whole
-from wonderful_team.models.image_corruption import CHANGES
 from wonderful_team.simulated.seeing import Eyes
 
 from .tables import Set, set_table

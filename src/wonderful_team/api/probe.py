@@ -124,7 +124,7 @@ def _subject(
     name = full_name
     prices = [first.prices.usd(usage) for usage in (Usage(tokens_in=MILLION), Usage(tokens_out=MILLION))]
     return Subject(
-        full_name, make, True, family.convention, family.max_pictures,
+        full_name, make, True, family.convention,
         None if spec.official else spec.base_url,
         lambda: server_facts(spec.service, spec.base_url, served, first.key, direct=local_only),
         (prices[0], prices[1]), library_version(),

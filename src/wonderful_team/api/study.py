@@ -18,7 +18,7 @@ from wonderful_team.evals.controls import CONTROLS
 from wonderful_team.evals.estimate import Estimate, estimate
 from wonderful_team.evals.monitor import Report
 from wonderful_team.evals.perturb import IN_PICTURE, read_tier, read_tiers
-from wonderful_team.evals.photos import count_photos
+from wonderful_team.evals.photos import read_photos
 from wonderful_team.evals.plan import OFFLINE, WHOLE, StudyPlan, of_photos, read_shard, split_names
 from wonderful_team.evals.store import Store
 from wonderful_team.evals.study import StudyResult, run_study, started_by_spawn
@@ -38,6 +38,14 @@ PILOT = 6
 """Pilot trials of a condition that costs nothing."""
 FREE = ("-", OFFLINE)
 """Models whose pilot trials cost no money; simulated ones beside them."""
+
+_OF_MODELS = ("allow_unpriced", "local_only", "timeout", "cache", "cache_file", "detector")
+_SAME_AS_OPTIONS = (
+    *("repeats", "replans", "reobserve", "isolate", "perturb", "concurrency", "pages", "out", "prompts"),
+    *("jobs", "at_once", "ray", "retry_errors"),
+    *_OF_MODELS,
+)
+"""Options of `bench` that a study takes as they are."""
 
 
 @renamed_arguments(looks="reobserve")
@@ -154,30 +162,14 @@ class Study:
             read_choices(options["models"], OFFLINE),
             None if options["seeds"] is None else read_seeds(options["seeds"]),
             options["store"],
-            repeats=options["repeats"],
-            replans=options["replans"],
-            reobserve=options["reobserve"],
-            isolate=options["isolate"],
-            perturb=options["perturb"],
             shard=(1, 1) if options["shard"] is None else read_shard(options["shard"]),
             controls=() if "all" in refused else tuple(name for name in ALL_CONTROLS if name not in refused),
             caps=Caps(options["max_calls"], options["max_tokens"], options["max_seconds"], options["max_usd"]),
             trial_caps=Caps(*(options[f"trial_max_{name}"] for name in ("calls", "tokens", "seconds", "usd"))),
-            concurrency=options["concurrency"],
-            pages=options["pages"],
-            out=options["out"],
-            prompts=options["prompts"],
             thinking=read_roles(options["thinking"], "--thinking", "LEVEL"),
             price=read_roles(options["price"], "--price", "IN,OUT"),
-            **{
-                name: options[name]
-                for name in ("allow_unpriced", "local_only", "timeout", "cache", "cache_file", "detector")
-            },
-            jobs=options["jobs"],
-            at_once=options["at_once"],
-            ray=options["ray"],
-            retry_errors=options["retry_errors"],
             command=options.get("command", ""),
+            **{name: options[name] for name in _SAME_AS_OPTIONS},
         )
 
     @property
@@ -196,16 +188,8 @@ class Study:
 
     def _asked(self) -> dict[str, Any]:
         """Options of the models, as `Method` takes them."""
-        return {
-            "thinking": self.thinking or None,
-            "price": self.price or None,
-            "allow_unpriced": self.allow_unpriced,
-            "local_only": self.local_only,
-            "timeout": self.timeout,
-            "cache": self.cache,
-            "cache_file": self.cache_file,
-            "detector": self.detector,
-        }
+        asked = {name: getattr(self, name) for name in _OF_MODELS}
+        return {"thinking": self.thinking or None, "price": self.price or None, **asked}
 
     def _how(self) -> str:
         """What of the options makes a trial another one, in words: it is part of what the store knows a trial by."""
@@ -306,9 +290,9 @@ class Study:
 
     def report(self, path: str | Path, baseline: str | None = None) -> Path:
         """Write the page; its CSV and LaTeX tables lie beside it."""
-        from wonderful_team.evals.report import write_report
+        from wonderful_team.evals.report import write_all
 
-        return write_report([self.store], path, baseline=baseline)
+        return write_all([self.store], path, baseline=baseline).page
 
     def to_pandas(self) -> Any:
         """One line per trial of the store, as a pandas frame."""
@@ -374,7 +358,7 @@ def _check_levels(suites: Sequence[Suite]) -> None:
 
 
 def _photo_counts(suites: Sequence[Suite]) -> dict[str, int]:
-    return {f"photos:{one.name}": count_photos(one.name) for one in suites if of_photos(one)}
+    return {f"photos:{one.name}": len(read_photos(one.name)) for one in suites if of_photos(one)}
 
 
 def known_suites() -> dict[str, Suite]:

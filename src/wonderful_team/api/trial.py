@@ -22,13 +22,13 @@ from wonderful_team.api.photo_trial import run_photo
 from wonderful_team.api.rollout import rollout
 from wonderful_team.api.toy_trial import run_toy
 from wonderful_team.api.trial_setup import UsageCounter, fingerprint, method_options, prepared
-from wonderful_team.core.actions import Action
 from wonderful_team.core.deadline import limited
 from wonderful_team.core.jsonable import to_jsonable
-from wonderful_team.core.protocols import Policy, World, facts_of, privileged
-from wonderful_team.core.values import Instruction, Observation, StepReport, Trial, Usage, View
+from wonderful_team.core.protocols import Policy, World, privileged
+from wonderful_team.core.values import Instruction, Observation, Trial, Usage, View
 from wonderful_team.errors import ConfigError
 from wonderful_team.evals.controls import CONTROLS, make_control
+from wonderful_team.evals.perturb import WorldInDisguise, perturbed, read_tier
 from wonderful_team.evals.toy import is_toy
 from wonderful_team.evals.trials import Condition, RunSettings, TrialRow, TrialSpec
 from wonderful_team.registry.files import check_names_no_code, is_file_name
@@ -100,27 +100,15 @@ def check_code(spec: TrialSpec, settings: RunSettings) -> None:
         check_names_no_code(name, "the store")
 
 
-class BlankWorld:
+class BlankWorld(WorldInDisguise):
     """A world for policies that never look: the same blank picture at every look, and no drawing."""
 
     def __init__(self, world: World) -> None:
-        self._world = world
-        self.vocabulary, self.limits, self.facts = world.vocabulary, world.limits, facts_of(world)
-        self.instruction = Instruction("(not looked at)")
-        self.horizon: int | None = getattr(world, "horizon", None)
+        super().__init__(world, Instruction("(not looked at)"))
         self._blank = Observation({"top": View("blank", "blank", 0.0, np.zeros((8, 8, 3), np.uint8))})
 
     def observe(self) -> Observation:
         return self._blank
-
-    def execute(self, action: Action) -> StepReport:
-        return self._world.execute(action)
-
-    def stop(self) -> None:
-        self._world.stop()
-
-    def close(self) -> None:
-        self._world.close()
 
 
 def make_scene(spec: TrialSpec) -> World:
@@ -128,8 +116,6 @@ def make_scene(spec: TrialSpec) -> World:
     tier = spec.condition.perturb
     if not tier:
         return registry.make_world(spec.task, spec.seed)
-    from wonderful_team.evals.perturb import perturbed, read_tier
-
     kind, level = read_tier(tier)
     if kind in registry.own_tiers(spec.task):
         return registry.make_world(spec.task, spec.seed, tiers={kind: level})

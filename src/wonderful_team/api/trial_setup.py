@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import asyncio
 import hashlib
-import inspect
 import shlex
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -20,6 +18,8 @@ from wonderful_team.core.text import user_path
 from wonderful_team.core.values import Request, Usage
 from wonderful_team.evals.controls import CONTROLS
 from wonderful_team.evals.trials import Limiter, RunSettings, TrialSpec
+from wonderful_team.models.around import AroundModel
+from wonderful_team.models.client import call_model
 from wonderful_team.models.providers import model_options
 from wonderful_team.record.versions import versions
 from wonderful_team.registry.files import is_file_name
@@ -49,24 +49,18 @@ class UsageCounter:
             self.provenance.add(answer.provenance)
 
 
-class RateLimitedModel:
+class RateLimitedModel(AroundModel):
     """A model whose calls wait for a place among those of all workers."""
 
     def __init__(self, model: Model, limiter: Limiter) -> None:
-        self.model, self.limiter = model, limiter
-        self.name = registry.model_label(model)
-
-    def __getattr__(self, name: str) -> Any:
-        return getattr(self.model, name)
+        super().__init__(model)
+        self.limiter, self.name = limiter, registry.model_label(model)
 
     async def answer(self, request: Request) -> Any:
         """The model's answer."""
         await self.limiter.acquire()
         try:
-            if inspect.iscoroutinefunction(self.model.answer):
-                return await self.model.answer(request)
-            result = await asyncio.to_thread(self.model.answer, request)
-            return await result if inspect.isawaitable(result) else result
+            return await call_model(self.model, request)
         finally:
             await self.limiter.release()
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from wonderful_team._version import __version__
-from wonderful_team.cli.output import Document, say, wants_json
+from wonderful_team.cli.output import print_document, say
 from wonderful_team.core.interrupts import Interrupted, ends_on_signal, exits_at_once, leave
 from wonderful_team.redaction import redact_streams, redacted_streams
 
@@ -169,12 +169,12 @@ def _tell(argv: list[str], error: Exception) -> int:
 
 def _fail(argv: list[str], name: str, message: str, code: int, error: WonderfulTeamError | None = None) -> int:
     page = error.folder / "page.html" if error is not None and error.folder is not None else None
-    if wants_json(argv):
+    if "--json" in argv:
         command = next((word for word in argv if word in COMMANDS), "")
         told = {"type": name, "message": message, "stage": error.stage if error is not None else None}
         more = {} if error is None or not error.trace else {"trace": error.trace}
         result = {} if page is None else {"folder": str(page.parent), "page": str(page)}
-        Document(command, result, error={**told, **more}).print(code)
+        print_document(command, code, result, {**told, **more})
     # The trace of a run with a folder was told while it ran.
     if error is not None and error.trace and page is None:
         from wonderful_team.cli.progress import trace_lines

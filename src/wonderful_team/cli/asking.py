@@ -12,16 +12,11 @@ from wonderful_team.cli.output import say
 from wonderful_team.cli.run_summary import shown_path
 from wonderful_team.cli.wording import numbers_line
 from wonderful_team.core.text import counted
-from wonderful_team.runtime import Approval, Approver, Declined, Proposal
+from wonderful_team.runtime import Approval, Declined, Proposal
 
 TRIES = 3
 """How often an answer that is neither yes nor no is asked for again."""
 _NO = re.compile(r"(?:n|no)\b[\s,;:.-]*(?:because\b)?[\s,;:.-]*(.*)", re.IGNORECASE | re.DOTALL)
-
-
-def ask_person() -> Approver:
-    """A function that shows what would be done, in numbers, and asks for consent; no answer is a no."""
-    return ask
 
 
 def ask(proposal: Proposal) -> Approval | Declined:

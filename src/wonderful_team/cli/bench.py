@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from wonderful_team.cli.options import PATH
+from wonderful_team.cli.options import CACHE, CACHE_FILE, LOCAL_ONLY, PATH, TIMEOUT
 from wonderful_team.cli.output import finish, say
 from wonderful_team.core.deadline import limited
 from wonderful_team.core.interrupts import as_keyboard, exit_code
@@ -53,19 +53,10 @@ QUIET_S = 10.0
     "--price", multiple=True, metavar="IN,OUT|ROLE=IN,OUT", help="USD per million tokens, where none is known."
 )
 @click.option("--allow-unpriced", is_flag=True, help="Accept models of unknown price without a cap on tokens.")
-@click.option("--local-only", is_flag=True, help="Refuse models outside this machine and private networks.")
-@click.option(
-    "--timeout",
-    type=click.FloatRange(0, min_open=True),
-    metavar="S",
-    help="Longest wait for one reply of a model. [default: 150 s, thinking 300 s; more for a service that shows to be slow]",
-)
-@click.option(
-    "--cache",
-    type=click.Choice(["on", "off", "only"]),
-    help="Keep answers; only: never call a model. [default: on for vendors and servers, else off]",
-)
-@click.option("--cache-file", type=PATH, metavar="FILE", help="Where answers are kept. [default: user's cache]")
+@LOCAL_ONLY
+@TIMEOUT
+@CACHE
+@CACHE_FILE
 @click.option("--seeds", metavar="FIRST:END", help="For every task; default the suite's own, from 1000 on.")
 @click.option("--repeats", type=click.IntRange(1), default=1, show_default=True, help="How often each scene is run.")
 @click.option("--replans", type=click.IntRange(0), help="Plans after the first; default the suite's protocol.")

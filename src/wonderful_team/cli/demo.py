@@ -94,7 +94,7 @@ def shift_first_box(answer: BoxAnswer, request: Request) -> BoxAnswer | None:
     """A wrong box for T1. Targets are looked for all at once: naming one keeps the demo the same every time."""
     from wonderful_team.models.wrappers import shift_box
 
-    wrong: BoxAnswer | None = shift_box()(answer, request) if request.question.target.id == "T1" else None
+    wrong: BoxAnswer | None = shift_box(answer, request) if request.question.target.id == "T1" else None
     return wrong
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import shlex
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -27,6 +27,21 @@ class NamedPath(click.Path):
 
 
 PATH = NamedPath(path_type=Path)
+LOCAL_ONLY = click.option("--local-only", is_flag=True, help="Refuse models outside this machine and private networks.")
+TIMEOUT = click.option(
+    "--timeout",
+    type=click.FloatRange(0, min_open=True),
+    metavar="S",
+    help="Longest wait for one reply of a model. [default: 150 s, thinking 300 s; more for a service that shows to be slow]",
+)
+CACHE = click.option(
+    "--cache",
+    type=click.Choice(["on", "off", "only"]),
+    help="Keep answers; only: never call a model. [default: on for vendors and servers, else off]",
+)
+CACHE_FILE = click.option(
+    "--cache-file", type=PATH, metavar="FILE", help="Where answers are kept. [default: user's cache]"
+)
 
 
 @dataclass(frozen=True)
@@ -61,24 +76,11 @@ class Common:
 
     def team_arguments(self) -> dict[str, Any]:
         """Keyword arguments of `wonderful_team.Team`."""
-        return {
-            "model": self.model,
-            "thinking": self.thinking,
-            "price": self.price,
-            "allow_unpriced": self.allow_unpriced,
-            "local_only": self.local_only,
-            "timeout": self.timeout,
-            "method": self.method,
-            "detector": self.detector,
-            "concurrency": self.concurrency,
-            "cache": self.cache,
-            "cache_file": self.cache_file,
-            "prompts": self.prompts,
-            "out": self.out,
-            "strict": self.strict,
-            "command": self.command,
-            **self.caps,
-        }
+        held = {item.name: getattr(self, item.name) for item in fields(self)}
+        return {**{name: value for name, value in held.items() if name not in _NOT_OF_TEAM}, **self.caps}
+
+
+_NOT_OF_TEAM = ("caps", "as_json", "open_page")
 
 
 def common(command: Command) -> Callable[..., Any]:
@@ -86,26 +88,14 @@ def common(command: Command) -> Callable[..., Any]:
 
     def gathered(**values: Any) -> Any:
         caps = {key: values.pop(key) for key in ("max_calls", "max_tokens", "max_seconds", "max_usd")}
-        shared = Common(
-            model=read_models(values.pop("model")),
-            thinking=read_roles(values.pop("thinking"), "--thinking", "LEVEL"),
-            price=read_roles(values.pop("price"), "--price", "IN,OUT"),
-            allow_unpriced=values.pop("allow_unpriced"),
-            local_only=values.pop("local_only"),
-            timeout=values.pop("timeout"),
-            method=values.pop("method"),
-            detector=values.pop("detector"),
-            caps={key: value for key, value in caps.items() if value is not None},
-            concurrency=values.pop("concurrency"),
-            cache=values.pop("cache"),
-            cache_file=values.pop("cache_file"),
-            prompts=values.pop("prompts"),
-            out=values.pop("out"),
-            as_json=values.pop("as_json"),
-            open_page=values.pop("open_page"),
-            strict=values.pop("strict"),
-            command=shlex.join(["wonderful-team", *(click.get_current_context().obj or ())]),
-        )
+        values |= {
+            "model": read_models(values["model"]),
+            "thinking": read_roles(values["thinking"], "--thinking", "LEVEL"),
+            "price": read_roles(values["price"], "--price", "IN,OUT"),
+            "caps": {key: value for key, value in caps.items() if value is not None},
+            "command": shlex.join(["wonderful-team", *(click.get_current_context().obj or ())]),
+        }
+        shared = Common(**{item.name: values.pop(item.name) for item in fields(Common)})
         with limited(caps["max_seconds"]):
             return command(common=shared, **values)
 
@@ -139,14 +129,8 @@ _COMMON: tuple[Callable[[Any], Any], ...] = (
         help="USD per million tokens, for models without a price.",
     ),
     click.option("--allow-unpriced", is_flag=True, help="Accept models of unknown price without --max-tokens."),
-    click.option("--local-only", is_flag=True, help="Refuse models outside this machine and private networks."),
-    click.option(
-        "--timeout",
-        type=click.FloatRange(0, min_open=True),
-        metavar="S",
-        help="Longest wait for one reply of a model. [default: 150 s, thinking 300 s; more for a service that shows to be "
-        "slow]",
-    ),
+    LOCAL_ONLY,
+    TIMEOUT,
     click.option(
         "--method",
         default="team",
@@ -166,12 +150,8 @@ _COMMON: tuple[Callable[[Any], Any], ...] = (
     ),
     click.option("--max-usd", type=click.FloatRange(0, min_open=True), help="Most money, where prices are known."),
     click.option("--concurrency", type=click.IntRange(1), default=8, show_default=True, help="Calls at once."),
-    click.option(
-        "--cache",
-        type=click.Choice(["on", "off", "only"]),
-        help="Keep answers; only: never call a model. [default: on for vendors and servers, else off]",
-    ),
-    click.option("--cache-file", type=PATH, metavar="FILE", help="Where answers are kept. [default: user's cache]"),
+    CACHE,
+    CACHE_FILE,
     click.option(
         "--prompts", type=PATH, metavar="DIR", help="Your own words for the roles (see `list prompts --out`)."
     ),

@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import click
@@ -27,35 +26,25 @@ COLOURS: dict[str, dict[str, Any]] = {
 """Colour of a line's first word on a terminal; click leaves colours out elsewhere. NO_COLOR switches them off."""
 
 
-@dataclass(frozen=True)
-class Document:
-    """The one JSON document of a command.
+def print_document(
+    command: str, exit_code: int, result: Mapping[str, Any], error: Mapping[str, Any] | None = None
+) -> None:
+    """Write the one JSON document of a command to stdout.
 
-    Attributes:
+    Args:
         command: Which command made it.
+        exit_code: How it ends.
         result: What it found; empty when it failed before there was anything.
         error: type, message and stage; None when all went well.
     """
-
-    command: str
-    result: Mapping[str, Any]
-    error: Mapping[str, Any] | None = None
-
-    def print(self, exit_code: int) -> None:
-        """Write it to stdout."""
-        held = {
-            "schema_version": SCHEMA_VERSION,
-            "command": self.command,
-            "exit_code": exit_code,
-            "result": dict(self.result),
-            "error": None if self.error is None else dict(self.error),
-        }
-        click.echo(visible_json(json.dumps(redact_all(held), indent=2, ensure_ascii=False)))
-
-
-def wants_json(argv: Sequence[str]) -> bool:
-    """Whether the words of a command line ask for JSON."""
-    return "--json" in argv
+    held = {
+        "schema_version": SCHEMA_VERSION,
+        "command": command,
+        "exit_code": exit_code,
+        "result": dict(result),
+        "error": None if error is None else dict(error),
+    }
+    click.echo(visible_json(json.dumps(redact_all(held), indent=2, ensure_ascii=False)))
 
 
 def say(text: str, *, err: bool = False) -> None:
@@ -92,7 +81,7 @@ def finish(
         code = code or WRONG_USE
         error = {"type": "FileNotWrittenError", "message": "; ".join(unwritten), "stage": None}
     if as_json:
-        Document(command, result, error).print(code)
+        print_document(command, code, result, error)
     else:
         say(text)
     if last_line:

@@ -8,7 +8,8 @@ from typing import Any
 
 import click
 
-from wonderful_team.cli.output import Document, finish
+from wonderful_team.cli.options import LOCAL_ONLY, TIMEOUT
+from wonderful_team.cli.output import finish, print_document
 
 
 @click.command(
@@ -31,13 +32,8 @@ from wonderful_team.cli.output import Document, finish
     "--price", metavar="IN,OUT", help="USD per million tokens, for a model without a price; kept in the profile."
 )
 @click.option("--allow-unpriced", is_flag=True, help="Accept a model of unknown price without --max-tokens.")
-@click.option("--local-only", is_flag=True, help="Refuse models outside this machine and private networks.")
-@click.option(
-    "--timeout",
-    type=click.FloatRange(0, min_open=True),
-    metavar="S",
-    help="Longest wait for one reply of a model. [default: 150 s, thinking 300 s; more for a service that shows to be slow]",
-)
+@LOCAL_ONLY
+@TIMEOUT
 @click.option("--max-calls", type=click.IntRange(1), help="Most calls of the model.")
 @click.option("--max-tokens", type=click.IntRange(1), help="Most tokens.")
 @click.option("--max-seconds", type=click.FloatRange(0, min_open=True), help="Longest time of all.")
@@ -78,7 +74,8 @@ def command(model: str, save: str | None, as_json: bool, **options: Any) -> int:
         "cost": spent,
     }
     if as_json and probed.stopped:
-        Document("probe", result, {"type": "BudgetReached", "message": probed.stopped, "stage": "budget"}).print(code)
+        stopped = {"type": "BudgetReached", "message": probed.stopped, "stage": "budget"}
+        print_document("probe", code, result, stopped)
         return code
     return finish("probe", text=report(profile, saved), result=result, as_json=as_json, code=code, unwritten=unwritten)
 

@@ -71,7 +71,7 @@ def command(
     from wonderful_team.api.photos import read_keep_out
     from wonderful_team.api.rollout import make_world, rollout
     from wonderful_team.api.team import Team
-    from wonderful_team.cli.asking import ask_person
+    from wonderful_team.cli.asking import ask
     from wonderful_team.cli.progress import ProgressLine
     from wonderful_team.cli.run_summary import report_trial
     from wonderful_team.cli.video import FRAME_S, Film, check_video_name
@@ -105,7 +105,7 @@ def command(
             plan=plan,
             replans=replans,
             reobserve=reobserve,
-            approval=ask_person() if approve else None,
+            approval=ask if approve else None,
             seed=seed,
             scene=scene_name(world, seed),
             subscribers=() if film is None else (film,),

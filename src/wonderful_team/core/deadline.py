@@ -133,34 +133,6 @@ class Deadline:
         if self.passed:
             raise self.reached(during)
 
-    def call(self, during: str, function: Callable[..., T], *args: Any) -> T:
-        """What `function` returns, if it comes back within the limit.
-
-        Raises:
-            BudgetReached: It did not, or the limit has passed already.
-        """
-        if self._is_here():
-            return function(*args)
-        self.check(during)
-        return self._call(during, self.left_s, function, args)
-
-    def call_to_end(self, during: str, function: Callable[..., T], *args: Any) -> T:
-        """The same for what must be done at the end of a run: there is some time beyond the limit.
-
-        Raises:
-            BudgetReached: It did not come back within that.
-        """
-        return function(*args) if self._is_here() else self._call(during, self.ending_s, function, args)
-
-    def call_for_record(self, during: str, function: Callable[..., T], *args: Any) -> T:
-        """The same for a part of the record: beyond the limit it gets little, so that the rest can be written.
-
-        Raises:
-            BudgetReached: It did not come back within that.
-        """
-        within_s = max(PART_S, self.left_s)
-        return function(*args) if self._is_here() else self._call(during, within_s, function, args)
-
     def close(self) -> None:
         """End the thread of the calls, if it is free."""
         with self._lock:
@@ -171,7 +143,16 @@ class Deadline:
     def _is_here(self) -> bool:
         return self._worker is not None and self._worker.thread is threading.current_thread()
 
-    def _call(self, during: str, within_s: float, function: Callable[..., T], args: tuple[Any, ...]) -> T:
+    def call(self, during: str, within_s: float, function: Callable[..., T], *args: Any) -> T:
+        """What `function` returns, if it comes back within so many seconds.
+
+        Raises:
+            BudgetReached: It did not, or there is no time at all.
+        """
+        if self._is_here():
+            return function(*args)
+        if within_s <= 0:
+            raise self.reached(during)
         with self._lock:
             if self._worker is None:
                 self._worker = _Worker()
@@ -252,19 +233,25 @@ def check(during: str) -> None:
         deadline.check(during)
 
 
-def bounded(during: str, function: Callable[..., T], *args: Any) -> T:
-    """What `function` returns; with a limit it is given up when that passes (`Deadline.call`)."""
+def _call(during: str, within_s: Callable[[Deadline], float], function: Callable[..., T], args: tuple[Any, ...]) -> T:
     deadline = current()
-    return function(*args) if deadline is None else deadline.call(during, function, *args)
+    return function(*args) if deadline is None else deadline.call(during, within_s(deadline), function, *args)
+
+
+def bounded(during: str, function: Callable[..., T], *args: Any) -> T:
+    """What `function` returns; with a limit it is given up when that passes.
+
+    Raises:
+        BudgetReached: The limit has passed.
+    """
+    return _call(during, lambda deadline: deadline.left_s, function, args)
 
 
 def for_record(during: str, function: Callable[..., T], *args: Any) -> T:
-    """The same for a part of the record (`Deadline.call_for_record`)."""
-    deadline = current()
-    return function(*args) if deadline is None else deadline.call_for_record(during, function, *args)
+    """The same for a part of the record: beyond the limit it gets little, so that the rest can be written."""
+    return _call(during, lambda deadline: max(PART_S, deadline.left_s), function, args)
 
 
 def to_end(during: str, function: Callable[..., T], *args: Any) -> T:
-    """The same for what must be done at the end of a run (`Deadline.call_to_end`)."""
-    deadline = current()
-    return function(*args) if deadline is None else deadline.call_to_end(during, function, *args)
+    """The same for what must be done at the end of a run: there is some time beyond the limit."""
+    return _call(during, lambda deadline: deadline.ending_s, function, args)

@@ -44,6 +44,11 @@ class Rate:
     def share(self) -> float | None:
         return self.successes / self.n if self.n else None
 
+    @property
+    def interval(self) -> tuple[float, float] | None:
+        """95 %; None without trials."""
+        return wilson_interval(self.successes, self.n) if self.n else None
+
     def __str__(self) -> str:
         if not self.n:
             return "no data"

@@ -10,7 +10,7 @@ import hashlib
 from collections.abc import Callable
 from dataclasses import dataclass, field, fields, is_dataclass, replace
 from functools import cached_property
-from typing import Any, Literal, TypeAlias
+from typing import Any, Literal, TypeAlias, TypeVar
 
 import numpy as np
 
@@ -38,13 +38,13 @@ def checked_rgb(rgb: Array, name: str = "rgb") -> Array:
     return array
 
 
-def checked_depth(depth_m: Array | None, size: tuple[int, int], name: str = "depth_m") -> Array | None:
+def checked_depth(depth_m: Array | None, size: tuple[int, int]) -> Array | None:
     """A read-only float32 copy of a depth image, shape (H, W) [m]; NaN where unknown."""
     if depth_m is None:
         return None
     array = np.asarray(depth_m, dtype=np.float32)
     if array.shape != size:
-        raise ValueError(f"{name}: expected shape {size} like the image, got {array.shape}")
+        raise ValueError(f"depth_m: expected shape {size} like the image, got {array.shape}")
     if array.flags.writeable:
         array = array.copy()
         array.setflags(write=False)
@@ -174,6 +174,7 @@ class RegionMark:
 
 
 Mark: TypeAlias = Axes | BoxMark | PointMark | Candidates | PathMark | LineMark | Tiles | TurnMark | RegionMark
+M = TypeVar("M", bound=Mark)
 
 
 @dataclass(frozen=True, eq=False)
@@ -227,7 +228,7 @@ class Picture:
         """The same picture with these marks added."""
         return replace(self, marks=self.marks + marks)
 
-    def mark(self, kind: type[Mark]) -> list[Mark]:
+    def mark(self, kind: type[M]) -> list[M]:
         """All marks of one kind, in order."""
         return [mark for mark in self.marks if isinstance(mark, kind)]
 

@@ -248,13 +248,11 @@ class Event:
         kind: request | answer | invalid | stage | decision | observe | gate | execute | verdict | warning | crash | done.
         name: Which one, such as the request's id or the stage's name.
         content: The value itself (a Request, an Answer, a Plan, a GateReport, …) or a small mapping.
-        round: Number of waiting rounds on the main line so far, where known.
     """
 
     kind: str
     name: str
     content: Any = None
-    round: int | None = None
 
 
 def facts_of(world: World) -> str:

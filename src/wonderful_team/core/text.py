@@ -23,9 +23,9 @@ _ANY = re.compile(f"[{_HIDDEN}]")
 _BUT_LAYOUT = re.compile(f"(?![\n\t])[{_HIDDEN}]")
 
 
-def counted(number: int, noun: str, plural: str | None = None) -> str:
-    """`3 calls`, `1 call`, `2 entries` with its own plural."""
-    return f"{number:,} {noun if number == 1 else plural or noun + 's'}"
+def counted(number: int, noun: str) -> str:
+    """`3 calls`, `1 call`."""
+    return f"{number:,} {noun}{'' if number == 1 else 's'}"
 
 
 def visible(text: Text, *, layout: bool = False) -> Text:

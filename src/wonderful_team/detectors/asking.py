@@ -13,7 +13,6 @@ from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.interrupts import in_thread
 from wonderful_team.core.pictures import checked_rgb
 from wonderful_team.core.protocols import Detector
-from wonderful_team.core.text import counted
 from wonderful_team.core.values import Detection
 from wonderful_team.errors import DetectorCodeError, code_of
 
@@ -117,6 +116,6 @@ def found_words(detections: Sequence[Detection], words: Sequence[str]) -> str:
     parts = []
     for text in dict.fromkeys(words):
         scores = [f"{one.score:.2f}" for one in detections if one.words == text]
-        shown = ", ".join(scores[:3]) + (f" and {counted(len(scores) - 3, 'more', 'more')}" if len(scores) > 3 else "")
+        shown = ", ".join(scores[:3]) + (f" and {len(scores) - 3:,} more" if len(scores) > 3 else "")
         parts.append(f"{text}: {f'{len(scores)} ({shown})' if scores else 'none'}")
     return "; ".join(parts)

@@ -22,6 +22,7 @@ from wonderful_team.images import to_png
 
 SEEDS = 20
 TILE_PX = 320
+COLUMNS = 4
 NEAR_M, FAR_M = 0.02, 20.0
 """Depths outside this range are taken for another unit than metres."""
 
@@ -139,14 +140,14 @@ def check_controls(results: dict[str, list[TrialRow]], findings: Findings) -> No
         findings.good.append("the scorer tells the oracle from doing nothing and from random actions")
 
 
-def contact_sheet(tiles: Sequence[tuple[str, Array]], path: Path, columns: int = 4) -> Path:
+def contact_sheet(tiles: Sequence[tuple[str, Array]], path: Path) -> Path:
     """Write pictures with their labels as one PNG."""
     drawn = [_tile(label, rgb) for label, rgb in tiles]
     height = max(tile.shape[0] for tile in drawn)
     blank = np.full((height, TILE_PX, 3), 255, np.uint8)
     padded = [np.vstack([tile, blank[: height - tile.shape[0]]]) for tile in drawn]
-    padded += [blank] * (-len(padded) % columns)
-    rows = [np.hstack(padded[start : start + columns]) for start in range(0, len(padded), columns)]
+    padded += [blank] * (-len(padded) % COLUMNS)
+    rows = [np.hstack(padded[start : start + COLUMNS]) for start in range(0, len(padded), COLUMNS)]
     make_private_folder(path.parent)
     write_private(path, to_png(np.vstack(rows)))
     return path

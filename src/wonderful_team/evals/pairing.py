@@ -7,13 +7,15 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TypeAlias
 
-from wonderful_team.core.intervals import Z_95, Rate, wilson_interval
+from wonderful_team.core.intervals import Z_95, wilson_interval
 from wonderful_team.evals.trials import Condition, Row
 
 Scene: TypeAlias = tuple[str, int, int]
 """Task, seed, repeat: what two conditions have in common."""
 
 
+_Z_POWER = 0.8416212335729143
+"""Quantile of the normal distribution for a power of 80 %."""
 FEWEST_DISCORDANT = 6
 """So many discordant pairs, all one way, are the fewest with an exact two-sided p below 5 % (2 / 2**6)."""
 
@@ -65,23 +67,19 @@ def _phi(both: int, only_first: int, only_second: int, neither: int) -> float:
     return corrected / math.sqrt(margins)
 
 
-def pairs_needed(
-    only_first: float, only_second: float, power_z: float = 0.8416212335729143, z: float = Z_95
-) -> int | None:
+def pairs_needed(only_first: float, only_second: float) -> int | None:
     """About how many pairs McNemar's test needs to see this gap (5 % two-sided, power 80 %); None without a gap.
 
     Args:
         only_first: Share of the pairs in which just the first succeeds.
         only_second: The same for the second.
-        power_z: Quantile of the power; 0.84 for 80 %.
-        z: Quantile of the test; 1.96 for 5 % two-sided.
 
     Source: Connor 1987, Biometrics 43(1), 207-211.
     """
     discordant, gap = only_first + only_second, abs(only_first - only_second)
     if gap == 0:
         return None
-    root = z * math.sqrt(discordant) + power_z * math.sqrt(max(0.0, discordant - gap * gap))
+    root = Z_95 * math.sqrt(discordant) + _Z_POWER * math.sqrt(max(0.0, discordant - gap * gap))
     # However clear the gap, the exact test needs some discordant pairs before it can say so.
     return max(math.ceil((root / gap) ** 2), math.ceil(FEWEST_DISCORDANT / discordant))
 
@@ -122,10 +120,6 @@ class Pair:
     @property
     def n(self) -> int:
         return self.both + self.only_first + self.only_second + self.neither
-
-    @property
-    def rates(self) -> tuple[Rate, Rate]:
-        return Rate(self.both + self.only_first, self.n), Rate(self.both + self.only_second, self.n)
 
     @property
     def difference(self) -> float | None:

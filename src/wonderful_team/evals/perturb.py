@@ -72,27 +72,13 @@ def perturbed(world: World, tier: str, seed: int) -> World:
     return PerturbedWorld(world, kind, level, seed)
 
 
-class PerturbedWorld:
-    """Changes what is seen or said of a world; actions and truth pass through."""
+class WorldInDisguise:
+    """A world of which something else is seen or said; actions pass through."""
 
-    def __init__(self, world: World, kind: str, level: int, seed: int) -> None:
-        self._world, self._kind, self._level = world, kind, level
-        self._rng_seed = [seed, level, KINDS.index(kind)]
+    def __init__(self, world: World, instruction: Instruction) -> None:
+        self._world, self.instruction = world, instruction
         self.vocabulary, self.limits, self.facts = world.vocabulary, world.limits, facts_of(world)
         self.horizon: int | None = getattr(world, "horizon", None)
-        self.privileged = getattr(world, "privileged", None)
-        said = world.instruction
-        if kind == "paraphrase":
-            said = Instruction(PHRASES[level].format(text=said.text), dict(said.slots))
-        self.instruction = said
-
-    def observe(self) -> Observation:
-        """The views, changed the same way at every look."""
-        seen = self._world.observe()
-        if self._kind == "paraphrase":
-            return seen
-        change = {"lighting": self._relit, "camera": self._turned, "texture": self._mottled}[self._kind]
-        return replace(seen, views={name: change(view) for name, view in seen.views.items()})
 
     def execute(self, action: Action) -> StepReport:
         return self._world.execute(action)
@@ -102,6 +88,27 @@ class PerturbedWorld:
 
     def close(self) -> None:
         self._world.close()
+
+
+class PerturbedWorld(WorldInDisguise):
+    """Changes what is seen or said of a world; truth passes through as well."""
+
+    def __init__(self, world: World, kind: str, level: int, seed: int) -> None:
+        self._kind, self._level = kind, level
+        self._rng_seed = [seed, level, KINDS.index(kind)]
+        self.privileged = getattr(world, "privileged", None)
+        said = world.instruction
+        if kind == "paraphrase":
+            said = Instruction(PHRASES[level].format(text=said.text), dict(said.slots))
+        super().__init__(world, said)
+
+    def observe(self) -> Observation:
+        """The views, changed the same way at every look."""
+        seen = self._world.observe()
+        if self._kind == "paraphrase":
+            return seen
+        change = {"lighting": self._relit, "camera": self._turned, "texture": self._mottled}[self._kind]
+        return replace(seen, views={name: change(view) for name, view in seen.views.items()})
 
     def _relit(self, view: View) -> View:
         """Exposure, a colour cast, and light that falls off to one side: up to 15, 30, 45 % by level."""

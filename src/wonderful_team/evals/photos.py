@@ -106,11 +106,6 @@ def _read_photos(path: str) -> tuple[PhotoScene, ...]:
     return tuple(scenes)
 
 
-def count_photos(path: str) -> int:
-    """How many scenes a COCO file has."""
-    return len(read_photos(path))
-
-
 def _asked(one: _Annotation, names: Mapping[int, str], path: str) -> Asked:
     words = one.instruction or names.get(one.category_id if one.category_id is not None else -1, "")
     x, y, width, height = one.bbox
@@ -125,31 +120,13 @@ def _asked(one: _Annotation, names: Mapping[int, str], path: str) -> Asked:
     return Asked(words, Box(x, y, x + width, y + height))
 
 
-def overlap(one: Box, other: Box) -> float:
-    """Intersection over union of two boxes."""
-    width = min(one.x1, other.x1) - max(one.x0, other.x0)
-    height = min(one.y1, other.y1) - max(one.y0, other.y0)
-    shared = max(0.0, width) * max(0.0, height)
-    return shared / (_area(one) + _area(other) - shared)
-
-
-def _area(box: Box) -> float:
-    return (box.x1 - box.x0) * (box.y1 - box.y0)
-
-
 def score_photo(scene: PhotoScene, located: Sequence[Located]) -> TrialRow:
     """Success when everything is found: by its box, or by a point within the true box for methods that give points only."""
     overlaps, inside, misses = [], [], []
     for asked, found in zip(scene.asked, located, strict=True):
-        part = 0.0 if found.box is None else overlap(asked.box, found.box)
-        centre = found.point or (
-            None if found.box is None else ((found.box.x0 + found.box.x1) / 2, (found.box.y0 + found.box.y1) / 2)
-        )
-        hit = (
-            centre is not None
-            and asked.box.x0 <= centre[0] <= asked.box.x1
-            and asked.box.y0 <= centre[1] <= asked.box.y1
-        )
+        part = 0.0 if found.box is None else asked.box.iou(found.box)
+        centre = found.point or (None if found.box is None else found.box.centre)
+        hit = centre is not None and asked.box.contains(centre)
         overlaps.append(part)
         inside.append(float(hit))
         if not (part >= ENOUGH_OVERLAP if found.box is not None else hit):

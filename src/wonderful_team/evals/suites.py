@@ -37,7 +37,6 @@ class Protocol:
 OPEN_LOOP = Protocol("multimodal reasoning: 10 runs a task, single attempt, open loop", 10, 0)
 IMPLICIT_GOAL = Protocol("implicit goals: 2 runs for each of 4 variations, single attempt, open loop", 2, 0)
 SPATIAL = Protocol("spatial planning: 5 runs a task, closed loop, up to 3 replans", 5, 3)
-PROTOCOLS = {"open_loop": OPEN_LOOP, "implicit_goal": IMPLICIT_GOAL, "spatial": SPATIAL}
 
 
 @dataclass(frozen=True)

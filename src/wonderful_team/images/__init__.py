@@ -4,7 +4,7 @@ from wonderful_team.images.axes import Ticks
 from wonderful_team.images.calibration import load_depth
 from wonderful_team.images.candidates import beside_points, inside_points
 from wonderful_team.images.compare import CHANGED, region_change
-from wonderful_team.images.cut import Edge, StripSide, crop, crop_pair, edge_strips, whole
+from wonderful_team.images.cut import Edge, StripSide, crop, edge_strips, whole
 from wonderful_team.images.draw import draw, line_width_px
 from wonderful_team.images.encode import to_png
 from wonderful_team.images.load import OWN_FORMATS, load_picture, open_picture
@@ -21,7 +21,6 @@ __all__ = [
     "action_turns",
     "beside_points",
     "crop",
-    "crop_pair",
     "draw",
     "edge_strips",
     "inside_points",

@@ -21,13 +21,12 @@ def inside_points(box: Box, columns: int, rows: int) -> tuple[Point, ...]:
     )
 
 
-def beside_points(box: Box, distance: float, *, within: Box | None = None) -> tuple[Point, ...]:
+def beside_points(box: Box, distance: float) -> tuple[Point, ...]:
     """Eight points round a box, clockwise from the middle above it.
 
     Args:
         box: The box.
         distance: From the box's edges, in the same pixels.
-        within: Keep only the points inside this box (the picture, the workspace); None keeps all.
 
     Raises:
         ValueError: `distance` is negative.
@@ -36,5 +35,4 @@ def beside_points(box: Box, distance: float, *, within: Box | None = None) -> tu
         raise ValueError(f"distance must be 0 px or more, got {distance}")
     x, y = box.centre
     left, top, right, bottom = box.grown(distance, distance, distance, distance).as_tuple
-    ring = ((x, top), (right, top), (right, y), (right, bottom), (x, bottom), (left, bottom), (left, y), (left, top))
-    return tuple(point for point in ring if within is None or within.contains(point))
+    return ((x, top), (right, top), (right, y), (right, bottom), (x, bottom), (left, bottom), (left, y), (left, top))

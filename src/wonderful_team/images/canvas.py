@@ -81,19 +81,17 @@ class Canvas:
         points: Sequence[Point],
         colour: Colour,
         *,
-        closed: bool = False,
         width_px: int | None = None,
         halo: Colour = INK,
     ) -> None:
         """A coloured stroke with a halo through the points."""
-        self.lines([points], colour, closed=closed, width_px=width_px, halo=halo)
+        self.lines([points], colour, width_px=width_px, halo=halo)
 
     def lines(
         self,
         lines: Sequence[Sequence[Point]],
         colour: Colour,
         *,
-        closed: bool = False,
         width_px: int | None = None,
         halo: Colour = INK,
     ) -> None:
@@ -101,7 +99,7 @@ class Canvas:
         width = width_px or self.stroke_px
         fixed = _fixed_lines(lines)
         for colour_now, width_now in ((halo, width + 2 + width // 3), (colour, width)):
-            cv2.polylines(self.rgb, fixed, closed, colour_now, width_now, cv2.LINE_AA, _SHIFT)
+            cv2.polylines(self.rgb, fixed, False, colour_now, width_now, cv2.LINE_AA, _SHIFT)
 
     def outline(self, corners: Sequence[Point], colour: Colour) -> None:
         """A closed stroke that shows on every ground, its own colour too: dark outside, light within, colour in the middle."""

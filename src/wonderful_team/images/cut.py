@@ -13,7 +13,7 @@ from dataclasses import replace
 from typing import Literal, TypeAlias
 
 from wonderful_team.core.geometry import Box, Frame
-from wonderful_team.core.pictures import BoxMark, LineMark, Mark, Picture
+from wonderful_team.core.pictures import LineMark, Mark, Picture
 from wonderful_team.core.values import View
 from wonderful_team.images.resample import picture_of, whole_pixels
 
@@ -99,25 +99,6 @@ def crop(
     """
     frame = crop_frame(view, (box, *also), margin=margin, min_side_px=min_side_px, max_side_px=max_side_px)
     return replace(picture_of(view, frame, name), marks=tuple(marks))
-
-
-def crop_pair(
-    view: View, before: Box, after: Box, names: tuple[str, str] = ("crop before", "crop after"), *, margin: float = 0.6
-) -> tuple[Picture, Picture]:
-    """Two pictures of the same window, large enough for both boxes; each carries its own box as a BoxMark.
-
-    Args:
-        view: What to cut from.
-        before: Box before the revision [view px].
-        after: Box after it [view px].
-        names: What the words call the two pictures.
-        margin: As in `crop`.
-    """
-    clean = crop(view, before, names[0], margin=margin, also=(after,))
-    return (
-        clean.marked(BoxMark(clean.frame.box_to_picture(before), "before")),
-        replace(clean, name=names[1]).marked(BoxMark(clean.frame.box_to_picture(after), "after")),
-    )
 
 
 def crop_frame(

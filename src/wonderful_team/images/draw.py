@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import TypeVar
 
 from wonderful_team.core.geometry import Box
 from wonderful_team.core.geometry.arrays import Array
@@ -14,7 +13,6 @@ from wonderful_team.core.pictures import (
     BoxStyle,
     Candidates,
     LineMark,
-    Mark,
     PathMark,
     Picture,
     Point,
@@ -48,7 +46,6 @@ BOX_COLOURS: dict[BoxStyle, Colour] = {
     "workspace": WHITE,
 }
 """Colour of each box style; before, keep_out and workspace are dashed as well, so colour never carries meaning alone."""
-M = TypeVar("M", bound=Mark)
 _THINGS: frozenset[BoxStyle] = frozenset({"target", "before", "after"})
 _SMALL_BOX = 7.0
 """A box whose shorter side is less than so many heights of a plate is hidden by the plates of points inside it."""
@@ -70,17 +67,17 @@ def draw(picture: Picture, ticks: Ticks = Ticks.PIXELS) -> Array:
         A new image of the same size, shape (H, W, 3), uint8.
     """
     canvas = Canvas.over(picture.rgb)
-    boxes, regions = _of(BoxMark, picture), _of(RegionMark, picture)
-    paths = [path for path in _of(PathMark, picture) if path.points]
+    boxes, regions = picture.mark(BoxMark), picture.mark(RegionMark)
+    paths = [path for path in picture.mark(PathMark) if path.points]
     _draw_boxes(canvas, boxes, regions)
-    for line in _of(LineMark, picture):
+    for line in picture.mark(LineMark):
         draw_line(canvas, line.start, line.end)
     for number, path in enumerate(paths, start=1):
         draw_strip(canvas, path.points, path.width, step_colour(number))
     ways = bows([path.points for path in paths], canvas.size_px, [path.bowed for path in paths])
     draw_arrows(canvas, ways)
-    turned = [label for mark in _of(TurnMark, picture) for label in draw_turn(canvas, mark)]
-    choices, points = _of(Candidates, picture), _of(PointMark, picture)
+    turned = [label for mark in picture.mark(TurnMark) for label in draw_turn(canvas, mark)]
+    choices, points = picture.mark(Candidates), picture.mark(PointMark)
     radius, reach = _choice_radius(canvas, choices), point_reach(canvas)
     numbered = [(point, str(k)) for choice in choices for k, point in enumerate(choice.points, start=1)]
     crowd = _crowd(canvas, numbered, radius)
@@ -89,7 +86,7 @@ def draw(picture: Picture, ticks: Ticks = Ticks.PIXELS) -> Array:
     for mark in points:
         canvas.keep_clear(mark.point, reach * 0.8)
     canvas.named += [point for point, _ in numbered] + [mark.point for mark in points]
-    for axes in _of(Axes, picture):
+    for axes in picture.mark(Axes):
         draw_axes(canvas, picture.frame, axes, ticks)
     labels = [PointLabel(point, text, radius, BLUE, off_things=crowd) for point, text in numbered]
     labels += [PointLabel(mark.point, plain(mark.label), reach * 0.8, INK) for mark in points if mark.label]
@@ -108,18 +105,13 @@ def draw(picture: Picture, ticks: Ticks = Ticks.PIXELS) -> Array:
     for outline, label, style in (*named, *((_round(region), region.label, "keep_out") for region in regions)):
         if label:
             label_box(canvas, outline, plain(label), back=BOX_COLOURS[style], inside=style == "keep_out")
-    number_tiles(canvas, [box for mark in _of(Tiles, picture) for box in mark.boxes])
+    number_tiles(canvas, [box for mark in picture.mark(Tiles) for box in mark.boxes])
     return canvas.rgb
 
 
 def line_width_px(picture: Picture) -> int:
     """How wide a box's line is drawn on a picture [px of it]."""
     return Canvas.over(picture.rgb).stroke_px
-
-
-def _of(kind: type[M], picture: Picture) -> list[M]:
-    """The marks of one kind, in order."""
-    return [mark for mark in picture.marks if isinstance(mark, kind)]
 
 
 def _round(region: RegionMark) -> Box:

@@ -15,12 +15,12 @@ MAX_LABEL = 28
 """Longest label drawn, in characters; the rest becomes three dots."""
 
 
-def plain(text: str, longest: int = MAX_LABEL) -> str:
+def plain(text: str) -> str:
     """The text in printable ASCII (accents dropped, other signs as ?), shortened: the built-in font has no more."""
     spelled = unicodedata.normalize("NFKD", redact(text).replace("ß", "ss"))
     kept = "".join(c for c in spelled if not unicodedata.combining(c))
     shown = "".join(c if " " <= c <= "~" else "?" for c in " ".join(kept.split()))
-    return shown if len(shown) <= longest else shown[: longest - 3].rstrip() + "..."
+    return shown if len(shown) <= MAX_LABEL else shown[: MAX_LABEL - 3].rstrip() + "..."
 
 
 @lru_cache(maxsize=2048)

@@ -50,7 +50,6 @@ def overview(
     widths: Sequence[float] = (),
     keep_out: Sequence[KeepOut] = (),
     workspace: Limits | Box | None = None,
-    camera: Camera | None = None,
 ) -> Array:
     """A picture of what a plan is about. All coordinates are pixels of the view, whatever is shown.
 
@@ -62,15 +61,13 @@ def overview(
         turns: Things that are turned, as `action_turns` makes them from actions.
         widths: How wide a strip each of these moves sweeps, 0 for none; `swept_widths` computes them. None for all when left out.
         keep_out: Regions nothing may enter.
-        workspace: Limits in metres, or a box in view px, to outline.
-        camera: Turns metres into pixels when `shown` is a Picture; a View brings its own. Without one, outlines that
-            are given in metres are left out: they have no place in the picture.
+        workspace: Limits in metres, or a box in view px, to outline. Metres have a place in a View with a camera alone.
 
     Returns:
         Shape (H, W, 3), uint8: a small view is enlarged, a huge one shrunk.
     """
     picture = whole(shown, "overview", min_side_px=480) if isinstance(shown, View) else shown
-    eye = shown.camera if isinstance(shown, View) else camera
+    eye = shown.camera if isinstance(shown, View) else None
     canvas = Canvas.over(picture.rgb)
     named: list[_Named] = []
     for region, style, name, z_m in _regions(keep_out, workspace):

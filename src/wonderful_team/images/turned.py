@@ -120,9 +120,9 @@ def _round(patch: Array, side: int) -> Array:
     return np.where(_disc(side)[..., None], patch, np.uint8(BACK))
 
 
-def _disc(side: int, share: float = 1.0) -> Array:
+def _disc(side: int) -> Array:
     away = np.arange(side) + 0.5 - side / 2
-    return np.asarray(away[:, None] ** 2 + away[None, :] ** 2 <= (share * side / 2) ** 2)
+    return np.asarray(away[:, None] ** 2 + away[None, :] ** 2 <= (side / 2) ** 2)
 
 
 def turn_misfits(thing: Shown, goal: Shown, reach: int, turns: Sequence[float]) -> Array:

@@ -11,7 +11,6 @@ import numpy as np
 from wonderful_team.agents import build_request
 from wonderful_team.contracts import AnswerModel, Question, ReadScene, SceneReading
 from wonderful_team.contracts.shown import known, unique
-from wonderful_team.core.caps import Estimate
 from wonderful_team.core.geometry import Box
 from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.pictures import Axes, Picture
@@ -20,8 +19,9 @@ from wonderful_team.core.values import Answer, Part, Request, Words
 from wonderful_team.errors import ModelOutputError
 from wonderful_team.lab.fit import Sighting
 from wonderful_team.lab.marks import MarkedScene
+from wonderful_team.models.around import AroundModel
 from wonderful_team.models.budget import Budget
-from wonderful_team.models.client import DEADLINE_S, ModelClient
+from wonderful_team.models.client import DEADLINE_S, ModelClient, call_model
 from wonderful_team.models.conventions import PIXELS, Convention
 from wonderful_team.models.profiles import Profile
 
@@ -50,33 +50,13 @@ class Loose(Question):
         return answer, ()
 
 
-class Plain:
-    """The model under test, asked the question itself."""
-
-    def __init__(self, model: Model) -> None:
-        self.inner = model
-        self.name = str(getattr(model, "name", type(model).__name__))
-
-    @property
-    def deadline_s(self) -> float:
-        """How long the model's own tries may take; 0 when it does not say."""
-        return float(getattr(self.inner, "deadline_s", 0.0))
+class Plain(AroundModel):
+    """The model under test, asked the question itself; all else that it says of itself stands."""
 
     async def answer(self, request: Request) -> Any:
-        from wonderful_team.models.client import call_model
-
         question = request.question
-        return await call_model(
-            self.inner, replace(request, question=question.inner) if isinstance(question, Loose) else request
-        )
-
-
-class Priced(Plain):
-    """The same for a model that can say beforehand what a request may cost."""
-
-    def estimate(self, request: Request) -> Estimate:
-        reckoned: Estimate = self.inner.estimate(request)  # type: ignore[attr-defined]
-        return reckoned
+        asked = replace(request, question=question.inner) if isinstance(question, Loose) else request
+        return await call_model(self.model, asked)
 
 
 @dataclass
@@ -114,9 +94,8 @@ class Bench:
     async def ask(self, model: Model, request: Request) -> Answer:
         """One answer through the client: capped, deadlined, its form checked."""
         self._asked += 1
-        wrapped = Priced(model) if hasattr(model, "estimate") else Plain(model)
         client = ModelClient(
-            wrapped,
+            Plain(model),
             budget=self.budget,
             attempts=self.attempts,
             concurrency=self.concurrency,
@@ -194,7 +173,7 @@ async def look(
     """
     picture = scene.picture.marked(Axes()) if labelled else scene.picture
     question = ReadScene(scene.targets(), (), picture, context=tuple(also))
-    request = build_request(question, id=f"probe/{scene.kind}{scene.seed}", stage="other")
+    request = build_request(question, id=f"probe/synthetic{scene.seed}", stage="other")
     if last:
         request = replace(request, parts=_moved_back(request.parts, picture))
     try:

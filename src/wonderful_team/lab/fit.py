@@ -65,9 +65,7 @@ class Fit:
         good: It may be relied on. When False, `why` says in words what is wrong, and `convention` must not be used.
         asked, answered, outliers: Marks; outliers are answered more than WILD of the diagonal off.
         median_px, p90_px, worst_px: Residual over the marks that are no outliers [px of the pictures sent].
-        median_share: The median as a share of the diagonal.
         clamped: The numbers that the model never passes (low, high; None where it has no such end), or None.
-        runner_up: The next best hypothesis of another kind, and by how much its evidence is weaker [nats].
     """
 
     convention: Convention
@@ -79,10 +77,7 @@ class Fit:
     median_px: float
     p90_px: float
     worst_px: float
-    median_share: float
     clamped: tuple[float | None, float | None] | None = None
-    runner_up: str = ""
-    margin: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -107,7 +102,7 @@ class _Trial:
 
 
 def fit_convention(
-    sightings: Sequence[Sighting], *, guess: Convention | None = None, shape: Shape | None = None, name: str = "probed"
+    sightings: Sequence[Sighting], *, guess: Convention | None = None, shape: Shape | None = None
 ) -> Fit:
     """The convention behind answers to known marks.
 
@@ -115,33 +110,16 @@ def fit_convention(
         sightings: Best three pictures or more, of different sizes and aspects.
         guess: A convention to prefer when it explains the answers as well as any other.
         shape: How the model writes points and boxes; taken over.
-        name: Of the convention made.
     """
     asked = sum(len(sighting.said) for sighting in sightings)
     marks = _gathered(sightings)
     answered = len(marks.said)
-    nothing = Convention(name, shape=shape or Shape())
+    nothing = Convention("probed", shape=shape or Shape())
     if answered < max(LEAST_MARKS, LEAST_ANSWERED * asked):
         why = f"only {answered} of {asked} marks were answered"
-        return Fit(nothing, False, why, asked, answered, 0, np.inf, np.inf, np.inf, np.inf)
-    trials = sorted(_trials(sightings, marks, guess), key=lambda trial: trial.evidence)
-    best = trials[0]
-    rival = next((trial for trial in trials[1:] if _kind(trial) != _kind(best)), None)
-    convention = replace(best.convention, name=name, shape=shape or Shape())
-    fit = _judged(convention, best, marks, asked)
-    if rival is not None:
-        fit = replace(fit, runner_up=_kind(rival), margin=round((rival.evidence - best.evidence) / 2, 1))
-    return fit
-
-
-def residuals_px(convention: Convention, sighting: Sighting) -> Array:
-    """Distance of each answer to its mark [px of the picture sent], shape (N,); NaN where there was no answer."""
-    out = np.full(len(sighting.said), np.nan)
-    there = np.isfinite(sighting.said).all(axis=1)
-    if there.any():
-        found = convention.to_px(sighting.said[there], sighting.size_px)
-        out[there] = np.linalg.norm(found - sighting.points_px[there], axis=1)
-    return out
+        return Fit(nothing, False, why, asked, answered, 0, np.inf, np.inf, np.inf)
+    best = min(_trials(sightings, marks, guess), key=lambda trial: trial.evidence)
+    return _judged(replace(best.convention, name=nothing.name, shape=nothing.shape), best, marks, asked)
 
 
 def _judged(convention: Convention, best: _Trial, marks: _Marks, asked: int) -> Fit:
@@ -162,7 +140,7 @@ def _judged(convention: Convention, best: _Trial, marks: _Marks, asked: int) -> 
     elif best.held.mean() > 0.4:
         why = f"{int(best.held.sum())} of {answered} answers lie at the end of the model's range"
     clamped = clamp_bounds(marks.said, best.held_numbers)
-    return Fit(convention, not why, why, asked, answered, outliers, median, p90, worst, middle, clamped)
+    return Fit(convention, not why, why, asked, answered, outliers, median, p90, worst, clamped)
 
 
 def _strange_sizes(near: Array, marks: _Marks) -> str:
@@ -181,13 +159,6 @@ def _gathered(sightings: Sequence[Sighting]) -> _Marks:
     said = np.concatenate([s.said[there] for s, there in rows] or [np.empty((0, 2))])
     sizes = np.concatenate([np.tile(np.asarray(s.size_px, float), (there.sum(), 1)) for s, there in rows])
     return _Marks(points, said, sizes, REFERENCE_PX / np.linalg.norm(sizes, axis=1))
-
-
-def _kind(trial: _Trial) -> str:
-    convention = trial.convention
-    # Shares of the picture differ by a scale alone.
-    unit = "pixels" if convention.unit == "pixels" else "shares"
-    return f"{convention.order} {unit}" + ("" if convention.resize is None else " resized")
 
 
 def _trials(sightings: Sequence[Sighting], marks: _Marks, guess: Convention | None) -> list[_Trial]:

@@ -49,19 +49,17 @@ class MarkedScene:
 
     Attributes:
         absent: Words for things that are not in the picture.
-        kind, seed: Where it comes from.
+        seed: Where it comes from.
     """
 
     picture: Picture
     marks: tuple[Mark, ...]
     absent: tuple[str, ...] = ()
-    kind: str = "synthetic"
     seed: int = 0
 
-    def targets(self, with_absent: bool = False) -> tuple[Target, ...]:
-        """The marks as targets T1, T2, …, each with one point (pick); then, if asked for, those that are not there."""
-        words = [mark.words for mark in self.marks] + (list(self.absent) if with_absent else [])
-        return tuple(Target(f"T{k}", "object", text, use=("pick",)) for k, text in enumerate(words, start=1))
+    def targets(self) -> tuple[Target, ...]:
+        """The marks as targets T1, T2, …, each with one point (pick)."""
+        return tuple(Target(f"T{k}", "object", mark.words, use=("pick",)) for k, mark in enumerate(self.marks, start=1))
 
 
 def marked_scene(
@@ -98,7 +96,7 @@ def marked_scene(
         marks.append(Mark(f"{colour} {shape}", box, box.centre))
     missing = tuple(f"{colour} {shape}" for colour, shape in zip(colours, shapes, strict=True))[len(marks) :]
     frame = Frame.whole(name, size_px)
-    return MarkedScene(Picture(name, rgb, frame), tuple(marks), missing, "synthetic", seed)
+    return MarkedScene(Picture(name, rgb, frame), tuple(marks), missing, seed)
 
 
 def _circle(dx: Array, dy: Array, r: float) -> Array:

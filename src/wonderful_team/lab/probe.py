@@ -70,7 +70,6 @@ class Subject:
     make: MakeModel
     provider: bool
     guess: Convention = PIXELS
-    guessed_max_pictures: int | None = None
     base_url: str | None = None
     context: Callable[[], Facts] = Facts
     prices: tuple[float | None, float | None] = (None, None)

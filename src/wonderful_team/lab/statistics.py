@@ -2,29 +2,22 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 
 import numpy as np
 
+from wonderful_team.core.intervals import wilson_interval
 from wonderful_team.models.error_profile import QUANTILES, Count, Distribution
 
-_Z_95 = 1.959963984540054
-"""Two-sided 95 % quantile of the normal distribution."""
 _RESAMPLES = 1000
 
 
 def counted(count: int, n: int) -> Count:
-    """A count with its 95 % Wilson interval; without an interval when there is nothing to count.
-
-    Source: Wilson 1927, Journal of the American Statistical Association 22(158).
-    """
+    """A count with its 95 % Wilson interval; without an interval when there is nothing to count."""
     if n == 0:
         return Count(count=0, n=0)
-    share, spread = count / n, _Z_95**2 / n
-    middle = (share + spread / 2) / (1 + spread)
-    half = _Z_95 / (1 + spread) * math.sqrt(share * (1 - share) / n + spread / (4 * n))
-    return Count(count=count, n=n, low=max(0.0, middle - half), high=min(1.0, middle + half))
+    low, high = wilson_interval(count, n)
+    return Count(count=count, n=n, low=low, high=high)
 
 
 def distributed(values: Sequence[float], seed: int = 0) -> Distribution:

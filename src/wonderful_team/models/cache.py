@@ -23,6 +23,7 @@ from wonderful_team.core.jsonable import to_jsonable
 from wonderful_team.core.protocols import Model
 from wonderful_team.core.values import Answer, Provenance, Request, Usage
 from wonderful_team.errors import CacheMissError, ConfigError, WonderfulTeamError
+from wonderful_team.models.around import AroundModel
 from wonderful_team.models.cache_key import request_key
 from wonderful_team.models.cache_store import CacheStore, Stored
 from wonderful_team.models.client import as_answer, call_model, validate_answer
@@ -72,7 +73,7 @@ _flights: WeakKeyDictionary[CacheStore, _Flights] = WeakKeyDictionary()
 _flights_lock = threading.Lock()
 
 
-class Cached:
+class Cached(AroundModel):
     """A model behind a cache. What it says of itself (name, ticks, identity, …) is what the model says.
 
     Args:
@@ -88,22 +89,15 @@ class Cached:
     def __init__(self, model: Model, store: CacheStore, mode: Literal["on", "only"] = "on", *, repeat: int = 0) -> None:
         if mode not in ("on", "only"):
             raise ConfigError(f"cache mode {mode!r}: a model behind a cache is 'on' or 'only'")
-        self.model = model
+        super().__init__(model)
         self.store = store
         self.mode = mode
         self.repeat = repeat
         with _flights_lock:
             self._flights = _flights.setdefault(store, _Flights())
 
-    @property
-    def name(self) -> str:
-        """The model's own name."""
-        return str(getattr(self.model, "name", type(self.model).__name__))
-
     def __getattr__(self, name: str) -> Any:
-        if name.startswith("__") or name == "model":
-            raise AttributeError(name)
-        value = getattr(self.model, name)
+        value = super().__getattr__(name)
         return self._reckon if name == "estimate" else value
 
     def _reckon(self, request: Request) -> Estimate:

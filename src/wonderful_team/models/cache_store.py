@@ -41,7 +41,6 @@ class Stored:
     Attributes:
         value: The answer's fields, JSON values.
         cost: What it cost when it was made: the fields of Usage.
-        made_s: When, seconds since 1970; 0 before it is stored.
     """
 
     value: Mapping[str, Any]
@@ -50,7 +49,6 @@ class Stored:
     contract: str
     repairs: tuple[str, ...] = ()
     cost: Mapping[str, Any] = field(default_factory=dict)
-    made_s: int = field(default=0, compare=False)
 
 
 @dataclass(frozen=True)
@@ -111,8 +109,8 @@ class CacheStore:
             ConfigError: The file was broken since it was opened.
         """
         with self._told() as connection:
-            row = connection.execute("SELECT answer, made_s FROM answers WHERE key = ?", (key,)).fetchone()
-        return None if row is None else self._read(key, row)
+            row = connection.execute("SELECT answer FROM answers WHERE key = ?", (key,)).fetchone()
+        return None if row is None else self._read(key, row[0])
 
     def put(self, key: str, entry: Stored) -> Stored:
         """Keep an answer, without any key in it; one that stands already stays.
@@ -135,8 +133,8 @@ class CacheStore:
                 "INSERT OR IGNORE INTO answers VALUES (?, ?, ?, ?, ?)",
                 (key, text, entry.model_id, entry.contract, now_s),
             )
-            row = connection.execute("SELECT answer, made_s FROM answers WHERE key = ?", (key,)).fetchone()
-        return self._read(key, row) if row is not None else entry
+            row = connection.execute("SELECT answer FROM answers WHERE key = ?", (key,)).fetchone()
+        return self._read(key, row[0]) if row is not None else entry
 
     def forget(self, key: str) -> None:
         """Drop one answer."""
@@ -252,9 +250,9 @@ class CacheStore:
             else:
                 return
 
-    def _read(self, key: str, row: tuple[Any, ...]) -> Stored:
+    def _read(self, key: str, text: str) -> Stored:
         try:
-            kept = json.loads(row[0])
+            kept = json.loads(text)
             return Stored(
                 kept["value"],
                 kept["raw"],
@@ -262,7 +260,6 @@ class CacheStore:
                 kept["contract"],
                 tuple(kept["repairs"]),
                 kept["cost"],
-                int(row[1]),
             )
         except (ValueError, KeyError, TypeError) as error:
             raise ConfigError(

@@ -156,16 +156,6 @@ class Convention:
         points = (points - self.offset) * (np.asarray(size_px, dtype=float) / np.asarray(self.span(size_px)))
         return np.asarray((points - self.offset_px) / self.scale)
 
-    def amounts_to_px(self, values: ArrayLike, size_px: Size) -> Array:
-        """Lengths along x and y in the model's unit (always x first) to pixels of the picture sent, shape (N, 2)."""
-        lengths = as_points(values, 2, "values")
-        return np.asarray(lengths * (np.asarray(size_px, dtype=float) / np.asarray(self.span(size_px))) / self.scale)
-
-    def amounts_to_model(self, lengths_px: ArrayLike, size_px: Size) -> Array:
-        """The inverse of `amounts_to_px`, shape (N, 2)."""
-        lengths = as_points(lengths_px, 2, "lengths_px")
-        return np.asarray(lengths * self.scale * (np.asarray(self.span(size_px)) / np.asarray(size_px, dtype=float)))
-
 
 def _at_least(step: int, width: float, height: float, whole: Callable[[float], int]) -> Size:
     """Width and height as multiples of `step`, at least one step each."""

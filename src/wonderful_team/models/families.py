@@ -24,8 +24,6 @@ class Family:
         convention: The numbers it uses for places in a picture.
         sure: documented (by its maker), reported (in public threads), unknown (nothing is known: pixels are asked for).
         weak_pointing: It needs labelled axes on whole views to point well.
-        native_boxes: It was trained to give boxes.
-        max_pictures: Most pictures that one request may hold; None when nothing is known.
         detail: What OpenAI's interfaces are asked for with each picture, so that they do not resize it again.
     """
 
@@ -33,27 +31,23 @@ class Family:
     convention: Convention
     sure: Sure = "reported"
     weak_pointing: bool = False
-    native_boxes: bool = True
-    max_pictures: int | None = None
     detail: Literal["high", "original"] | None = None
 
 
-def _family(
-    name: str, sure: Sure = "reported", *, weak: bool = False, boxes: bool = True, most: int | None = None
-) -> Family:
-    return Family(name, CONVENTIONS[name], sure, weak, boxes, most)
+def _family(name: str, sure: Sure = "reported", *, weak: bool = False) -> Family:
+    return Family(name, CONVENTIONS[name], sure, weak)
 
 
 def _gpt(name: str, detail: Literal["high", "original"]) -> Family:
-    return replace(_family(name, weak=True, boxes=False, most=500), detail=detail)
+    return replace(_family(name, weak=True), detail=detail)
 
 
-UNKNOWN = Family("unknown", CONVENTIONS["pixels"], "unknown", weak_pointing=True, native_boxes=False)
+UNKNOWN = Family("unknown", CONVENTIONS["pixels"], "unknown", weak_pointing=True)
 
 _PATTERNS: tuple[tuple[str, Family], ...] = (
-    (r"gemini|robotics-er", _family("gemini", "documented", most=3000)),
-    (r"claude-[a-z]+-(4[-.]([7-9]|[1-9]\d)|[5-9]|[1-9]\d)(?!\d)", _family("claude-4.7", "documented", most=100)),
-    (r"claude", _family("claude", "documented", most=100)),
+    (r"gemini|robotics-er", _family("gemini", "documented")),
+    (r"claude-[a-z]+-(4[-.]([7-9]|[1-9]\d)|[5-9]|[1-9]\d)(?!\d)", _family("claude-4.7", "documented")),
+    (r"claude", _family("claude", "documented")),
     (r"gemma", _family("gemma")),
     (r"\bgpt-[\d.]+-?(mini|nano)|\bo4-mini", _gpt("gpt-patches", "high")),
     # `original` came with GPT-5.4; earlier ones see tiles of a picture whose shorter side is 768 px.
@@ -64,13 +58,11 @@ _PATTERNS: tuple[tuple[str, Family], ...] = (
     (r"qwen-?(3|[4-9])|qwen.*vl", _family("qwen3-vl")),
     (r"glm-?\d+(\.\d+)?v", _family("glm-v", "documented")),
     (r"kimi-?vl", _family("kimi-vl")),
-    (r"molmo-?2", _family("molmo2", boxes=False)),
-    (r"molmo", _family("molmo1", boxes=False)),
+    (r"molmo-?2", _family("molmo2")),
+    (r"molmo", _family("molmo1")),
     (r"internvl", _family("internvl")),
     (r"moondream", _family("moondream", "documented")),
 )
-
-FAMILIES: dict[str, Family] = {family.name: family for _, family in _PATTERNS}
 
 
 def guess_family(model_name: str) -> Family:

@@ -70,8 +70,6 @@ class Profile:
         axes: Whole views are sent with labelled axes.
         max_pictures: Most pictures in one request that were answered rightly; 1 means that they are pasted on one sheet.
         max_pictures_reached: That is the limit; False when more may fit.
-        schemas_enforced: True, False, or None when it could not be told; `schemas` says more.
-        thinking_switch: It thinks, and can be told not to; None when it could not be told; `thinking` says more.
         context_tokens: As the service says; None when it does not.
         context_source: Where that number comes from.
         latency_s: Median time of a request with one picture [s].
@@ -105,14 +103,6 @@ class Profile:
     probed: str = ""
     library: str = ""
     errors: ErrorProfile | None = None
-
-    @property
-    def schemas_enforced(self) -> bool | None:
-        return {"enforced": True, "ignored": False, "refused": False}.get(self.schemas)
-
-    @property
-    def thinking_switch(self) -> bool | None:
-        return {"switchable": True, "always": False, "never": False}.get(self.thinking)
 
     @property
     def one_picture(self) -> bool:

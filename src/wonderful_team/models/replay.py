@@ -25,6 +25,7 @@ from wonderful_team.errors import (
     WonderfulTeamError,
     reading,
 )
+from wonderful_team.models.around import AroundModel
 from wonderful_team.models.client import as_answer, call_model
 from wonderful_team.models.wire.composing import answer_picture
 from wonderful_team.redaction import HIDDEN
@@ -110,7 +111,7 @@ class ReplayModel:
         raise ReplayError(f"{_called(request)} was never answered in the record")
 
 
-class Branching:
+class Branching(AroundModel):
     """Answers from a record up to a stage, from there by a model.
 
     Args:
@@ -123,15 +124,13 @@ class Branching:
     """
 
     def __init__(self, replay: ReplayModel, model: Model, stage: str) -> None:
-        self.replay, self.model, self.stage = replay, model, stage
-        self.name = f"{getattr(model, 'name', type(model).__name__)} from {stage}"
+        super().__init__(model)
+        self.replay, self.name = replay, f"{self.name} from {stage}"
         self._from = _branch_position(stage)
         self._left = False
 
     def __getattr__(self, name: str) -> Any:
-        if name.startswith("__") or name == "model":
-            raise AttributeError(name)
-        value = getattr(self.model, name)
+        value = super().__getattr__(name)
         return self._reckon if name == "estimate" else value
 
     def _replays(self, request: Request) -> bool:

@@ -5,17 +5,22 @@ from __future__ import annotations
 from typing import Any
 
 
+def _content(data: dict[str, Any]) -> dict[str, Any]:
+    """A plan's content, with its id under "id"."""
+    return {**data["plan"], "id": data["id"]}
+
+
 def last_plan(record: dict[str, Any]) -> dict[str, Any] | None:
     """The plan that ran, or the last one that was made: its content, with its id under "id"."""
     plans = record["planner"]["plans"]
-    return {**plans[-1]["plan"], "id": plans[-1]["id"]} if plans else None
+    return _content(plans[-1]) if plans else None
 
 
 def chapters(record: dict[str, Any]) -> list[tuple[int, str, dict[str, Any]]]:
     """The plans that the page tells of: number, name, content with its id. Those with nothing in them are left out."""
     found: list[tuple[int, str, dict[str, Any]]] = []
     for number, data in enumerate(record["planner"]["plans"]):
-        content = {**data["plan"], "id": data["id"]}
+        content = _content(data)
         if content["subgoals"] or content["grounded"] or content["actions"]:
             found.append((number, f"Replan {len(found)}" if found else "First plan", content))
     return found
@@ -25,7 +30,7 @@ def grounded_plan(record: dict[str, Any]) -> dict[str, Any] | None:
     """The last plan that has grounded targets, else the last one."""
     for data in reversed(record["planner"]["plans"]):
         if data["plan"]["grounded"]:
-            return {**data["plan"], "id": data["id"]}
+            return _content(data)
     return last_plan(record)
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import io
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -110,13 +111,21 @@ def text_in_svg(x: float, y: float, text: str, css: str, size: float) -> Markup:
     )
 
 
-def pictured(text: str | Markup, record: dict[str, Any], album: Album) -> Markup:
-    """A text with the instruction's pictures in the place of their names, small enough for a line."""
+def pictured(
+    text: str | Markup, record: dict[str, Any], album: Album, show: Callable[[str, str], Markup] | None = None
+) -> Markup:
+    """A text with the instruction's pictures in the place of their names, small enough for a line.
+
+    `show` draws one in another way, from its hash and what people call it.
+    """
     said = record["planner"]["instruction"]
     slots, names = said["slots"] if said is not None else {}, recorded_names(said)
 
     def shown(name: str) -> str | None:
         slot = slots.get(name)
-        return None if slot is None else album.image(next(iter(slot["views"].values())), names[name], "inline")
+        if slot is None:
+            return None
+        key = next(iter(slot["views"].values()))
+        return album.image(key, names[name], "inline") if show is None else show(key, names[name])
 
     return Markup(PLACEHOLDER.sub(lambda found: shown(found[1]) or found[0], str(escape(text))))  # noqa: S704  escaped

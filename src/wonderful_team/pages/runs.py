@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import base64
 import hashlib
-import io
 import os
 from collections.abc import Sequence
 from pathlib import Path
@@ -19,14 +18,13 @@ from markupsafe import Markup
 from wonderful_team.core.filesystem import write_redacted
 from wonderful_team.core.text import counted, visible
 from wonderful_team.errors import ConfigError
-from wonderful_team.images import OWN_FORMATS, open_picture
+from wonderful_team.images.thumbnail import run_thumbnail
 from wonderful_team.pages.sections import summary
 from wonderful_team.pages.words import brief, money, seconds
 from wonderful_team.pages.write import PAGE_NAME
 from wonderful_team.record.record_schema import read_record
 
 _HERE = Path(__file__).parent
-THUMBNAIL_PX = 320
 MOST_PICTURES = 400
 """Newest runs that get a thumbnail: at about 10 kB each the file stays small."""
 
@@ -66,21 +64,5 @@ def _row(folder: Path, page: Path, pictured: bool) -> dict[str, Any]:
         "cost": money(found["usd"]),
         "time": "" if found["seconds"] is None else seconds(found["seconds"]),
         "link": Path(os.path.relpath(link.resolve(), page.resolve().parent)).as_posix() if link.is_file() else "",
-        "picture": thumbnail(folder) if pictured else "",
+        "picture": run_thumbnail(folder) if pictured else "",
     }
-
-
-def thumbnail(folder: Path, width_px: int = THUMBNAIL_PX) -> str:
-    """A small picture of a run as a data address: its plan, else its last view; "" without any."""
-    views = [folder / "final.png", *sorted((folder / "pictures").glob("view_*.png"), reverse=True)]
-    for path in views:
-        try:
-            with open_picture(path, OWN_FORMATS) as opened:
-                image = opened.convert("RGB")
-        except OSError:
-            continue
-        image.thumbnail((width_px, width_px * 4))
-        buffer = io.BytesIO()
-        image.save(buffer, format="WEBP", quality=80)
-        return "data:image/webp;base64," + base64.b64encode(buffer.getvalue()).decode()
-    return ""

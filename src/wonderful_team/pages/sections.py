@@ -6,13 +6,13 @@ import re
 from collections.abc import Sequence
 from typing import Any
 
-from markupsafe import Markup, escape
+from markupsafe import Markup
 
 from wonderful_team.core.text import counted, ending_words, recorded_names, spoken
 from wonderful_team.core.values import refusal_words
 from wonderful_team.pages import cost
 from wonderful_team.pages.look_up import grounded_plan, last_plan, main_key, scene_of
-from wonderful_team.pages.pictures import Album
+from wonderful_team.pages.pictures import Album, pictured
 from wonderful_team.pages.plans import plans, replans
 from wonderful_team.pages.requests import Asked
 from wonderful_team.pages.running import actions, execution
@@ -157,18 +157,12 @@ def instruction(record: dict[str, Any], album: Album) -> Markup:
     said = record["planner"]["instruction"]
     if said is None:
         return Markup("")
-    pieces: list[Markup] = []
-    names = recorded_names(said)
-    for piece in re.split(r"(\{\w+\})", said["text"]):
-        slot = said["slots"].get(piece[1:-1]) if piece.startswith("{") else None
-        if slot is None:
-            pieces.append(escape(piece))
-            continue
-        name = names[piece[1:-1]]
-        key = next(iter(slot["views"].values()))
+
+    def slot(key: str, name: str) -> Markup:
         picture = album.image(key, f"{name} of the instruction", "slot")
-        pieces.append(Markup('<span class="slot-box">{}<span class="slot-name">{}</span></span>').format(picture, name))
-    return Markup("").join(pieces)
+        return Markup('<span class="slot-box">{}<span class="slot-name">{}</span></span>').format(picture, name)
+
+    return pictured(said["text"], record, album, slot)
 
 
 def before_after(record: dict[str, Any], album: Album) -> list[tuple[str, Markup]]:

@@ -72,9 +72,8 @@ def _targets(question: Any) -> list[str]:
 
 def answer_entry(answer: Answer) -> dict[str, Any]:
     """One answer without its duration, which belongs to the clock."""
-    usage = to_jsonable(answer.usage)
+    usage = usage_entry(answer.usage)
     usage.pop("seconds")
-    usage.pop("type")
     return {
         "parsed": plain(answer.value),
         "raw": answer.raw,
@@ -99,13 +98,9 @@ def error_entry(error: WonderfulTeamError) -> dict[str, Any]:
     return shown
 
 
-def usage_entry(usage: Usage, *, with_seconds: bool) -> dict[str, Any]:
-    """What calls cost; durations only where clock times belong."""
-    entry = to_jsonable(usage)
-    entry.pop("type")
-    if not with_seconds:
-        entry.pop("seconds")
-    return dict(entry)
+def usage_entry(usage: Usage) -> dict[str, Any]:
+    """What calls cost."""
+    return {name: value for name, value in to_jsonable(usage).items() if name != "type"}
 
 
 def observation_entry(where: str, observation: Observation, store: PictureStore) -> dict[str, Any]:

@@ -13,7 +13,7 @@ from wonderful_team.core.filesystem import make_private_folder
 from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.pictures import Picture
 from wonderful_team.core.values import Observation, View
-from wonderful_team.images import Ticks, to_png
+from wonderful_team.images import to_png
 from wonderful_team.images.drawn import drawn, drawn_hash
 from wonderful_team.record.run_files import RunFiles
 from wonderful_team.redaction import redact
@@ -30,9 +30,8 @@ class PictureStore:
         files: From a picture's hash to its file, relative to the run folder.
     """
 
-    def __init__(self, files: RunFiles, ticks: Ticks = Ticks.PIXELS) -> None:
+    def __init__(self, files: RunFiles) -> None:
         self._files = files
-        self._ticks = ticks
         self._sent: set[str] = set()
         self._views = 0
         self._depths: dict[str, str] = {}
@@ -41,10 +40,10 @@ class PictureStore:
 
     def keep_sent(self, picture: Picture) -> str:
         """Store a picture as it is sent, marks drawn; returns the hash of what was drawn."""
-        key = drawn_hash(picture, self._ticks)
+        key = drawn_hash(picture)
         if key not in self._sent:
             self._sent.add(key)
-            rgb = for_record(DRAWING, drawn, picture, self._ticks)
+            rgb = for_record(DRAWING, drawn, picture)
             self._write(key, f"{len(self._sent):03d}_{_slug(picture.name)}.png", rgb)
         return key
 

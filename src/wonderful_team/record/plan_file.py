@@ -11,11 +11,9 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from wonderful_team.core.filesystem import write_private
 from wonderful_team.core.values import Plan, size_problem
 from wonderful_team.errors import ConfigError
 from wonderful_team.record.values_file import decode, encode
-from wonderful_team.redaction import redact_all
 
 PLAN_SCHEMA_VERSION = 2
 _SHORT_IDS = 1
@@ -68,12 +66,6 @@ def plan_from_json(data: Any, where: str = "plan", *, whole: bool = True) -> Pla
 def has_short_id(data: Mapping[str, Any]) -> bool:
     """Whether a plan was written by an earlier release, whose ids have 12 hex digits."""
     return data.get("schema_version") == _SHORT_IDS
-
-
-def write_plan(plan: Plan, path: Path) -> None:
-    """Write `plan.json`."""
-    text = json.dumps(redact_all(plan_to_json(plan)), indent=1, ensure_ascii=False)
-    write_private(path, text.encode("utf-8", errors="backslashreplace"))
 
 
 def read_plan(path: Path) -> Plan:

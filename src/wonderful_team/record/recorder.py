@@ -20,7 +20,7 @@ from wonderful_team.core.protocols import Event
 from wonderful_team.core.text import counted, ending_words, picture_names, spoken, visible
 from wonderful_team.core.values import GateCheck, GateReport, Instruction, Limits, Observation, Plan, Request, Trial
 from wonderful_team.errors import ActionRefusedError, BudgetReached, FileNotWrittenError, WonderfulTeamError
-from wonderful_team.images import Ticks, action_arrows, action_turns, overview, swept_widths, to_png
+from wonderful_team.images import action_arrows, action_turns, overview, swept_widths, to_png
 from wonderful_team.images.keep_out import outlines
 from wonderful_team.record import entries
 from wonderful_team.record.detections import detector_entry
@@ -45,14 +45,13 @@ class Recorder:
 
     Args:
         folder: Where to write; made when missing.
-        ticks: How the numbers of drawn axes are written, as the model's convention wants them.
         command: The command that reproduces the run, for the page.
     """
 
-    def __init__(self, folder: Path, *, ticks: Ticks = Ticks.PIXELS, command: str | None = None) -> None:
+    def __init__(self, folder: Path, *, command: str | None = None) -> None:
         self.folder = Path(folder)
         self._files = RunFiles(self.folder)
-        self._store = PictureStore(self._files, ticks)
+        self._store = PictureStore(self._files)
         self._lock = threading.RLock()
         self._zero = time.monotonic()
         self._last_write = -1.0
@@ -331,7 +330,7 @@ class Recorder:
                     "model": trial.model,
                 }
                 # The score comes after the trial and stays out of the planner's part.
-                usage = {role: entries.usage_entry(one, with_seconds=True) for role, one in trial.usage_by_role.items()}
+                usage = {role: entries.usage_entry(one) for role, one in trial.usage_by_role.items()}
                 self._clock["usage_by_role"] = usage
             case WonderfulTeamError() as error:
                 self._record["outcome"] = {"outcome": event.name, "stage": error.stage, "reason": str(error)}

@@ -34,7 +34,7 @@ from wonderful_team.runtime.loop import Caller
 from wonderful_team.runtime.optional import ChunkPolicy, Horizon
 from wonderful_team.runtime.rollout_log import RolloutEnd, RolloutLog
 from wonderful_team.runtime.staleness import MAX_AGE_S
-from wonderful_team.runtime.user_code import GuardedScorer, GuardedWorld, decision_of
+from wonderful_team.runtime.user_code import GuardedWorld, decision_of, score_of
 
 NOBODY_JUDGED = "; nobody judged the result: there is no scorer, and a method judges only where it may replan"
 
@@ -233,7 +233,7 @@ def _scored(progress: RolloutLog, ending: RolloutEnd, scorer: Privileged | None)
         unjudged = NOBODY_JUDGED if ending.outcome is None and progress.unasked else ""
         return progress.finish(RolloutEnd(ending.outcome or "unscored", ending.stage, f"{ending.reason}{unjudged}"))
     try:
-        score = GuardedScorer(scorer).score()
+        score = score_of(scorer)
     except BudgetReached as error:
         reason = f"{ending.reason}; nobody judged the result: {error}"
         return progress.finish(RolloutEnd(ending.outcome or "unscored", ending.stage or error.stage, reason))

@@ -45,6 +45,15 @@ def _checked(value: Any, kind: type[Kind] | tuple[type, ...], whose: str, error:
     return cast(Kind, value)
 
 
+def _asked(
+    whose: str, kind: type[Kind], error: type[WonderfulTeamError], function: Callable[..., Any], *args: Any
+) -> Kind:
+    """What somebody else's function returns, within the run's time; `error` is whose fault it is when it does not."""
+    with code_of(whose, error):
+        value = deadline.bounded(whose, function, *args)
+    return _checked(value, kind, f"what {whose} returned", error)
+
+
 class GuardedWorld:
     """A world whose failures are named: motion is the robot's, everything else the world's."""
 
@@ -87,16 +96,12 @@ class GuardedWorld:
     def observe(self) -> Observation:
         """What is seen; a camera that fails is a failure of the world."""
         whose = f"observe() of world {self._name}"
-        with code_of(whose, WorldUnavailableError):
-            seen = deadline.bounded(whose, self.inner.observe)
-        return _checked(seen, Observation, f"what {whose} returned", WorldUnavailableError)
+        return _asked(whose, Observation, WorldUnavailableError, self.inner.observe)
 
     def execute(self, action: Action) -> StepReport:
         """What the robot did; motion that fails is the robot's fault."""
         whose = f"execute({action.kind}) of world {self._name}"
-        with code_of(whose, RobotFaultError):
-            report = deadline.bounded(whose, self.inner.execute, action)
-        return _checked(report, StepReport, f"what {whose} returned", RobotFaultError)
+        return _asked(whose, StepReport, RobotFaultError, self.inner.execute, action)
 
     def stop(self) -> None:
         whose = f"stop() of world {self._name}"
@@ -131,18 +136,9 @@ def decision_of(policy: Policy, situation: Situation, caller: Caller) -> Decisio
     return settled
 
 
-class GuardedScorer:
-    """The truth of a world: a scorer that breaks could not judge, which is the world's failure."""
-
-    def __init__(self, inner: Privileged) -> None:
-        self.inner = inner
-
-    def score(self) -> Score:
-        """The scorer's word."""
-        whose = f"score() of {type(self.inner).__name__}"
-        with code_of(whose, WorldUnavailableError):
-            score = deadline.bounded(whose, self.inner.score)
-        return _checked(score, Score, f"what {whose} returned", WorldUnavailableError)
+def score_of(scorer: Privileged) -> Score:
+    """The scorer's word; one that breaks could not judge, which is the world's failure."""
+    return _asked(f"score() of {type(scorer).__name__}", Score, WorldUnavailableError, scorer.score)
 
 
 def close_world(world: World, warn: Callable[[str], None]) -> None:

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from tests.planning.stub_model import stub_script
 from tests.servers.brains import AgentSession, Brain, Tapped, typed_brain
 from tests.servers.server import WireServer
 from tests.servers.speech import Speech
@@ -19,7 +20,6 @@ from wonderful_team.core.values import Answer, Request, Target, View
 from wonderful_team.errors import WonderfulTeamError
 from wonderful_team.images import whole
 from wonderful_team.models.client import ModelClient
-from wonderful_team.models.stub_model import stub_script
 
 TARGETS = (Target("T1", "object", "the red cube"), Target("T2", "area", "the free corner"))
 

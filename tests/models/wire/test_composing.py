@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from tests.models.wire.scenes import answer_px, picture, reading
+from tests.models.wire.writing import written
 from wonderful_team import contracts as c
 from wonderful_team.agents import build_request
 from wonderful_team.core.geometry import Box
@@ -28,6 +29,12 @@ def images(composed: Composed) -> list[np.ndarray]:
     return [cv2.imdecode(np.frombuffer(file, np.uint8), cv2.IMREAD_COLOR) for file in files]
 
 
+def in_numbers(composed: Composed, points_px: list[tuple[float, float]]) -> np.ndarray:
+    """Our pixels in the model's numbers: `to_px` is affine, so three pairs of numbers tell it and its inverse."""
+    origin, first, second = composed.to_px([(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)])
+    return (np.array(points_px) - origin) @ np.linalg.inv(np.stack([first - origin, second - origin]))
+
+
 @pytest.mark.parametrize("pasted", [False, True])
 @pytest.mark.parametrize("name", sorted(CONVENTIONS))
 def test_an_answer_in_the_models_numbers_comes_back_in_pixels_of_our_picture(name: str, pasted: bool) -> None:
@@ -35,9 +42,9 @@ def test_an_answer_in_the_models_numbers_comes_back_in_pixels_of_our_picture(nam
     composed = compose(reading(view, (picture((300, 200), "front"),)), CONVENTIONS[name], one_picture=pasted)
     ours = answer_px(view)
     box = ours["targets"][0]["box"]  # type: ignore[index]
-    corners = composed.to_model([(box["x0"], box["y0"]), (box["x1"], box["y1"])]).ravel().tolist()
+    corners = in_numbers(composed, [(box["x0"], box["y0"]), (box["x1"], box["y1"])]).ravel().tolist()
     keys = composed.convention.shape.box_keys
-    spoken = composed.form.write(ours, view.size_px)
+    spoken = written(composed.form, ours, view.size_px)
     spoken["targets"][0][composed.convention.shape.box] = (
         corners if keys is None else dict(zip(keys, corners, strict=True))
     )

@@ -10,6 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tests.models.wire.scenes import answer_px, picture, reading
+from tests.models.wire.writing import written
 from wonderful_team.contracts import PlanDraft, Points, SceneReading
 from wonderful_team.contracts.give_box import BoxAnswer
 from wonderful_team.models.conventions import CONVENTIONS, Convention
@@ -27,7 +28,7 @@ def back(form: Form, value: Any, size: tuple[int, int]) -> Any:
 def test_an_answer_comes_back_from_every_family(name: str, size: tuple[int, int]) -> None:
     view = picture(size)
     form = Form.of(SceneReading, CONVENTIONS[name])
-    spoken = json.loads(json.dumps(form.write(answer_px(view), size)))
+    spoken = json.loads(json.dumps(written(form, answer_px(view), size)))
     got = SceneReading.model_validate(back(form, spoken, size))
     want = SceneReading.model_validate(answer_px(view))
     assert got.targets[0].box is not None
@@ -110,7 +111,7 @@ def test_answers_without_places_are_plain_and_kept() -> None:
 def test_an_offset_and_scale_that_were_measured_are_undone() -> None:
     odd = Convention("odd", "yx", "thousandths", offset_px=(4, -3), scale=(1.1, 0.9))
     form = Form.of(BoxAnswer, odd)
-    spoken = form.write({"reasoning": "", "box": {"x0": 10, "y0": 20, "x1": 30, "y1": 40}}, (640, 480))
+    spoken = written(form, {"reasoning": "", "box": {"x0": 10, "y0": 20, "x1": 30, "y1": 40}}, (640, 480))
     got = BoxAnswer.model_validate(back(form, spoken, (640, 480)))
     assert got.box is not None
     assert got.box.as_box.as_tuple == pytest.approx((10, 20, 30, 40), abs=0.01)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import cached_property
 from types import MappingProxyType
 from typing import Literal, TypeAlias
@@ -211,6 +211,3 @@ class Plan:
             "keep_out": to_jsonable(self.keep_out),
         }
         return hashlib.sha256(json.dumps(runs, sort_keys=True).encode()).hexdigest()[:12]
-
-    def with_status(self, status: str, message: str = "") -> Plan:
-        return replace(self, status=status, message=message)

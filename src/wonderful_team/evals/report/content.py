@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-import base64
-import contextlib
 import os
 from collections.abc import Sequence
 from itertools import zip_longest
 from pathlib import Path
 from typing import Any
 
-import cv2
-import numpy as np
 from markupsafe import Markup
 
 from wonderful_team.core.text import counted
@@ -22,11 +18,10 @@ from wonderful_team.evals.report import tables
 from wonderful_team.evals.report.plots import cost_plot, rate_plot, task_plot
 from wonderful_team.evals.summary import Summary
 from wonderful_team.evals.trials import Condition, Row
-from wonderful_team.images import OWN_FORMATS, open_picture
+from wonderful_team.images.thumbnail import run_thumbnail
 
 EXAMPLES = 3
 GALLERY = 24
-THUMBNAIL_PX = 320
 
 
 def page_content(summary: Summary, warnings: Sequence[str], baseline: str | None, page: Path) -> dict[str, Any]:
@@ -151,7 +146,7 @@ def _gallery(summary: Summary, page: Path) -> list[dict[str, Any]]:
     return [
         {
             "page": link(row.result.page, page),
-            "picture": _thumbnail(Path(row.result.page).parent),
+            "picture": run_thumbnail(Path(row.result.page).parent),
             "scene": row.spec.scene,
             "label": row.spec.condition.label,
             "outcome": row.result.outcome,
@@ -160,20 +155,6 @@ def _gallery(summary: Summary, page: Path) -> list[dict[str, Any]]:
         for row in turns[:GALLERY]
         if row.result is not None
     ]
-
-
-def _thumbnail(run: Path) -> str:
-    """A small picture of a run as a data address, so that the page stands alone: its plan, else its last view; "" without any."""
-    views = [run / "final.png", *sorted((run / "pictures").glob("view_*.png"), reverse=True)]
-    for path in views:
-        with contextlib.suppress(OSError), open_picture(path, OWN_FORMATS) as opened:
-            picture = np.asarray(opened.convert("RGB"))[..., ::-1]
-            height = max(1, round(picture.shape[0] * THUMBNAIL_PX / picture.shape[1]))
-            small = cv2.resize(picture, (THUMBNAIL_PX, height), interpolation=cv2.INTER_AREA)
-            done, coded = cv2.imencode(".jpg", small, [cv2.IMWRITE_JPEG_QUALITY, 82])
-            if done:
-                return "data:image/jpeg;base64," + base64.b64encode(coded.tobytes()).decode()
-    return ""
 
 
 def link(target: str, page: Path) -> str:

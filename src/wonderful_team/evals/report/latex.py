@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from wonderful_team.core.intervals import Rate, wilson_interval
+from wonderful_team.core.intervals import Rate
 from wonderful_team.evals.names import short_names
 from wonderful_team.evals.paper import PaperFigure, paper_beside, published
 from wonderful_team.evals.report.tables import PAIR_HEAD, in_order, number, pair_words
@@ -28,8 +28,8 @@ def _conditions(summary: Summary) -> str:
     for one in in_order(summary):
         cell = summary.cell(one)
         share, bounds = "no data", ""
-        if cell.rate.n:
-            low, high = wilson_interval(cell.rate.successes, cell.rate.n)
+        if cell.rate.interval is not None:
+            low, high = cell.rate.interval
             share, bounds = f"{100 * cell.rate.successes / cell.rate.n:.1f}", f"{100 * low:.1f}--{100 * high:.1f}"
         counts = [str(cell.rate.n), str(cell.count("error")), str(cell.count("unscored"))]
         means = [number(cell.usd_per_trial, 3), number(cell.mean("calls"), 1), number(cell.mean("rounds"), 1)]
@@ -55,9 +55,7 @@ def _tasks(summary: Summary) -> str:
 
 
 def _rate(rate: Rate) -> str:
-    return (
-        _with_bounds(100 * rate.successes / rate.n, wilson_interval(rate.successes, rate.n), rate.n) if rate.n else "--"
-    )
+    return _with_bounds(100 * rate.successes / rate.n, rate.interval, rate.n) if rate.n else "--"
 
 
 def _figure(figure: PaperFigure | None) -> str:

@@ -37,19 +37,6 @@ class Written:
     warnings: tuple[str, ...]
 
 
-def write_report(
-    stores: Sequence[str | Path],
-    path: str | Path,
-    *,
-    baseline: str | None = None,
-    csv: str | Path | None = None,
-    latex: str | Path | None = None,
-    command: str = "",
-) -> Path:
-    """Write the page of one or several stores; returns its path. `write_all` says what else was written."""
-    return write_all(stores, path, baseline=baseline, csv=csv, latex=latex, command=command).page
-
-
 def write_all(
     stores: Sequence[str | Path],
     path: str | Path,

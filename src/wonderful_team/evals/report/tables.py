@@ -9,11 +9,11 @@ import json
 from collections.abc import Sequence
 from typing import Any
 
-from wonderful_team.core.intervals import wilson_interval
 from wonderful_team.core.text import visible
 from wonderful_team.errors import MissingExtraError
 from wonderful_team.evals.pairing import Pair
 from wonderful_team.evals.paper import paper_beside
+from wonderful_team.evals.schema import CONDITION
 from wonderful_team.evals.summary import Cell, Summary
 from wonderful_team.evals.trials import Condition, Row
 
@@ -35,23 +35,21 @@ _RESULT = (
 def trial_record(row: Row) -> dict[str, Any]:
     """One trial flat, for a line of a table; None for everything that is not known yet."""
     spec, result = row.spec, row.result
-    condition = spec.condition
     flat: dict[str, Any] = {
         "task": spec.task,
         "seed": spec.seed,
         "repeat": spec.repeat,
-        "method": condition.method,
-        "model": condition.model,
-        "isolate": condition.isolate,
-        "perturb": condition.perturb,
-        "replans": condition.replans,
-        "how": condition.how,
-        "looks": condition.reobserve,
+        **_condition_values(spec.condition),
     }
     flat |= {name: None if result is None else getattr(result, name) for name in _RESULT}
     flat["provenance"] = None if result is None else " ".join(result.provenance)
     flat["versions"] = None if result is None else json.dumps(dict(result.versions))
     return flat | ({} if result is None else {f"fact {name}": value for name, value in result.facts.items()})
+
+
+def _condition_values(condition: Condition) -> dict[str, Any]:
+    """A condition as the columns of a store."""
+    return dict(zip(CONDITION, condition.values, strict=True))
 
 
 def to_csv(rows: Sequence[Row]) -> str:
@@ -82,17 +80,11 @@ def condition_json(cell: Cell) -> dict[str, Any]:
     """A cell for machines."""
     rate = cell.rate
     return {
-        "method": cell.condition.method,
-        "model": cell.condition.model,
-        "isolate": cell.condition.isolate,
-        "perturb": cell.condition.perturb,
-        "replans": cell.condition.replans,
-        "how": cell.condition.how,
-        "looks": cell.condition.reobserve,
+        **_condition_values(cell.condition),
         "successes": rate.successes,
         "scored": rate.n,
         "success": rate.share,
-        "interval": list(wilson_interval(rate.successes, rate.n)) if rate.n else None,
+        "interval": rate.interval and list(rate.interval),
         "errors": cell.count("error"),
         "unscored": cell.count("unscored"),
         "missing": cell.missing,
@@ -127,8 +119,8 @@ def cell_words(cell: Cell) -> tuple[str, ...]:
     rate = cell.rate
     badges = f" [{', '.join(cell.badges)}]" if cell.badges else ""
     interval = "no data"
-    if rate.n:
-        low, high = wilson_interval(rate.successes, rate.n)
+    if rate.interval is not None:
+        low, high = rate.interval
         interval = f"{100 * low:.1f} to {100 * high:.1f}"
     return (
         cell.condition.label + badges,
@@ -202,9 +194,9 @@ def task_table(summary: Summary) -> tuple[tuple[str, ...], list[tuple[str, ...]]
 def rate_words(cell: Cell) -> str:
     """A rate with n and interval in one field."""
     rate = cell.rate
-    if not rate.n:
+    if rate.interval is None:
         return "no data"
-    low, high = wilson_interval(rate.successes, rate.n)
+    low, high = rate.interval
     return f"{100 * rate.successes / rate.n:.0f} % (n = {rate.n}; {100 * low:.0f} to {100 * high:.0f})"
 
 

@@ -63,11 +63,6 @@ class Composed:
         assert self._where is not None
         return self._where.to_ours(self.convention.to_px(values, self._canvas))
 
-    def to_model(self, points_px: Any) -> Array:
-        """The inverse of `to_px`."""
-        assert self._where is not None
-        return self.convention.to_model(self._where.to_sent(np.atleast_2d(points_px)), self._canvas)
-
 
 def compose(
     request: Request, convention: Convention, *, one_picture: bool = False, schema_in_words: bool = False

@@ -12,7 +12,7 @@ from typing import Any
 from pydantic import BaseModel
 
 from wonderful_team.contracts import BoxPx, PointPx
-from wonderful_team.models.conventions import Convention, Size
+from wonderful_team.models.conventions import Convention
 
 Json = dict[str, Any]
 ToPx = Callable[[Sequence[Sequence[float]]], Any]
@@ -78,11 +78,6 @@ class Form:
             ValueError: A place is not written as the schema says; the text is for the model.
         """
         return _read(value, self._ours, self._ours.get("$defs", {}), self.convention, to_px, "answer")
-
-    def write(self, value: Any, size_px: Size) -> Any:
-        """Our value (places in pixels of a picture of `size_px`) as the model would write it."""
-        plain = value.model_dump() if isinstance(value, BaseModel) else value
-        return _write(plain, self._ours, self._ours.get("$defs", {}), self.convention, size_px)
 
 
 def point_keys(convention: Convention) -> tuple[str, str]:
@@ -264,30 +259,6 @@ def _numbers(value: Any, keys: Sequence[str], convention: Convention) -> list[fl
 def _short(value: Any) -> str:
     text = json.dumps(value, default=str)
     return text if len(text) <= 80 else text[:77] + "..."
-
-
-def _write(value: Any, node: Json, defs: Json, convention: Convention, size_px: Size) -> Any:
-    if value is None:
-        return None
-    option = _fitting(value, node, defs, convention)
-    reference = option.get("$ref")
-    if reference in (_POINT, _BOX):
-        names = ("x0", "y0", "x1", "y1") if reference == _BOX else ("x", "y")
-        pairs = [[value[names[i]], value[names[i + 1]]] for i in range(0, len(names), 2)]
-        numbers = [round(float(n), 3) for pair in convention.to_model(pairs, size_px) for n in pair]
-        shape = convention.shape.box_keys if reference == _BOX else convention.shape.point_keys
-        return numbers if shape is None else dict(zip(shape, numbers, strict=True))
-    if isinstance(value, list | tuple):
-        return [_write(item, option.get("items", {}), defs, convention, size_px) for item in value]
-    if isinstance(value, Mapping):
-        properties = option.get("properties", {})
-        return {
-            _native_name(key, _kind(properties.get(key, {})), convention): _write(
-                item, properties.get(key, {}), defs, convention, size_px
-            )
-            for key, item in value.items()
-        }
-    return value
 
 
 __all__ = ["BoxPx", "Form", "PointPx", "ToPx", "box_keys", "point_keys"]

@@ -61,10 +61,6 @@ class Shown:
         """Pixels of what was sent (the sheet, or the picture alone) to pixels of our picture, shape (N, 2)."""
         return np.asarray((sent_px - self.origin_px) / self.scale)
 
-    def to_sent(self, ours_px: Array) -> Array:
-        """The inverse of `to_ours`."""
-        return np.asarray(ours_px * np.asarray(self.scale) + self.origin_px)
-
 
 def ticks_of(convention: Convention) -> Ticks:
     """What the numbers on drawn axes mean to a model of this convention."""

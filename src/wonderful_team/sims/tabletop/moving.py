@@ -1,17 +1,22 @@
-"""Moving a MuJoCo state by hand: setting bodies down, letting everything come to rest."""
+"""Moving a MuJoCo state: setting bodies down by hand, moving a tool, letting everything come to rest."""
 
 from __future__ import annotations
 
+import math
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 
 from wonderful_team.core.geometry import Pose
+from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.sims.tabletop.engine import mj
 from wonderful_team.sims.tabletop.model import TIMESTEP_S, BuiltModel
 
 SETTLED_M_S = 0.004
 SETTLE_LIMIT_S = 1.6
+HOME_M = (0.5, 0.0, 0.3)
+"""Where a tool waits [m]."""
 
 
 def put_body(built: BuiltModel, state: Any, name: str, pose: Pose) -> None:
@@ -36,3 +41,30 @@ def settle(built: BuiltModel, state: Any) -> None:
         if quiet >= 20:
             break
     mj.mj_forward(built.model, state)
+
+
+class Tool:
+    """A tool over the table, in a MuJoCo state.
+
+    Attributes:
+        tool_m: Where it is, shape (3,) [m].
+        watch: Called after every step of physics.
+    """
+
+    holding = False
+
+    def __init__(self, built: BuiltModel, state: Any) -> None:
+        self._built, self._model, self._state = built, built.model, state
+        self._slot = int(built.model.body_mocapid[built.body_id("tool")])
+        self.tool_m = np.array(HOME_M)
+        self.watch: Callable[[], None] | None = None
+
+    def _place_tool(self, position_m: Array, yaw_rad: float) -> None:
+        self.tool_m = np.array(position_m)
+        self._state.mocap_pos[self._slot] = position_m
+        self._state.mocap_quat[self._slot] = (math.cos(yaw_rad / 2), 0.0, 0.0, math.sin(yaw_rad / 2))
+
+    def _step(self) -> None:
+        mj.mj_step(self._model, self._state)
+        if self.watch is not None:
+            self.watch()

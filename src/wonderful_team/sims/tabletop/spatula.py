@@ -18,9 +18,8 @@ from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.sims.tabletop.engine import mj
 from wonderful_team.sims.tabletop.goals import Poses, footprint_of
 from wonderful_team.sims.tabletop.model import BLADE_HALF_M, TIMESTEP_S, BuiltModel, Thing
-from wonderful_team.sims.tabletop.moving import settle
+from wonderful_team.sims.tabletop.moving import HOME_M, Tool, settle
 
-HOME_M = (0.5, 0.0, 0.3)
 OVER_TABLE_M = 0.001
 """How far over the table the blade's lower edge moves [m]."""
 SPEED_M_S = 0.16
@@ -41,20 +40,13 @@ class Pushed:
     measured: Mapping[str, Any]
 
 
-class Spatula:
-    """Moves a MuJoCo state through pushes: the front of the blade travels from the start to the end.
-
-    `watch` is called after every step of physics.
-    """
-
-    holding = False
+class Spatula(Tool):
+    """Moves a MuJoCo state through pushes: the front of the blade travels from the start to the end."""
 
     def __init__(self, built: BuiltModel, state: Any, poses: Callable[[], Poses]) -> None:
-        self._built, self._model, self._state, self._poses = built, built.model, state, poses
+        super().__init__(built, state)
+        self._poses = poses
         self._blade = int(mj.mj_name2id(built.model, mj.mjtObj.mjOBJ_GEOM, "blade"))
-        self._slot = int(built.model.body_mocapid[built.body_id("tool")])
-        self.tool_m = np.array(HOME_M)
-        self.watch: Callable[[], None] | None = None
 
     def push(self, action: Push) -> Pushed:
         """Run one action to its end, things at rest again."""
@@ -65,7 +57,7 @@ class Spatula:
             return Pushed((), self._measured(None, None, action))
         reach = self._free_way(landed, way, float((end - landed) @ way))
         during, travelled = self._sweep(landed, way, reach)
-        self._place(np.array([*HOME_M]), 0.0)
+        self._place_tool(np.array([*HOME_M]), 0.0)
         settle(self._built, self._state)
         return Pushed(tuple(during), self._measured(landed, landed + travelled * way, action))
 
@@ -97,7 +89,7 @@ class Spatula:
         for k in range(count + 1):
             travelled = reach * k / count
             at = start + (travelled - BLADE_HALF_M[0]) * way
-            self._place(np.array([*at, height]), yaw)
+            self._place_tool(np.array([*at, height]), yaw)
             self._step()
             if k % SAMPLE_STEPS == 0:
                 during.append(self._poses())
@@ -105,19 +97,9 @@ class Spatula:
                     return during, travelled
         return during, reach
 
-    def _step(self) -> None:
-        mj.mj_step(self._model, self._state)
-        if self.watch is not None:
-            self.watch()
-
     def _stuck(self) -> bool:
         contact = self._state.contact
         return bool(((contact.geom == self._blade).any(axis=1) & (contact.dist < -RESISTANCE_M)).any())
-
-    def _place(self, position_m: Array, yaw_rad: float) -> None:
-        self.tool_m = position_m
-        self._state.mocap_pos[self._slot] = position_m
-        self._state.mocap_quat[self._slot] = (math.cos(yaw_rad / 2), 0.0, 0.0, math.sin(yaw_rad / 2))
 
     def _things(self) -> list[tuple[Thing, Pose]]:
         poses = self._poses()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -13,7 +13,7 @@ from wonderful_team.core.actions import PickPlace
 from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.sims.tabletop.engine import mj
 from wonderful_team.sims.tabletop.model import TABLE_GROUP, THING_GROUP, TIMESTEP_S, BuiltModel
-from wonderful_team.sims.tabletop.moving import settle
+from wonderful_team.sims.tabletop.moving import HOME_M, Tool, settle
 
 DOWN = np.array([0.0, 0.0, -1.0])
 HAIR_M = ((0.0, 0.0), (1.7e-4, 0.9e-4), (-1.3e-4, 1.1e-4))
@@ -21,7 +21,6 @@ CUP_RADIUS_M = 0.006
 SEAL_M = 0.006
 """How much the surface under the rim of the cup may rise or fall for the cup to hold [m]."""
 SEALED_SHARE = 0.5
-HOME_M = (0.5, 0.0, 0.3)
 LIFT_M = 0.16
 CARRY_SPEED_M_S = 1.0
 TURN_SPEED_RAD_S = 4.0
@@ -38,19 +37,15 @@ class Picked:
     measured: Mapping[str, Any]
 
 
-class Suction:
-    """Moves a MuJoCo state through pick-and-place actions; `watch` is called after every step of physics."""
+class Suction(Tool):
+    """Moves a MuJoCo state through pick-and-place actions."""
 
     def __init__(self, built: BuiltModel, state: Any) -> None:
-        self._built, self._model, self._state = built, built.model, state
+        super().__init__(built, state)
         self._names = {built.body_id(thing.name): thing.name for thing in built.things}
         self._movable = {built.body_id(thing.name) for thing in built.things if thing.body.movable}
         self._groups = np.zeros(6, dtype=np.uint8)
         self._groups[[THING_GROUP, TABLE_GROUP]] = 1
-        self._slot = int(built.model.body_mocapid[built.body_id("tool")])
-        self.tool_m = np.array(HOME_M)
-        self.holding = False
-        self.watch: Callable[[], None] | None = None
 
     def thing_under(self, x_m: float, y_m: float) -> str | None:
         """Name of the highest thing at a point of the table, or None for bare table."""
@@ -109,11 +104,6 @@ class Suction:
     def _hold_id(self, body: int) -> int:
         return int(mj.mj_name2id(self._model, mj.mjtObj.mjOBJ_EQUALITY, f"hold {self._names[body]}"))
 
-    def _place_tool(self, position_m: Array, yaw_rad: float) -> None:
-        self.tool_m = np.array(position_m)
-        self._state.mocap_pos[self._slot] = position_m
-        self._state.mocap_quat[self._slot] = (math.cos(yaw_rad / 2), 0.0, 0.0, math.sin(yaw_rad / 2))
-
     def _attach(self, body: int) -> None:
         """Weld the thing to the tool as it stands now."""
         self._place_tool(self.tool_m, 0.0)
@@ -142,11 +132,6 @@ class Suction:
             self._step()
         for _ in range(20):
             self._step()
-
-    def _step(self) -> None:
-        mj.mj_step(self._model, self._state)
-        if self.watch is not None:
-            self.watch()
 
     def _lower(self, body: int, contact_z: float, yaw_rad: float) -> None:
         """Lower the thing until it touches something, never below the height at which it was picked from the table."""

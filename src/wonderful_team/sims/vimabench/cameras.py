@@ -9,7 +9,6 @@ import numpy as np
 from wonderful_team.core.geometry import AffineCamera
 
 CAMERA_NAMES = ("top", "front")
-SIZE_PX = (256, 128)
 HALF_PX = 0.5
 """The fits count pixels by whole numbers; ours are continuous, with centres at one half."""
 TOP_PX_M, FRONT_PX_M, FRONT_DOWN_PX_M = 250.98, 251.43, 177.80

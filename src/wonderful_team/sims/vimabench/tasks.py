@@ -21,12 +21,6 @@ TASKS: dict[str, str] = {
     "manipulate_old_neighbor": "Put an object into a container, then the one that was beside it.",
     "pick_in_order_then_restore": "Put an object into two containers in turn, then back.",
 }
-LEVELS: dict[str, str] = {
-    "L1": "placement generalisation",
-    "L2": "combinatorial generalisation",
-    "L3": "novel object generalisation",
-    "L4": "novel task generalisation",
-}
 _UNSEEN_IN_TRAINING = ("sweep_without_touching", "novel_adj_and_noun", "follow_motion", "same_texture")
 """The four tasks of level 4, which levels 1 to 3 do not have."""
 _NO_NOVEL_OBJECTS = ("sweep_without_exceeding",)

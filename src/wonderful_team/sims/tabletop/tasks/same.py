@@ -12,7 +12,7 @@ from wonderful_team.sims.tabletop.tasks.choices import L4, L123, base_shapes, ki
 WITHIN_M, WITHIN_BOWL_M = 0.125, 0.0875
 SQUARE_LIKE: tuple[str, ...] = ("shorter block",)
 CIRCLE_LIKE: tuple[str, ...] = ("ring", "round")
-SQUARE_BASES, CIRCLE_BASES = ("frame", "square", "container", "pallet"), ("bowl", "pan")
+CIRCLE_BASES = ("bowl", "pan")
 
 
 @task(

@@ -1,4 +1,4 @@
-"""Rates with intervals, and confusion matrices of members that judge."""
+"""Confusion matrices of members that judge."""
 
 from __future__ import annotations
 

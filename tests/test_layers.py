@@ -32,7 +32,7 @@ ARROWS: dict[str, set[str]] = {
     "pages": BASE | {"images", "record"},
     "runtime": BASE | {"images"},
     "evals": BASE | {"images"},
-    "registry": BASE | {"agents", "models", "offline", "simulated", "planning", "sims"},
+    "registry": BASE | {"agents", "contracts", "models", "offline", "simulated", "planning", "sims"},
     "api": BASE
     | {"agents", "images", "models", "planning", "sims", "record", "pages", "runtime", "lab", "evals", "registry"},
     "cli": BASE

@@ -48,7 +48,7 @@ A request is the role's standing words (the system message), then its parts in t
 `wonderful-team list prompts` shows the words alone, `--prompts DIR` replaces them, `show RUN --role ROLE` shows those of a run.
 """
 
-RIVALS = ("direct", "pivot")
+RIVALS = ("direct", "pivot", "nlap")
 """Rivals that together ask everything that the team is not asked."""
 ASKERS = {**ROLES, **{asker.name: asker for name in RIVALS for asker in METHODS[name].roles}}
 QUESTIONS_BY_NAME = {kind.contract: kind for kind in QUESTIONS}

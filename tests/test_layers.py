@@ -33,7 +33,7 @@ ARROWS: dict[str, set[str]] = {
     "pages": BASE | {"images", "record"},
     "runtime": BASE | {"images"},
     "evals": BASE | {"images"},
-    "registry": BASE | {"agents", "detectors", "models", "offline", "simulated", "planning", "sims"},
+    "registry": BASE | {"agents", "contracts", "detectors", "models", "offline", "simulated", "planning", "sims"},
     "api": BASE
     | {"agents", "detectors", "images", "models", "planning", "sims", "record", "pages", "runtime", "lab", "evals"}
     | {"registry"},

@@ -149,6 +149,20 @@ RIGHT["PlanDirectly"] = {
     ],
 }
 RIGHT["SelectMarks"] = {"reasoning": "", "numbers": [3, 1]}
+RIGHT["ListObjects"] = {
+    "reasoning": "",
+    "objects": [{"name": "striped mug", "point": {"x": 12, "y": 6}}],
+    "pictures": [{"picture": "base_obj", "words": "a tray"}],
+}
+RIGHT["PlanFromList"] = {
+    "thoughts": "The mug goes onto the tray.",
+    "subgoals": [{"id": "G1", "text": "the mug is on the tray", "after": [], "targets": ["T1", "T2"]}],
+    "targets": [
+        {"id": "T1", "kind": "object", "words": "striped mug", "points": [{"use": "pick", "x": 12, "y": 31}]},
+        {"id": "T2", "kind": "object", "words": "tray", "points": [{"use": "place", "x": 50, "y": 20}]},
+    ],
+    "steps": RIGHT["PlanDirectly"]["steps"],
+}
 
 LEAVE_OUT = object()
 """Given as a new value: the field is left out."""

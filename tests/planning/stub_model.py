@@ -100,6 +100,12 @@ def stub_script() -> dict[str, Any]:
             ],
         },
         "PlanDirectly": _whole_plan,
+        "ListObjects": lambda request: {
+            "reasoning": "",
+            "objects": [],
+            "pictures": [{"picture": slot.name, "words": "a thing"} for slot in request.question.slots],
+        },
+        "PlanFromList": _listed_plan,
         "SelectMarks": lambda _: {"reasoning": "", "numbers": [1]},
     }
     return dict(answers)
@@ -146,6 +152,23 @@ def _whole_plan(request: Request) -> dict[str, Any]:
     goals = [{key: goal[key] for key in ("id", "text", "after", "targets")} for goal in draft["subgoals"]]
     steps = [{"subgoal": goal["id"], "kind": "pick_place", **goal["move"]} for goal in draft["subgoals"]]
     return {"reasoning": "", "subgoals": goals, "targets": targets, "absent": [], "steps": steps}
+
+
+def _listed_plan(request: Request) -> dict[str, Any]:
+    draft, (width, height) = _draft(True), request.question.size_px
+    targets = [
+        {
+            "id": name,
+            "kind": "object",
+            "words": "a thing",
+            "points": [{"use": use, "x": width * share, "y": height / 2}],
+        }
+        for name, use, share in (("T1", "pick", 0.3), ("T2", "place", 0.7))
+    ]
+    goals = [{key: goal[key] for key in ("id", "text", "after", "targets")} for goal in draft["subgoals"]]
+    steps = [{"subgoal": goal["id"], "kind": "pick_place", **goal["move"]} for goal in draft["subgoals"]]
+    thoughts = {"thoughts": "The first thing goes to the second."} if request.question.thoughts else {}
+    return {**thoughts, "subgoals": goals, "targets": targets, "steps": steps}
 
 
 def _place(number: int, request: Request) -> tuple[float, float]:

@@ -56,7 +56,7 @@ class Method:
         subscribers: Told of every event as it happens.
         command: The command line that reproduces the run, for the page.
         parent: Which run this one branches off, and at which stage.
-        world: Whose truth a `simulated:` model answers from; `wt.rollout(method, world)` passes it by itself.
+        world: Whose truth a `simulated:` model answers from, and a method marked PRIVILEGED is told; `wt.rollout(method, world)` passes it by itself.
 
     Raises:
         ConfigError: An unknown name or a value out of range; before anything is sent.
@@ -109,7 +109,12 @@ class Method:
     def warnings(self) -> tuple[str, ...]:
         """What the user should know of the set-up, in words."""
         notes = dict.fromkeys(str(getattr(model, "note", "")) for model in self._models.values())
-        return (*(note for note in notes if note), *(() if self._store is None else self._store.warnings))
+        told = [f"PRIVILEGED: method {self.method!r} is told a simulator's truth"] if self._privileged else []
+        return (*told, *(note for note in notes if note), *(() if self._store is None else self._store.warnings))
+
+    @property
+    def _privileged(self) -> bool:
+        return self.method in registry.METHODS and registry.METHODS[self.method].privileged
 
     @property
     def model_name(self) -> str:
@@ -117,12 +122,18 @@ class Method:
         return self._label
 
     def in_world(self, world: World) -> Self:
-        """The same method, with the world's truth for a simulated model that still waits for one.
+        """The same method, with the world's truth for a simulated model that still waits for one, or a PRIVILEGED method.
 
         Raises:
             ConfigError: The world has no truth, or its instruction was replaced.
         """
-        return self if waiting(self._models) is None else replace(self, world=world)
+        if waiting(self._models) is None and not self._privileged:
+            return self
+        bound = replace(self, world=world)
+        if self._privileged:
+            # Made once for nothing: a world without the truth that the method is told is refused before anything runs.
+            bound.policy()
+        return bound
 
     def check_ready(self) -> None:
         """Raises ConfigError when a simulated model has no world to answer from."""
@@ -165,7 +176,7 @@ class Method:
         everyone = (*subscribers, *self.subscribers)
         return registry.MethodSetup(
             self._models, self._models[rest], self._caps, everyone, self.concurrency, self._config,
-            self.timeout or DEADLINE_S, self.make_detector,
+            self.timeout or DEADLINE_S, self.make_detector, self.world if self._privileged else None,
         )  # fmt: skip
 
     def words(self) -> Mapping[str, str]:

@@ -9,9 +9,11 @@ from wonderful_team.contracts.judge_box import BoxVerdict, JudgeBox, WrongPoint
 from wonderful_team.contracts.judge_boxes import BoxVerdicts, JudgeBoxes, TargetVerdict
 from wonderful_team.contracts.judge_outcome import JudgeOutcome, Outcome, VerdictDraft
 from wonderful_team.contracts.judge_revision import JudgeRevision, RevisionVerdict
+from wonderful_team.contracts.list_objects import ListObjects, NamedPoint, ObjectList, SlotDescription
 from wonderful_team.contracts.locate_points import LocatePoints, Points
 from wonderful_team.contracts.move_box import BoxMove, MoveBox
 from wonderful_team.contracts.plan_directly import DirectPlan, PlanDirectly, PointedTarget, direct_plan_type, in_parts
+from wonderful_team.contracts.plan_from_list import ListedObject, ListedPlan, PlanFromList, SlotWords, listed_plan
 from wonderful_team.contracts.plans import ClarificationDraft, MoveDraft, PlanDraft, SubgoalDraft, TargetDraft
 from wonderful_team.contracts.presence import EdgePresence, Presence, PresenceAnswer, Strip
 from wonderful_team.contracts.read_scene import ReadScene, RolePoint, SceneReading, SceneTarget
@@ -70,6 +72,8 @@ QUESTIONS: tuple[type[Question], ...] = (
     Replan,
     PlanDirectly,
     SelectMarks,
+    ListObjects,
+    PlanFromList,
 )
 
 __all__ = [
@@ -97,17 +101,23 @@ __all__ = [
     "JudgeBoxes",
     "JudgeOutcome",
     "JudgeRevision",
+    "ListObjects",
+    "ListedObject",
+    "ListedPlan",
     "LocatePoints",
     "MarkChoice",
     "MarkSelection",
     "MemoryEntry",
     "MoveBox",
     "MoveDraft",
+    "NamedPoint",
+    "ObjectList",
     "Outcome",
     "PathReview",
     "PlaceDraft",
     "PlanDirectly",
     "PlanDraft",
+    "PlanFromList",
     "PlanReview",
     "PlanRevision",
     "PointChoice",
@@ -133,6 +143,8 @@ __all__ = [
     "SelectMarks",
     "ShownSlot",
     "ShownTask",
+    "SlotDescription",
+    "SlotWords",
     "StepList",
     "Strip",
     "SubgoalCheck",
@@ -150,5 +162,6 @@ __all__ = [
     "WrongPoint",
     "direct_plan_type",
     "in_parts",
+    "listed_plan",
     "step_list_type",
 ]

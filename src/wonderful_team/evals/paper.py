@@ -84,4 +84,9 @@ def _column(method: str) -> str | None:
     if words[0] == "team":
         setting = words[-1]
         return setting if setting.startswith("s") and setting[1:].isdigit() else "ours"
+    if words[0] == "nlap":
+        # What the paper reports had true coordinates; rows in which the model finds them stand in another table.
+        if "privileged" not in words:
+            return None
+        return "nlap_wo_cot" if "no-cot" in words else "nlap"
     return COLUMNS.get(words[0].lower())

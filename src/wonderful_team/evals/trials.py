@@ -47,6 +47,7 @@ class Condition:
     def label(self) -> str:
         """For tables: method · model, and what is special about it."""
         words = [self.method] + ([self.model] if self.model != "-" else [])
+        words += ["PRIVILEGED: told the simulator's truth"] if "privileged" in self.method.split(":") else []
         words += [f"{self.isolate} alone"] if self.isolate else []
         words += [self.perturb] if self.perturb else []
         words += [f"{self.replans} replans"] if self.replans else []

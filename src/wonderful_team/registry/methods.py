@@ -8,17 +8,18 @@ from typing import cast
 
 from wonderful_team.agents.role import Role
 from wonderful_team.core.caps import Caps
-from wonderful_team.core.protocols import Detector, Model, Policy, Subscriber
+from wonderful_team.core.protocols import Detector, Model, Policy, Subscriber, World
 from wonderful_team.core.renamed import RenamedKeys
 from wonderful_team.errors import ConfigError, MethodCodeError, UnknownNameError
 from wonderful_team.models.budget import Budget
 from wonderful_team.models.client import DEADLINE_S, ModelClient
 from wonderful_team.planning import ABLATIONS, TeamConfig, TeamPolicy
-from wonderful_team.planning.baselines import direct, pivot, point
+from wonderful_team.planning.baselines import direct, nlap, pivot, point
 from wonderful_team.planning.config import Grounding, Mode
 from wonderful_team.registry.detectors import make_detector
 from wonderful_team.registry.files import is_file_name, make_from_file
 from wonderful_team.registry.models import DEFAULT_ROLE
+from wonderful_team.registry.told import teller
 
 
 @dataclass(frozen=True)
@@ -40,6 +41,7 @@ class MethodSetup:
         config: How the team works; None for every other method.
         deadline_s: Longest wait for one answer, unless the model itself may take longer.
         detector: Makes the detector that was named, for methods that look with one; weights are loaded once.
+        world: Given to methods marked PRIVILEGED alone, which are told of its truth.
     """
 
     models: Mapping[str, Model]
@@ -50,6 +52,7 @@ class MethodSetup:
     config: TeamConfig | None = None
     deadline_s: float = DEADLINE_S
     detector: Callable[[], Detector] = make_detector
+    world: World | None = None
 
     def client(self) -> ModelClient:
         """Where a method asks its models: capped, and told to subscribers."""
@@ -103,6 +106,33 @@ def _direct(words: str, axes: bool, checked: bool) -> MethodRow:
     )
 
 
+_LISTS: tuple[tuple[str, str, bool, bool], ...] = (
+    (
+        "nlap",
+        "the model lists objects, then plans in natural language with pictures (NLaP, arXiv 2403.13801)",
+        True,
+        False,
+    ),
+    ("nlap:text", "NLaP: the model lists objects, then plans from the words alone", False, False),
+    (
+        "nlap:privileged",
+        "PRIVILEGED: NLaP, told a simulator's true object names and positions; no picture",
+        False,
+        True,
+    ),
+)
+
+
+def _nlap(name: str, words: str, pictures: bool, privileged: bool, thoughts: bool) -> MethodRow:
+    def make(setup: MethodSetup) -> Policy:
+        tell = teller(setup.world, name) if privileged else None
+        return nlap.Nlap(setup.client(), name, pictures=pictures, thoughts=thoughts, tell=tell)
+
+    roles = (nlap.REASONER,) if privileged else (nlap.EXTRACTOR, nlap.REASONER)
+    words += "" if thoughts else "; no chain of thought"
+    return MethodRow(words, make, roles=roles, privileged=privileged)
+
+
 _ABLATED: tuple[tuple[str, Mode, str], ...] = (
     ("team", "lean", "the lean team in the paper's"),
     ("team:paper", "paper", "the published algorithms in"),
@@ -150,6 +180,11 @@ METHODS: dict[str, MethodRow] = {
         lambda setup: pivot.Pivot(setup.client()),
         roles=(pivot.PLANNER, pivot.SELECTOR),
     ),
+    **{
+        (full := name + ("" if thoughts else ":no-cot")): _nlap(full, words, pictures, privileged, thoughts)
+        for name, words, pictures, privileged in _LISTS
+        for thoughts in (True, False)
+    },
 }
 
 

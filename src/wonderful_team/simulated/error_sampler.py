@@ -17,6 +17,7 @@ from wonderful_team.contracts import (
     DirectPlan,
     MarkChoice,
     MarkSelection,
+    ObjectList,
     Outcome,
     PointChoice,
     PointPx,
@@ -71,6 +72,12 @@ class ErrorSampler:
                 )
             case MarkChoice() | PointChoice():
                 return self._choice(value, len(question.candidates.points))
+            case ObjectList():
+                objects = [
+                    item.model_copy(update={"point": self.point(item.point, question.view, f"{k} {item.name}")})
+                    for k, item in enumerate(value.objects)
+                ]
+                return value.model_copy(update={"objects": objects})
             case MarkSelection():
                 return self._selection(value, len(question.candidates.points))
             case TurnChoice():

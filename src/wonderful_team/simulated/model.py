@@ -16,9 +16,11 @@ from wonderful_team.contracts import (
     JudgeBoxes,
     JudgeOutcome,
     JudgeRevision,
+    ListObjects,
     LocatePoints,
     MoveBox,
     PlanDirectly,
+    PlanFromList,
     Presence,
     Question,
     ReadScene,
@@ -37,7 +39,7 @@ from wonderful_team.core.caps import Estimate
 from wonderful_team.core.protocols import SceneTruth
 from wonderful_team.core.values import Answer, Instruction, Request, Usage
 from wonderful_team.errors import UnsupportedQuestion
-from wonderful_team.simulated import crops, drafting, grounding, outcome, turns
+from wonderful_team.simulated import crops, drafting, grounding, listing, outcome, turns
 from wonderful_team.simulated.context import Context
 from wonderful_team.simulated.error_sampler import ErrorSampler
 from wonderful_team.simulated.profile import Profile
@@ -75,6 +77,8 @@ ANSWERS: dict[type[Question], Callable[[Context, Any], Any]] = {
     Remember: outcome.answer_remember,
     PlanDirectly: answer_plan_directly,
     SelectMarks: grounding.answer_select_marks,
+    ListObjects: listing.answer_list_objects,
+    PlanFromList: listing.answer_plan_from_list,
 }
 """One function per kind of question."""
 

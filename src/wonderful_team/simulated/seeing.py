@@ -134,6 +134,15 @@ class Seen:
             return None if box is None else box.centre
         return point
 
+    def position(self, name: str) -> Point | None:
+        """What a list gives as a thing's position [picture px]: its centre; of one that can be carried and has a hole there,
+        where it can be held.
+        """
+        thing, centre = self.thing(name), self.centre(name)
+        if centre is None or thing is None or thing.kind != "object" or self.at(centre, (name,)) is not None:
+            return centre
+        return self.grasp(name)
+
 
 @dataclass(frozen=True, eq=False)
 class _Known:

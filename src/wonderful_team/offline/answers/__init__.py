@@ -16,9 +16,12 @@ from wonderful_team.contracts import (
     JudgeBoxes,
     JudgeOutcome,
     JudgeRevision,
+    ListedPlan,
+    ListObjects,
     LocatePoints,
     MoveBox,
     PlanDirectly,
+    PlanFromList,
     Presence,
     Question,
     ReadScene,
@@ -30,10 +33,12 @@ from wonderful_team.contracts import (
     ReviewSteps,
     RevisePlan,
     SelectMarks,
+    ShownTask,
     WriteSteps,
     direct_plan_type,
     in_parts,
 )
+from wonderful_team.offline.answers import listing
 from wonderful_team.offline.answers.crops import (
     answer_choose_point,
     answer_judge_box,
@@ -67,6 +72,18 @@ def answer_plan_directly(question: PlanDirectly) -> DirectPlan:
     return direct_plan_type(question.step_kinds).model_validate(parts)
 
 
+def answer_plan_from_list(question: PlanFromList) -> ListedPlan:
+    """A plan from the pictures beside the list.
+
+    Raises:
+        UnsupportedQuestion: The list stands alone.
+    """
+    listing.check_pictures(question)
+    task = ShownTask(question.instruction, question.views, question.slots, question.facts)
+    parts = in_parts(task, question.step_kinds, question.advice, lambda part: ANSWERS[type(part)](part))
+    return listing.answer_plan_from_list(question, parts)
+
+
 ANSWERS: dict[type[Question], Callable[..., Any]] = {
     DraftPlan: answer_draft,
     ReviewPlan: answer_review,
@@ -91,6 +108,8 @@ ANSWERS: dict[type[Question], Callable[..., Any]] = {
     Replan: answer_replan,
     PlanDirectly: answer_plan_directly,
     SelectMarks: answer_select_marks,
+    ListObjects: listing.answer_list_objects,
+    PlanFromList: answer_plan_from_list,
 }
 """One function per kind of question; those that take independent samples also take the sample's number."""
 

@@ -6,19 +6,15 @@ import time
 from dataclasses import replace
 from typing import Any
 
-from wonderful_team.agents import build_request
 from wonderful_team.api.method import Method, team_config
 from wonderful_team.api.photo_trial import located
 from wonderful_team.api.trial_setup import UsageCounter, fingerprint, prepared
-from wonderful_team.contracts import JudgeBox
-from wonderful_team.core.geometry import Box
-from wonderful_team.core.pictures import Axes, BoxMark, Point
+from wonderful_team.core.pictures import Point
 from wonderful_team.core.values import GroundedTarget, Target, Usage
 from wonderful_team.errors import BudgetReached, ConfigError, ModelUnavailableError, WonderfulTeamError
 from wonderful_team.evals.toy import BOXCHECK, score_point, score_verdict
 from wonderful_team.evals.trials import RunSettings, TrialRow, TrialSpec
-from wonderful_team.images import crop, whole
-from wonderful_team.lab.toy import BOX_KINDS, RADIUS_PX, RIGHT, BoxKind, ToyTable
+from wonderful_team.lab.toy import BOX_KINDS, RADIUS_PX, RIGHT, BoxKind, ToyTable, checker_request
 from wonderful_team.models.client import ModelClient
 from wonderful_team.planning import TeamConfig
 from wonderful_team.planning.ground_only import find
@@ -43,7 +39,7 @@ def run_toy(spec: TrialSpec, settings: RunSettings) -> TrialRow:
                 kind = _kind(spec.task)
                 box = table.box(kind)
                 if client is not None:
-                    said = caller.wait_for(_checker(client, table, box))
+                    said = str(caller.wait_for(client.ask(checker_request(table, box))).value.decision)
                 else:
                     said = caller.wait_for(
                         _offered(method.policy(count), "judge")(table.observe(), table.target.words, box)
@@ -97,15 +93,6 @@ def _offered(policy: Any, name: str) -> Any:
             f"method {policy.name!r} needs {forms[name]} for this suite; point, point:axes and the team's methods have it"
         )
     return getattr(policy, name)
-
-
-async def _checker(client: ModelClient, table: ToyTable, box: Box) -> str:
-    """The Checker's word on a box, asked as the team asks it: on a crop."""
-    shown = crop(table.view, box, "crop")
-    marked = shown.marked(Axes(whole(table.view, "main view").frame), BoxMark(shown.frame.box_to_picture(box)))
-    question = JudgeBox(Target("T1", "object", table.target.words, use=("pick",)), marked)
-    answer = await client.ask(build_request(question, id="0/ground/T1/JudgeBox/1", stage="ground"))
-    return str(answer.value.decision)
 
 
 def _grounded(

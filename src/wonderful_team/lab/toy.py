@@ -13,10 +13,12 @@ from typing import Any, Literal, TypeAlias, get_args
 
 import numpy as np
 
+from wonderful_team.agents import build_request
+from wonderful_team.contracts import JudgeBox
 from wonderful_team.core.actions import PICK_PLACE, Action, Vocabulary
 from wonderful_team.core.geometry import AffineCamera, Box
 from wonderful_team.core.geometry.arrays import Array
-from wonderful_team.core.pictures import Point
+from wonderful_team.core.pictures import Axes, BoxMark, Point
 from wonderful_team.core.protocols import Score
 from wonderful_team.core.values import (
     NO_WORKSPACE,
@@ -24,10 +26,13 @@ from wonderful_team.core.values import (
     Instruction,
     Limits,
     Observation,
+    Request,
     StepReport,
+    Target,
     TrueThing,
     View,
 )
+from wonderful_team.images import crop, whole
 from wonderful_team.lab.marks import COLOURS, SHAPES, shape_mask
 
 SIDE_PX = 1000
@@ -199,3 +204,11 @@ def _places(rng: np.random.Generator, count: int) -> list[Point]:
 
 def _inside(box: Box) -> Box:
     return box.intersection(Box(0, 0, SIDE_PX, SIDE_PX)) or box
+
+
+def checker_request(table: ToyTable, box: Box) -> Request:
+    """A box on a toy table, judged as the team has it judged: by the Checker, on a crop."""
+    shown = crop(table.view, box, "crop")
+    marked = shown.marked(Axes(whole(table.view, "main view").frame), BoxMark(shown.frame.box_to_picture(box)))
+    question = JudgeBox(Target("T1", "object", table.target.words, use=("pick",)), marked)
+    return build_request(question, id="0/ground/T1/JudgeBox/1", stage="ground")

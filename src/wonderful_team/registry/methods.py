@@ -77,6 +77,7 @@ class MethodRow:
         roles: A rival's own roles.
         privileged: It is told of a simulator's truth.
         detects: It looks with a detector (`--detector`).
+        plans: It can be run in a world; what only says where things are answers the suites `pointing` and `boxcheck`, and photos.
     """
 
     words: str
@@ -85,6 +86,7 @@ class MethodRow:
     roles: tuple[Role, ...] = ()
     privileged: bool = False
     detects: bool = False
+    plans: bool = True
 
 
 def _team(setup: MethodSetup) -> Policy:
@@ -169,11 +171,13 @@ METHODS: dict[str, MethodRow] = {
         "one question a thing, and no plan: for the suites pointing and boxcheck, and for photos",
         lambda setup: point.PointAlone(setup.client()),
         roles=(point.POINTER,),
+        plans=False,
     ),
     "point:axes": MethodRow(
         "the same with labelled axes",
         lambda setup: point.PointAlone(setup.client(), axes=True),
         roles=(point.POINTER,),
+        plans=False,
     ),
     "pivot": MethodRow(
         "points found among numbered marks in 3 iterations and 3 parallel runs (PIVOT, arXiv 2402.07872)",

@@ -31,7 +31,7 @@ from wonderful_team.agents.step_words import step_words
 from wonderful_team.contracts import DirectPlan, PlanDirectly, PlanReview, ReadScene, ReviewSteps, SceneReading
 from wonderful_team.core.geometry import Box
 from wonderful_team.core.pictures import Axes
-from wonderful_team.core.values import Critique, Observation, Part, Plan, Target
+from wonderful_team.core.values import Critique, GroundedTarget, Observation, Part, Plan, Target
 from wonderful_team.models.client import ModelClient
 from wonderful_team.planning.baselines.open_loop import OpenLoop, pointed
 
@@ -167,12 +167,26 @@ class Direct(OpenLoop):
         about = f"step {doubt.about}" if doubt.about.isdigit() else doubt.about
         return Critique(about, doubt.kind, doubt.question, provenance=answer.provenance)
 
-    async def locate(self, observation: Observation, asked: Sequence[str]) -> list[Box | None]:
-        """Where things in a photo are, all in one answer: a box in pixels of the photo, or None."""
+    async def ground(self, observation: Observation, asked: Sequence[str]) -> list[GroundedTarget]:
+        """Things found by their descriptions, all in one answer, without a plan."""
         view = show_views(observation)[0]
         view = view.marked(Axes()) if self._axes else view
         targets = tuple(Target(f"T{number}", "object", said) for number, said in enumerate(asked, start=1))
-        reading: SceneReading = (await self.ask(ReadScene(targets, (), view), PLANNER, "ground")).value
-        boxes = {item.id: item.box for item in reading.targets}
-        found = [boxes[target.id] for target in targets]
-        return [None if box is None else view.frame.box_to_view(box.as_box) for box in found]
+        answer = await self.ask(ReadScene(targets, (), view), PLANNER, "ground")
+        reading: SceneReading = answer.value
+        found = {item.id: item for item in reading.targets}
+        return [
+            pointed(
+                target,
+                {entry.role: entry.point.as_tuple for entry in found[target.id].points},
+                view,
+                "pointed at" if found[target.id].found else "not in the main view",
+                answer.provenance,
+                None if (box := found[target.id].box) is None else box.as_box,
+            )
+            for target in targets
+        ]
+
+    async def locate(self, observation: Observation, asked: Sequence[str]) -> list[Box | None]:
+        """Where things in a photo are: a box in pixels of the photo for each, or None."""
+        return [item.box for item in await self.ground(observation, asked)]

@@ -273,12 +273,15 @@ class Pivot(OpenLoop):
             best, cloud = points[0], cloud.narrowed(points)
         return best, events
 
-    async def locate(self, observation: Observation, asked: Sequence[str]) -> list[Point | None]:
-        """Where things in a photo are: a point in pixels of the photo for each, or None."""
+    async def ground(self, observation: Observation, asked: Sequence[str]) -> list[GroundedTarget]:
+        """Things found by their descriptions, without a plan."""
         view, seed = show_views(observation)[0], observation.hash
         targets = [Target(f"T{number}", "object", said) for number, said in enumerate(asked, start=1)]
-        found = await together(self._ground(view, target, ("pick",), (), seed) for target in targets)
-        return [item.points.get("pick") for item in found]
+        return await together(self._ground(view, target, ("pick",), (), seed) for target in targets)
+
+    async def locate(self, observation: Observation, asked: Sequence[str]) -> list[Point | None]:
+        """Where things in a photo are: a point in pixels of the photo for each, or None."""
+        return [item.points.get("pick") for item in await self.ground(observation, asked)]
 
 
 def _roles(target: Target, steps: Sequence[Step]) -> tuple[PointRole, ...]:

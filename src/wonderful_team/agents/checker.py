@@ -70,7 +70,7 @@ go outward or inward. It is empty after take_after_stop.
 def _tolerance_parts(picture: Picture) -> list[Part]:
     tolerance = Tolerance.on(picture)
     return words(
-        f"Good enough on this crop, on which the box's line is {line_width_px(picture)} px wide: an edge cuts off at most "
+        f"Good enough on this crop, on which the box's whole line is {line_width_px(picture)} px wide: an edge cuts off at most "
         f"{tolerance.inward_px} px of the target, and stands at most {tolerance.outward_px} px away from it."
     )
 

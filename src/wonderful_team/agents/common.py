@@ -39,7 +39,7 @@ EXAMPLES = """
 """.strip()
 
 TARGETS = """
-How to write targets
+How to write targets, where they are to be listed now
 - A target is one thing or one spot that has to be found in the main view. List each once, even when several subgoals
   need it, in order of use: T1, T2, and so on. "All" or "every" means one target for each thing you count.
 - kind object: it has an outline of its own, such as a block, a bowl, a handle, a coloured square on the table. kind area:

@@ -12,6 +12,7 @@ from wonderful_team.agents.prompts import ROLES, role_names
 from wonderful_team.core.caps import Caps
 from wonderful_team.core.protocols import Model, Policy, Subscriber, World
 from wonderful_team.core.renamed import renamed_attribute
+from wonderful_team.core.values import AskUser
 from wonderful_team.errors import ConfigError
 from wonderful_team.models.cache import CacheMode, cached_models
 from wonderful_team.models.cache_key import model_identity
@@ -50,6 +51,8 @@ class Method:
         prompts: A folder with your own words for the team's roles.
         strict: Refuse a plan that Verification did not approve.
         thorough: The lean team asks every question, however plain the scene: slower and dearer, for models that see badly.
+        ask: Called with a question and its choices when neither picture nor instruction settles what is meant; what it returns is
+            what the user answered, and planning goes on with it. None, or no answer: the plan ends as needs_clarification.
         out: Where run folders go; default $WONDERFUL_TEAM_RUNS or `runs`.
         subscribers: Told of every event as it happens.
         command: The command line that reproduces the run, for the page.
@@ -83,6 +86,7 @@ class Method:
     local_only: bool = False
     timeout: float | None = None
     world: World | None = None
+    ask: AskUser | None = None
 
     def __post_init__(self) -> None:
         self._config = team_config(self.method, self.prompts, self.strict, self.thorough)
@@ -146,7 +150,7 @@ class Method:
         everyone = (*subscribers, *self.subscribers)
         return registry.MethodSetup(
             self._models, self._models[rest], self._caps, everyone, self.concurrency, self._config,
-            self.timeout or DEADLINE_S,
+            self.timeout or DEADLINE_S, self.ask,
         )  # fmt: skip
 
     def words(self) -> Mapping[str, str]:

@@ -52,7 +52,8 @@ class Study:
         store: File that keeps what ended; the same study on the same file resumes.
         repeats, replans, reobserve, shard: As `bench` has them.
         isolate: whole, planning, grounding: one or several. perturb: KIND=LEVEL: one or several; "" is the scene as it is.
-        thinking, price, allow_unpriced, local_only, timeout, cache, cache_file, prompts: As `Method` takes them.
+        thinking, price, allow_unpriced, local_only, timeout, cache, cache_file, prompts, thorough: As `Method`
+            takes them.
         controls: Those that run beside the methods; () refuses them all.
         caps: Of the whole study. trial_caps: of each trial.
         concurrency: Most model calls at once, over all workers.
@@ -92,6 +93,7 @@ class Study:
     ray: str | None = None
     retry_errors: bool = False
     command: str = ""
+    thorough: bool = False
 
     def __post_init__(self) -> None:
         self.methods, self.controls = _listed(self.methods), _listed(self.controls)
@@ -160,6 +162,7 @@ class Study:
             pages=options["pages"],
             out=options["out"],
             prompts=options["prompts"],
+            thorough=options.get("thorough", False),
             thinking=read_roles(options["thinking"], "--thinking", "LEVEL"),
             price=read_roles(options["price"], "--price", "IN,OUT"),
             **{name: options[name] for name in ("allow_unpriced", "local_only", "timeout", "cache", "cache_file")},
@@ -185,8 +188,9 @@ class Study:
         )
 
     def _asked(self) -> dict[str, Any]:
-        """Options of the models, as `Method` takes them."""
+        """Options of the models and the team, as `Method` takes them."""
         return {
+            "thorough": self.thorough,
             "thinking": self.thinking or None,
             "price": self.price or None,
             "allow_unpriced": self.allow_unpriced,
@@ -202,6 +206,8 @@ class Study:
         said = [
             f"thinking {level}" if role == "*" else f"{role} thinking {level}" for role, level in sorted(levels.items())
         ]
+        if self.thorough:
+            said.append("thorough")
         if self.prompts is not None:
             from wonderful_team.agents import Prompts
 

@@ -51,16 +51,14 @@ class PlanState:
     reviewed: bool = False
 
 
-async def draft(
-    session: AgentSession, scene: SceneShown, advice: Sequence[str] = (), done: Sequence[str] = ()
-) -> PlanState:
+async def draft(session: AgentSession, scene: SceneShown, advice: Sequence[str] = ()) -> PlanState:
     """The Supervisor's first draft.
 
     Raises:
         NeedsClarification: Neither picture nor instruction settles what is meant.
     """
     with_targets = session.config.mode == "lean"
-    question = DraftPlan(scene.task, scene.vocabulary.step_kinds, with_targets, tuple(advice), tuple(done))
+    question = DraftPlan(scene.task, scene.vocabulary.step_kinds, with_targets, tuple(advice))
     written: PlanDraft = await session.ask(question, stage="plan")
     if written.clarification is not None:
         raise NeedsClarification(written.clarification.question, written.clarification.choices)

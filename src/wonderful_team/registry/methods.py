@@ -9,6 +9,7 @@ from typing import cast
 from wonderful_team.core.caps import Caps
 from wonderful_team.core.protocols import Model, Policy, Subscriber
 from wonderful_team.core.renamed import RenamedKeys
+from wonderful_team.core.values import AskUser
 from wonderful_team.errors import ConfigError, MethodCodeError, UnknownNameError
 from wonderful_team.models.budget import Budget
 from wonderful_team.models.client import DEADLINE_S, ModelClient
@@ -35,6 +36,7 @@ class MethodSetup:
         rest: For roles that the team has not.
         config: How the team works; None for every other method.
         deadline_s: Longest wait for one answer, unless the model itself may take longer.
+        ask: Asks the user what only the user can settle; None where nobody can be asked.
     """
 
     models: Mapping[str, Model]
@@ -44,6 +46,7 @@ class MethodSetup:
     concurrency: int = 8
     config: TeamConfig | None = None
     deadline_s: float = DEADLINE_S
+    ask: AskUser | None = None
 
     def client(self) -> ModelClient:
         """Where a method asks its models: capped, and told to subscribers."""
@@ -75,6 +78,7 @@ def _team(setup: MethodSetup) -> Policy:
         subscribers=setup.subscribers,
         concurrency=setup.concurrency,
         deadline_s=setup.deadline_s,
+        ask=setup.ask,
     )
 
 

@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 from typing import Literal, TypeAlias
 
 from wonderful_team.models.conventions import CONVENTIONS, Convention
+from wonderful_team.models.wire.weight import UNLIMITED, Weight
 
 Sure: TypeAlias = Literal["documented", "reported", "unknown"]
 
@@ -27,6 +28,11 @@ class Family:
         native_boxes: It was trained to give boxes.
         max_pictures: Most pictures that one request may hold; None when nothing is known.
         detail: What OpenAI's interfaces are asked for with each picture, so that they do not resize it again.
+        weight: Most bytes of a picture and of a request; heavier pictures are sent as JPEG. Sources: for Claude the refusal
+            "image exceeds 5 MB maximum: ... bytes > 5242880 bytes", which counts base64 (anthropics/claude-code #10612), and
+            platform.claude.com/docs/en/build-with-claude/vision (32 MB a request); for Gemini 20 MB a request
+            (ai.google.dev/gemini-api/docs/image-understanding); for OpenAI 50 MB of pictures a request (its guide on images and
+            vision). A service that names no limit teaches it with status 413.
     """
 
     name: str
@@ -36,6 +42,7 @@ class Family:
     native_boxes: bool = True
     max_pictures: int | None = None
     detail: Literal["high", "original"] | None = None
+    weight: Weight = UNLIMITED
 
 
 def _family(
@@ -45,15 +52,19 @@ def _family(
 
 
 def _gpt(name: str, detail: Literal["high", "original"]) -> Family:
-    return replace(_family(name, weak=True, boxes=False, most=500), detail=detail)
+    return replace(_family(name, weak=True, boxes=False, most=500), detail=detail, weight=Weight(request=45_000_000))
+
+
+def _claude(name: str) -> Family:
+    return replace(_family(name, "documented", most=100), weight=Weight(5_242_880, 28_000_000))
 
 
 UNKNOWN = Family("unknown", CONVENTIONS["pixels"], "unknown", weak_pointing=True, native_boxes=False)
 
 _PATTERNS: tuple[tuple[str, Family], ...] = (
-    (r"gemini|robotics-er", _family("gemini", "documented", most=3000)),
-    (r"claude-[a-z]+-(4[-.]([7-9]|[1-9]\d)|[5-9]|[1-9]\d)(?!\d)", _family("claude-4.7", "documented", most=100)),
-    (r"claude", _family("claude", "documented", most=100)),
+    (r"gemini|robotics-er", replace(_family("gemini", "documented", most=3000), weight=Weight(request=18_000_000))),
+    (r"claude-[a-z]+-(4[-.]([7-9]|[1-9]\d)|[5-9]|[1-9]\d)(?!\d)", _claude("claude-4.7")),
+    (r"claude", _claude("claude")),
     (r"gemma", _family("gemma")),
     (r"\bgpt-[\d.]+-?(mini|nano)|\bo4-mini", _gpt("gpt-patches", "high")),
     # `original` came with GPT-5.4; earlier ones see tiles of a picture whose shorter side is 768 px.

@@ -354,3 +354,19 @@ def test_openai_is_told_in_which_detail_to_look(name: str, model: str, detail: s
     said = json.dumps(server.heard[0].body)
     told = [word for word in ("high", "original") if f'"detail": "{word}"' in said]
     assert told == ([] if detail is None else [detail])
+
+
+@pytest.mark.parametrize("fault", ["too_heavy", "picture_too_heavy"])
+@pytest.mark.parametrize("name", ["anthropic", "server"])
+def test_pictures_that_were_refused_as_too_heavy_are_sent_again_as_jpeg(
+    name: str, fault: str, desk: AgentSession
+) -> None:
+    with serve(WIRES[name], desk) as server:
+        server.strike(Fault(fault))
+        # The server compares pictures pixel by pixel, which JPEG does not keep: what was sent is what is looked at.
+        with pytest.raises(ModelUnavailableError, match="pixels agree"):
+            ask(WIRES[name].provider(server, tries=1), desk)
+    first, second = server.heard
+    assert [piece.shape for piece in second.pictures] == [piece.shape for piece in first.pictures]
+    assert "image/jpeg" not in json.dumps(first.body)
+    assert "image/jpeg" in json.dumps(second.body)

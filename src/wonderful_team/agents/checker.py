@@ -76,7 +76,8 @@ def _tolerance_parts(picture: Picture) -> list[Part]:
 
 
 def _render_judge_box(question: JudgeBox) -> list[Part]:
-    uses = ", ".join(question.uses) or "none; they are chosen later"
+    later = "they are chosen later" if question.target.roles else "only the outline is needed"
+    uses = ", ".join(question.uses) or f"none; {later}"
     return [
         *example_parts(question.examples),
         *_optional(question.alike, "another thing of the same description, whose box was accepted"),

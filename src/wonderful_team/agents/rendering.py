@@ -315,7 +315,7 @@ def target_words(target: Target) -> str:
     if target.like:
         pictures = ", ".join(f"{{{name}}}" for name in target.like)
         extras.append(_LIKE[target.alike if target.kind == "object" else "place"].format(pictures))
-    extras.append(f"points for: {', '.join(target.roles)}")
+    extras.append(f"points for: {', '.join(target.roles)}" if target.roles else "no points: only its outline is needed")
     return f"{target.id} ({target.kind}): {named}; {'; '.join(extras)}"
 
 

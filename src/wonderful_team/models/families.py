@@ -31,8 +31,8 @@ class Family:
         weight: Most bytes of a picture and of a request; heavier pictures are sent as JPEG. Sources: for Claude the refusal
             "image exceeds 5 MB maximum: ... bytes > 5242880 bytes", which counts base64 (anthropics/claude-code #10612), and
             platform.claude.com/docs/en/build-with-claude/vision (32 MB a request); for Gemini 20 MB a request
-            (ai.google.dev/gemini-api/docs/image-understanding); for OpenAI 50 MB of pictures a request (its guide on images and
-            vision). A service that names no limit teaches it with status 413.
+            (firebase.google.com/docs/vertex-ai/input-file-requirements); for OpenAI 50 MB of pictures a request (its guide on images
+            and vision). A little less is used, for the words. A service that names no limit teaches it with status 413.
     """
 
     name: str

@@ -216,7 +216,9 @@ class TeamPolicy:
             if until == "checked":
                 return progress.plan
             state = await plan_loop.extract_targets(session, scene, state)
-            if (absent and not _asks_anew(state, absent)) or (last is not None and _same_plan(state, last)):
+            if (absent and not endings.asks_anew(state, absent)) or (
+                last is not None and endings.same_plan(state, last)
+            ):
                 break
             progress.plan = endings.with_state(progress.plan, state, "checked")
             if not state.subgoals:
@@ -281,7 +283,7 @@ class TeamPolicy:
         else:
             grounded = await grounding.ground_by_supervisor(jobs)
         progress.plan = replace(progress.plan, grounded=grounded, status="grounded")
-        session.stage("grounded", "   ".join(f"{name} {_named(item)}" for name, item in grounded.items()))
+        session.stage("grounded", "   ".join(f"{name} {endings.named(item)}" for name, item in grounded.items()))
         absent = [item for item in grounded.values() if item.status != "found"]
         if absent or until == "grounded":
             return progress.plan, absent, None
@@ -390,19 +392,3 @@ def _scene_of(situation: Situation) -> SceneShown:
     return SceneShown(
         situation.observation, situation.instruction, situation.vocabulary, situation.limits, situation.facts
     )
-
-
-def _asks_anew(state: PlanState, absent: Sequence[GroundedTarget]) -> bool:
-    """Whether a revised plan looks for something else than what was not found."""
-    missing = {(item.target.words, item.target.where, item.target.like) for item in absent}
-    return not missing & {(target.words, target.where, target.like) for target in state.targets}
-
-
-def _same_plan(state: PlanState, last: PlanState) -> bool:
-    """Whether a plan that could not be carried out came back unchanged."""
-    return (state.subgoals, state.targets) == (last.subgoals, last.targets)
-
-
-def _named(item: GroundedTarget) -> str:
-    state = {"found": "found", "absent": "not here", "gave_up": "gave up"}[item.status]
-    return f"{item.target.words} ({state})"

@@ -66,6 +66,8 @@ TASK = ShownTask(
         ShownSlot("scene_1", "frame", (picture("scene_1 top"),), 3),
     ),
     ("the blade is as wide as a hand", "north is up"),
+    ("the user wants the blue one",),
+    ("[G1] push T1",),
 )
 EXAMPLES = (ShownSlot("base_obj", "object", (picture("example of base_obj"),)),)
 TARGET = Target("T7", "object", "striped mug", "handle", "left of the plate", "slot", ("base_obj",), ("grasp", "pick"))
@@ -86,7 +88,7 @@ STRIPS = tuple(
 )
 
 SAMPLES: tuple[Question, ...] = (
-    DraftPlan(TASK, KINDS, True, ("the lid was closed",), ("[G1] push T1",)),
+    DraftPlan(TASK, KINDS, True, ("the lid was closed",)),
     ReviewPlan(TASK, KINDS, SUBGOALS, (TARGET, AREA), "G2", ("G1 was asked about the lid",)),
     RevisePlan(TASK, KINDS, SUBGOALS, (TARGET, AREA), DOUBT, True),
     ExtractTargets(TASK, SUBGOALS),

@@ -31,7 +31,7 @@ def test_top_and_front_of_a_thing_are_one_picture_that_says_which_is_which() -> 
     assert isinstance(words, Words)
     assert isinstance(sheet, Picture)
     assert (
-        "each over its name, {mug}: one thing alone, 4 times as large as in the views; of each the top view (left) and front view (right)"
+        "over its name, {mug}: one thing alone, enlarged 4 times; of each the top view (left) and front view (right)"
         in (words.text)
     )
     top, front = sheet.panels

@@ -6,6 +6,7 @@ import json
 import re
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import wonderful_team as wt
@@ -166,6 +167,20 @@ def not_understood(out):
     return wt.Team(out=out).plan(wt.Observation.from_files(DESK / "desk.png"), "put the flurb on the blue bowl")
 
 
+def clarified(out):
+    def ask(question, choices):
+        return choices[1]
+
+    seen = np.full((480, 640, 3), (225, 220, 209), np.uint8)
+    seen[100:160, 100:160] = seen[100:160, 400:460] = (200, 30, 30)
+    seen[300:400, 250:400] = (30, 60, 200)
+    plan = wt.Team(out=out, ask=ask).plan(seen, "put the red block onto the blue block")
+    assert plan.status == "planned"
+    # The answer is heeded: the second choice is the block on the right.
+    assert plan.plan.grounded["T1"].box.x0 > 300
+    return plan
+
+
 def out_of_budget(out):
     return in_world(out, team=wt.Team(out=out, max_calls=3))
 
@@ -177,7 +192,8 @@ def grounding(out):
 KINDS = (
     reobserve, looks_then_a_replan, replans, refused, robot_fault, model_fault, model_fault_after_motion, approved, declined,
     declined_with_advice, own_world,
-    a_plan_that_was_read, photo, photo_in_metres, photo_with_a_model_fault, stopped_early, not_understood, out_of_budget,
+    a_plan_that_was_read, photo, photo_in_metres, photo_with_a_model_fault, stopped_early, not_understood, clarified,
+    out_of_budget,
     grounding,
 )  # fmt: skip
 

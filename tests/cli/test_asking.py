@@ -82,3 +82,42 @@ def test_anything_else_is_a_no(
     given = asking.ask(proposal)
     assert isinstance(given, Declined)
     assert given.because == because
+
+
+@pytest.mark.parametrize(
+    ("line", "answered"),
+    [
+        ("2", "the right one"),
+        (" 1 ", "the left one"),
+        ("3", "3"),
+        ("the one with a chip", "the one with a chip"),
+        ("", None),
+        (EOFError(), None),
+        (OSError(5, "Input/output error"), None),
+    ],
+)
+def test_a_planners_question_takes_a_number_or_words(
+    line: str | BaseException,
+    answered: str | None,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    answer(monkeypatch, line)
+    assert asking.answer(f"which one{EVIL}?", ("the left one", "the right one")) == answered
+    told = capsys.readouterr().err
+    assert "which one" in told
+    assert "2  the right one" in told
+    assert "\x1b" not in told
+
+
+@pytest.mark.parametrize(
+    ("terminal", "as_json", "asks"), [(True, False, True), (True, True, False), (False, False, False)]
+)
+def test_only_a_person_at_a_terminal_is_asked(
+    terminal: bool, as_json: bool, asks: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for name in ("stdin", "stderr"):
+        monkeypatch.setattr(f"sys.{name}.isatty", lambda: terminal, raising=False)
+    assert (asking.user_to_ask(as_json) is not None) == asks
+    monkeypatch.setattr("sys.stdin", None)
+    assert asking.user_to_ask(False) is None

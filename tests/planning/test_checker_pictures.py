@@ -72,7 +72,7 @@ def test_how_exact_a_box_has_to_be_is_said_in_pixels_of_the_crop(box, inward, ou
     tolerance, scale = Tolerance.on(marked), shown.frame.scale
     assert (tolerance.inward_px, tolerance.outward_px) == (round(inward * scale), round(outward * scale))
     words = said(JudgeBox(Target("T1", "object", "block"), marked))
-    assert f"the box's line is {line_width_px(marked)} px wide" in words
+    assert f"the box's whole line is {line_width_px(marked)} px wide" in words
     assert f"at most {tolerance.inward_px} px of the target" in words
     assert f"at most {tolerance.outward_px} px away from it" in words
 

@@ -6,6 +6,8 @@ import asyncio
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+
 import wonderful_team as wt
 from tests.planning.helpers import asked, plan_with, scripted
 from tests.planning.rounds import photo
@@ -114,10 +116,33 @@ def test_a_push_that_was_made_is_not_announced_as_a_mistake() -> None:
     asyncio.run(
         team.make_plan(photo(), Instruction("put the first thing into the second thing"), PICK_PLACE, done=done)
     )
+    # Who checks a plan has to know what was done too: with nothing left to do, an empty plan is right.
+    for contract in ("DraftPlan", "ReviewSteps"):
+        (request,) = asked(model, contract)
+        assert "Already carried out, as planned; the views are newer." in text(request)
+        assert done[0] in text(request)
+        assert "went wrong" not in text(request)
+
+
+def test_verification_knows_what_went_wrong_before() -> None:
+    model = scripted()
+    plan_with(model, advice=("the lid was closed",))
+    assert all("What went wrong before this plan: the lid was closed" in text(r) for r in asked(model, "ReviewPlan"))
+    assert asked(model, "ReviewPlan")
+
+
+def test_the_scale_of_the_main_view_is_told_where_a_camera_says_it() -> None:
+    model, world = scripted(), make_world("rotate", seed=3)
+    team = TeamPolicy(model, TeamConfig())
+    asyncio.run(team.make_plan(world.observe(), world.instruction, PICK_PLACE, world.limits))
     (request,) = asked(model, "DraftPlan")
-    assert "What was already done, as planned; the views are newer." in text(request)
-    assert done[0] in text(request)
-    assert "went wrong" not in text(request)
+    camera, (width, height) = world.observe().main.camera, world.observe().main.size_px
+    left, right = camera.on_plane(np.array([[0, height / 2], [width, height / 2]]), 0.0)
+    span_cm = 100 * float(np.linalg.norm(right - left))
+    assert f"the main view spans {span_cm:.3g} cm of the table from its left to its right edge" in text(request)
+    photographed = scripted()
+    plan_with(photographed)
+    assert "Scale:" not in text(asked(photographed, "DraftPlan")[0])
 
 
 def test_without_a_grounding_team_an_area_is_asked_for_as_a_place() -> None:

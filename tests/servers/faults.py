@@ -149,6 +149,8 @@ SERVER: dict[str, tuple[int, str, str]] = {
         "This model's maximum context length is 4096 tokens. However, your messages resulted in 9000 tokens.",
         "context_length_exceeded",
     ),
+    "too_heavy": (413, "payload reached size limit", "request_too_large"),
+    "picture_too_heavy": (400, "image exceeds 5 MB maximum: 5272940 bytes > 5242880 bytes", "invalid_request_error"),
     "bad_request": (400, "Something about this request is not right", "invalid_request"),
     "html_200": (200, "<html><body><h1>Welcome to the proxy</h1></body></html>", ""),
     "html_502": (502, "<html><body><h1>502 Bad Gateway</h1></body></html>", ""),

@@ -70,13 +70,14 @@ go outward or inward. It is empty after take_after_stop.
 def _tolerance_parts(picture: Picture) -> list[Part]:
     tolerance = Tolerance.on(picture)
     return words(
-        f"Good enough on this crop, on which the box's line is {line_width_px(picture)} px wide: an edge cuts off at most "
+        f"Good enough on this crop, on which the box's whole line is {line_width_px(picture)} px wide: an edge cuts off at most "
         f"{tolerance.inward_px} px of the target, and stands at most {tolerance.outward_px} px away from it."
     )
 
 
 def _render_judge_box(question: JudgeBox) -> list[Part]:
-    uses = ", ".join(question.uses) or "none; they are chosen later"
+    later = "they are chosen later" if question.target.roles else "only the outline is needed"
+    uses = ", ".join(question.uses) or f"none; {later}"
     return [
         *example_parts(question.examples),
         *_optional(question.alike, "another thing of the same description, whose box was accepted"),

@@ -39,7 +39,7 @@ EXAMPLES = """
 """.strip()
 
 TARGETS = """
-How to write targets
+How to write targets, where they are to be listed now
 - A target is one thing or one spot that has to be found in the main view. List each once, even when several subgoals
   need it, in order of use: T1, T2, and so on. "All" or "every" means one target for each thing you count.
 - kind object: it has an outline of its own, such as a block, a bowl, a handle, a coloured square on the table. kind area:
@@ -54,7 +54,7 @@ How to write targets
 - use: what its points serve for. pick: it is picked up. place: the middle of something is to come to lie there, carried or
   pushed (a bowl that receives something is an object with use place). push_start: where the front of the tool comes
   down for a push. push_end: where the front of the tool stops; for where the pushed thing's middle should end, use
-  place. grasp: a gripper closes on it.
+  place. grasp: a gripper closes on it. Empty for a thing that others are only placed beside.
 - A thing that is moved beside another thing, or back to where it stood, needs no area of its own: steps can say
   "beside" and "origin".
 """.strip()

@@ -95,7 +95,7 @@ Answer every target once, by its id.
 PRESENCE = """
 For each edge of the target's box you see up to two thin strips of the scene: one just inside the edge, one just
 outside. Say for each whether any of the target shows in it.
-- Only the target itself counts: not its shadow, not another thing, not the background.
+- Only the target itself counts (only the part, if one is named): not its shadow, not another thing, not the background.
 - A strip that is missing lies outside the view: answer false for it.
 Answer all four edges, each once.
 """

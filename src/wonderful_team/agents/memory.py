@@ -24,8 +24,8 @@ You judge only what is worth keeping. Do not correct the answer, do not add to i
 
 REMEMBER = """
 Decide whether something in the answer is worth keeping.
-- Keep what decides later work: which thing is meant among look-alikes, why the plan is as it is, an order or angle that
-  must be held, something that is absent, blocked or was tried without success.
+- Keep what decides later work: which thing is meant among look-alikes, what the user answered, why the plan is as it is,
+  an order or angle that must be held, something that is absent, blocked or was tried without success.
 - Leave out coordinates, boxes, routine approvals, and what the plan or the known entries already say.
 - keep true: a short key of a few words, and a summary of one or two sentences that can be understood on its own. To
   replace a known entry, use its key again.

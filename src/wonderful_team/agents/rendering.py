@@ -176,7 +176,7 @@ def slot_groups(slots: Sequence[ShownSlot]) -> list[tuple[ShownSlot, ...]]:
 
 def _is_single(slot: ShownSlot) -> bool:
     """Whether a slot shows one thing, cut out."""
-    return slot.kind == "object" and bool(slot.pictures) and all(_cut_words((item,)) for item in slot.pictures)
+    return slot.kind == "object" and bool(slot.pictures) and all(map(_is_cut, slot.pictures))
 
 
 def _is_pair(slot: ShownSlot, other: ShownSlot) -> bool:
@@ -208,14 +208,14 @@ def _side_by_side(shown: tuple[tuple[ShownSlot, tuple[Picture, ...]], ...]) -> l
     name = ", ".join(names) if len(names) <= 2 else f"{names[0]} to {names[-1]}"  # noqa: PLR2004  a pair is named in full
     sheet = side_by_side(named, name)
     if len({slot_about(slot).partition(": ")[2] for slot, _ in shown}) == 1:
-        about = f"each over its name, {', '.join(names)}: {slot_about(shown[0][0]).partition(': ')[2]}"
+        about = f"{'each ' if len(names) > 1 else ''}over its name, {', '.join(names)}: {slot_about(shown[0][0]).partition(': ')[2]}"
     else:
         about = f"each over its name, {'; '.join(slot_about(slot) for slot, _ in shown)}"
-    sizes = tuple(dict.fromkeys(_cut_words(pictures) for _, pictures in shown))
+    sizes = tuple(dict.fromkeys(_cut_words(slot, pictures) for slot, pictures in shown))
     if len(sizes) == 1:
         about += sizes[0]
     else:
-        about += "; " + "; ".join(f"{{{slot.name}}}{_cut_words(pictures)}" for slot, pictures in shown)
+        about += "; " + "; ".join(f"{{{slot.name}}}{_cut_words(slot, pictures)}" for slot, pictures in shown)
     cameras = tuple(dict.fromkeys(_cameras(slot, pictures) for slot, pictures in shown))
     views = f"; of each the {cameras[0]}" if len(cameras) == 1 and cameras[0] else ""
     if len(cameras) > 1:
@@ -229,12 +229,23 @@ def _cameras(slot: ShownSlot, pictures: Sequence[Picture]) -> str:
     return f"{', '.join(names[:-1])} (left) and {names[-1]} (right)" if len(names) > 1 else ""
 
 
-def _cut_words(pictures: Sequence[Picture]) -> str:
-    """That pictures were cut out and enlarged; empty for whole ones."""
-    if not any(picture.frame.T_view_picture[:2, 2].any() for picture in pictures):
+def _is_cut(picture: Picture) -> bool:
+    return bool(picture.frame.T_view_picture[:2, 2].any())
+
+
+def _cut_words(slot: ShownSlot, pictures: Sequence[Picture]) -> str:
+    """How large what was cut out is shown, compared with the main view where one camera took both; empty for whole pictures."""
+    if not any(map(_is_cut, pictures)):
         return ""
-    scale = pictures[0].frame.scale
-    return f", {scale:.2g} times as large as in the views" if round(scale, 1) != 1 else ", as large as in the views"
+    if slot.times is None:
+        return (
+            f", enlarged {pictures[0].frame.scale:.2g} times" if round(pictures[0].frame.scale, 1) != 1 else ", cut out"
+        )
+    return (
+        f", {slot.times:.2g} times as large as in the main view"
+        if round(slot.times, 1) != 1
+        else ", as large as in the main view"
+    )
 
 
 def example_parts(slots: Sequence[ShownSlot]) -> list[Part]:
@@ -268,12 +279,16 @@ def _first_named(instruction: str, name: str) -> int:
 
 
 def task_parts(task: ShownTask, title: str = "The scene now") -> list[Part]:
-    """The instruction with its pictures, then the views, then what is known of the robot."""
+    """The instruction with its pictures, the views, what is known of the robot, what the user said and what was done."""
     return [
         *words("The user's instruction:"),
         *instruction_parts(task),
         *view_parts(title, task.views),
         *listed("What is known of the robot and its place", task.facts),
+        *listed("What the user said beside the instruction", task.said),
+        *listed(
+            "Already carried out, as planned; the views are newer. A plan holds only what is left to do", task.done
+        ),
     ]
 
 
@@ -300,7 +315,7 @@ def target_words(target: Target) -> str:
     if target.like:
         pictures = ", ".join(f"{{{name}}}" for name in target.like)
         extras.append(_LIKE[target.alike if target.kind == "object" else "place"].format(pictures))
-    extras.append(f"points for: {', '.join(target.roles)}")
+    extras.append(f"points for: {', '.join(target.roles)}" if target.roles else "no points: only its outline is needed")
     return f"{target.id} ({target.kind}): {named}; {'; '.join(extras)}"
 
 

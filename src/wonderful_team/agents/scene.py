@@ -29,6 +29,8 @@ class SceneShown:
     Attributes:
         facts: What is known of the robot and its place, one fact a line.
         keep_out: Regions nothing may enter, beside those of the limits; they are drawn on the main view.
+        said: What the user said beside the instruction, one line each: answers to questions, why a plan was declined.
+        done: What was carried out since the instruction was given, as planned, one line each.
     """
 
     observation: Observation
@@ -37,6 +39,8 @@ class SceneShown:
     limits: Limits
     facts: str = ""
     keep_out: tuple[KeepOut, ...] = ()
+    said: tuple[str, ...] = ()
+    done: tuple[str, ...] = ()
 
     @property
     def view(self) -> View:
@@ -81,8 +85,18 @@ class SceneShown:
             if name not in shown:
                 shown[name] = tuple(self._table(slot, key) for key in self._useful(slot))
         return tuple(
-            ShownSlot(name, slot.kind, shown[name], slot.index) for name, slot in self.instruction.slots.items()
+            ShownSlot(name, slot.kind, shown[name], slot.index, self._times(slot, shown[name]))
+            for name, slot in self.instruction.slots.items()
         )
+
+    def _times(self, slot: Slot, pictures: tuple[Picture, ...]) -> float | None:
+        """How many times as large as in the main view's picture a slot's things are shown."""
+        if not pictures or not self._same_camera(next(iter(slot.views.values()))):
+            return None
+        return pictures[0].frame.scale / self.views[0].frame.scale
+
+    def _same_camera(self, view: View) -> bool:
+        return view.camera_name == self.view.camera_name and view.size_px == self.view.size_px
 
     def _single_things(self) -> dict[str, tuple[Picture, ...]]:
         things = [slot for slot in self.instruction.slots.values() if slot.kind == "object"]
@@ -115,13 +129,12 @@ class SceneShown:
     def _useful(self, slot: Slot) -> tuple[str, ...]:
         """The views of a picture of a whole table that are worth showing: all, or the main side's alone."""
         key, view = next(iter(slot.views.items()))
-        same_camera = view.camera_name == self.view.camera_name and view.size_px == self.view.size_px
-        return (key,) if same_camera and not lies_over(self.view, view) else tuple(slot.views)
+        return (key,) if self._same_camera(view) and not lies_over(self.view, view) else tuple(slot.views)
 
     def _table(self, slot: Slot, key: str) -> Picture:
         """A picture of a whole table, as large as the main view where it is that camera's."""
         view = slot.views[key]
-        if view.camera_name == self.view.camera_name and view.size_px == self.view.size_px:
+        if self._same_camera(view):
             return whole(view, _named(slot, key), long_side_px=MARKED_SIDE_PX)
         return whole(view, _named(slot, key))
 
@@ -144,7 +157,8 @@ class SceneShown:
     @cached_property
     def task(self) -> ShownTask:
         facts = tuple(line.strip() for line in self.facts.splitlines() if line.strip())
-        return ShownTask(self.instruction.text, self.views, self.slots, facts)
+        facts += scale_facts(self.view, self.limits)
+        return ShownTask(self.instruction.text, self.views, self.slots, facts, self.said, self.done)
 
     def examples(self, targets: Sequence[Target], ticks: bool = True) -> tuple[ShownSlot, ...]:
         """The instruction's pictures of these targets, in the instruction's order; whole tables with tick labels or without.
@@ -157,6 +171,23 @@ class SceneShown:
             if target.kind == "area" and not scenes & set(target.like):
                 wanted |= scenes
         return tuple(slot for slot in (self.ticked_slots if ticks else self.slots) if slot.name in wanted)
+
+
+def scale_facts(view: View, limits: Limits) -> tuple[str, ...]:
+    """How much of the table the main view spans, as a fact: lengths in other facts can so be told in the picture."""
+    if view.camera is None:
+        return ()
+    width, height = view.size_px
+    try:
+        left, right = view.camera.on_plane(np.array([[0.0, height / 2], [width, height / 2]]), table_height_m(limits))
+    except ValueError:
+        return ()  # a side of the picture looks past the table
+    span_m = float(np.linalg.norm(right - left))
+    if not np.isfinite(span_m):
+        return ()
+    return (
+        f"Scale: at half its height the main view spans {100 * span_m:.3g} cm of the table from its left to its right edge.",
+    )
 
 
 def keep_out_marks(picture: Picture, view: View, regions: Iterable[KeepOut], limits: Limits) -> tuple[RegionMark, ...]:

@@ -143,7 +143,6 @@ def _render_draft(question: DraftPlan) -> list[Part]:
     return [
         *task_parts(question.task),
         *ability_parts(question.step_kinds),
-        *listed("What was already done, as planned; the views are newer. Plan only what is left to do", question.done),
         *listed("What went wrong before, to be avoided now", question.advice),
         *_targets_wanted(question.with_targets),
     ]

@@ -84,7 +84,8 @@ from what the camera sees. Go through the steps in order and ask of each:
 - Does it carry out its subgoal, on the right thing, to the right place, in the right order, with the angle and side that
   were asked for?
 - Does its arrow begin on the thing itself and end where the thing belongs? The thing's middle lands at the place, wherever
-  it is picked.
+  it is picked. The arrow of a push begins beside the thing instead, on the side away from where it should go, and its strip
+  ends where the front of the tool stops: the thing then lies before it.
 - Can it be done with this robot, and what does it hit, sweep along or cover? What the robot lifts over other things
   does not hit them; what it pushes does.
 
@@ -114,10 +115,11 @@ def _render_review_plan(question: ReviewPlan) -> list[Part]:
 DRAWN = "the plan drawn over the main view"
 
 PLAN_TOO = f"""
-The plan itself was not checked before: check it now, before its steps. {WALK}
+The plan itself was not checked before: check it now, before its steps.
+{WALK}
 
-A doubt about the plan is about a subgoal: give its id, or "plan" for a missing one. A doubt about a step alone gives the step's
-number.
+A doubt about the plan is about a subgoal: give its id, or "plan" for a missing one. A doubt about a step alone gives the
+step's number.
 """.strip()
 
 

@@ -12,6 +12,7 @@ from wonderful_team.agents.prompts import ROLES, role_names
 from wonderful_team.core.caps import Caps
 from wonderful_team.core.protocols import Detector, Model, Policy, Subscriber, World
 from wonderful_team.core.renamed import renamed_attribute
+from wonderful_team.core.values import AskUser
 from wonderful_team.errors import ConfigError
 from wonderful_team.models.cache import CacheMode, cached_models
 from wonderful_team.models.cache_key import model_identity
@@ -52,6 +53,8 @@ class Method:
         detector: Who finds things by words for methods that look with a detector: a name that `list detectors` shows, FILE.py:NAME,
             or an object with `detect(rgb, words)`; None for `classical`.
         thorough: The lean team asks every question, however plain the scene: slower and dearer, for models that see badly.
+        ask: Called with a question and its choices when neither picture nor instruction settles what is meant; what it returns is
+            what the user answered, and planning goes on with it. None, or no answer: the plan ends as needs_clarification.
         out: Where run folders go; default $WONDERFUL_TEAM_RUNS or `runs`.
         subscribers: Told of every event as it happens.
         command: The command line that reproduces the run, for the page.
@@ -86,6 +89,7 @@ class Method:
     timeout: float | None = None
     world: World | None = None
     detector: str | Detector | None = None
+    ask: AskUser | None = None
 
     def __post_init__(self) -> None:
         self._config = team_config(self.method, self.prompts, self.strict, self.thorough)
@@ -176,7 +180,7 @@ class Method:
         everyone = (*subscribers, *self.subscribers)
         return registry.MethodSetup(
             self._models, self._models[rest], self._caps, everyone, self.concurrency, self._config,
-            self.timeout or DEADLINE_S, self.make_detector, self.world if self._privileged else None,
+            self.timeout or DEADLINE_S, self.make_detector, self.world if self._privileged else None, self.ask,
         )  # fmt: skip
 
     def words(self) -> Mapping[str, str]:

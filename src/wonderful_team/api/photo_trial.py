@@ -34,7 +34,7 @@ def run_photo(spec: TrialSpec, settings: RunSettings) -> TrialRow:
     words = [asked.words for asked in scene.asked]
     seen, count = Observation.from_files(scene.picture), UsageCounter()
     method = prepared(spec, settings, choice_of(spec.condition.model))
-    config = team_config(spec.condition.method, settings.prompts)
+    config = team_config(spec.condition.method, settings.prompts, thorough=bool(settings.extra.get("thorough")))
     by_role = count.by_role
     with Caller() as caller:
         if config is None:

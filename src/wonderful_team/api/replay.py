@@ -21,7 +21,7 @@ from wonderful_team.api.team import Team
 from wonderful_team.core.actions import Vocabulary
 from wonderful_team.core.filesystem import write_public
 from wonderful_team.core.protocols import Event, Model, Subscriber
-from wonderful_team.core.values import Observation, Plan
+from wonderful_team.core.values import AskUser, Observation, Plan
 from wonderful_team.errors import ConfigError, WonderfulTeamError, reading
 from wonderful_team.models.replay import Branching, ReplayModel
 from wonderful_team.record.detections import RecordedDetector
@@ -186,8 +186,15 @@ def _team(folder: Path, record: Mapping[str, Any], model: Model | Mapping[str, M
             strict=bool(configuration["strict"]),
             # Earlier releases asked every question.
             thorough=bool(configuration.get("thorough", True)),
+            ask=_said_then(record),
             **{"cache": "off", **more},
         )
+
+
+def _said_then(record: Mapping[str, Any]) -> AskUser | None:
+    """Answers what the user answered then, question by question; None where nothing was asked."""
+    answers = {entry["question"]: str(entry["answer"]) for entry in record["planner"].get("clarified", ())}
+    return (lambda question, choices: answers.get(question)) if answers else None
 
 
 def _plan_again(folder: Path, record: Mapping[str, Any], setup: Setup, team: Team) -> PlanResult:

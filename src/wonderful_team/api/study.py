@@ -39,7 +39,7 @@ PILOT = 6
 FREE = ("-", OFFLINE)
 """Models whose pilot trials cost no money; simulated ones beside them."""
 
-_OF_MODELS = ("allow_unpriced", "local_only", "timeout", "cache", "cache_file", "detector")
+_OF_MODELS = ("allow_unpriced", "local_only", "timeout", "cache", "cache_file", "detector", "thorough")
 _SAME_AS_OPTIONS = (
     *("repeats", "replans", "reobserve", "isolate", "perturb", "concurrency", "pages", "out", "prompts"),
     *("jobs", "at_once", "ray", "retry_errors"),
@@ -61,7 +61,7 @@ class Study:
         store: File that keeps what ended; the same study on the same file resumes.
         repeats, replans, reobserve, shard: As `bench` has them.
         isolate: whole, planning, grounding: one or several. perturb: KIND=LEVEL: one or several; "" is the scene as it is.
-        thinking, price, allow_unpriced, local_only, timeout, cache, cache_file, prompts: As `Method` takes them.
+        thinking, price, allow_unpriced, local_only, timeout, cache, cache_file, prompts, thorough: As `Method` takes them.
         detector: Its name, for methods that look with one.
         controls: Those that run beside the methods; () refuses them all.
         caps: Of the whole study. trial_caps: of each trial.
@@ -103,6 +103,7 @@ class Study:
     ray: str | None = None
     retry_errors: bool = False
     command: str = ""
+    thorough: bool = False
 
     def __post_init__(self) -> None:
         self.methods, self.controls = _listed(self.methods), _listed(self.controls)
@@ -187,7 +188,7 @@ class Study:
         )
 
     def _asked(self) -> dict[str, Any]:
-        """Options of the models, as `Method` takes them."""
+        """Options of the models and the team, as `Method` takes them."""
         asked = {name: getattr(self, name) for name in _OF_MODELS}
         return {"thinking": self.thinking or None, "price": self.price or None, **asked}
 
@@ -197,6 +198,8 @@ class Study:
         said = [
             f"thinking {level}" if role == "*" else f"{role} thinking {level}" for role, level in sorted(levels.items())
         ]
+        if self.thorough:
+            said.append("thorough")
         if self.prompts is not None:
             from wonderful_team.agents import Prompts
 

@@ -120,10 +120,12 @@ def reproduce(spec: TrialSpec, asked: Mapping[str, Any] | None = None) -> str:
         *(["--reobserve", str(condition.reobserve)] if condition.reobserve else []),
     ]
     timeout = (asked or {}).get("timeout")
+    all_asked = ["--thorough"] if (asked or {}).get("thorough") and condition.method not in CONTROLS else []
     waits = [] if timeout is None or condition.method in CONTROLS else ["--timeout", f"{timeout:g}"]
     detector = (asked or {}).get("detector")
     looks = ["--detector", detector] if detector and registry.looks_with_detector(condition.method) else []
-    return shlex.join(["wonderful-team", *words, *replans, "--method", condition.method, *looks, *models, *waits])
+    method = ["--method", condition.method, *looks]
+    return shlex.join(["wonderful-team", *words, *replans, *method, *models, *waits, *all_asked])
 
 
 def _of_role(role: str, value: str) -> str:

@@ -1,10 +1,11 @@
-"""Asking a person on the terminal whether a plan may run."""
+"""Asking a person on the terminal: whether a plan may run, and what only the user can settle."""
 
 from __future__ import annotations
 
 import getpass
 import os
 import re
+import sys
 
 import click
 
@@ -12,6 +13,7 @@ from wonderful_team.cli.output import say
 from wonderful_team.cli.run_summary import shown_path
 from wonderful_team.cli.wording import numbers_line
 from wonderful_team.core.text import counted
+from wonderful_team.core.values import AskUser
 from wonderful_team.runtime import Approval, Declined, Proposal
 
 TRIES = 3
@@ -41,6 +43,35 @@ def ask(proposal: Proposal) -> Approval | Declined:
             return proposal.decline(who(), no[1].strip())
         say(f"{answer[:40]!r} is neither yes nor no", err=True)
     return proposal.decline(who())
+
+
+def user_to_ask(as_json: bool) -> AskUser | None:
+    """Who answers what neither picture nor instruction settles: the person at the terminal, or nobody."""
+    return answer if not as_json and _is_terminal(sys.stdin) and _is_terminal(sys.stderr) else None
+
+
+def answer(question: str, choices: tuple[str, ...]) -> str | None:
+    """Show a planner's question with its choices, and read the answer: a choice's number or words; None for no answer."""
+    say(f"A question before the plan: {question}", err=True)
+    for number, choice in enumerate(choices, start=1):
+        say(f"  {number}  {choice}", err=True)
+    wanted = "a number or your own words" if choices else "your own words"
+    click.echo(f"Your answer [{wanted}; Enter ends here] ", nl=False, err=True)
+    try:
+        words = input().strip()
+    except (EOFError, OSError, RuntimeError, UnicodeError):  # at its end, gone, closed, or no text
+        say("no answer", err=True)
+        return None
+    if words.isdecimal() and 1 <= int(words) <= len(choices):
+        return choices[int(words) - 1]
+    return words or None
+
+
+def _is_terminal(stream: object) -> bool:
+    try:
+        return bool(stream.isatty())  # type: ignore[attr-defined]
+    except (AttributeError, OSError, ValueError):  # none, gone, or closed
+        return False
 
 
 def who() -> str:

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from wonderful_team.cli.options import CACHE, CACHE_FILE, LOCAL_ONLY, PATH, TIMEOUT
+from wonderful_team.cli.options import CACHE, CACHE_FILE, LOCAL_ONLY, PATH, THOROUGH, TIMEOUT
 from wonderful_team.cli.output import finish, say
 from wonderful_team.core.deadline import limited
 from wonderful_team.core.interrupts import as_keyboard, exit_code
@@ -99,6 +99,7 @@ QUIET_S = 10.0
 )
 @click.option("--out", type=PATH, metavar="DIR", help="Where the pages of trials go. [default: runs]")
 @click.option("--prompts", type=PATH, metavar="DIR", help="Your own words for the roles.")
+@click.option("--thorough", is_flag=True, help=THOROUGH)
 @click.option("--concurrency", type=click.IntRange(1), help="Model calls at once, over all workers.")
 @click.option("--max-calls", type=click.IntRange(1), help="Of the whole study.")
 @click.option("--max-tokens", type=click.IntRange(1), help="Of the whole study.")

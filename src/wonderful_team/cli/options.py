@@ -14,6 +14,8 @@ from wonderful_team.core.deadline import limited
 from wonderful_team.errors import ConfigError
 from wonderful_team.registry.role_models import read_roles
 
+THOROUGH = "The team asks every question, however plain the scene: dearer, for models that see badly."
+"""Help of --thorough."""
 Command = TypeVar("Command", bound=Callable[..., Any])
 
 
@@ -72,6 +74,7 @@ class Common:
     as_json: bool
     open_page: bool
     strict: bool
+    thorough: bool
     command: str
 
     def team_arguments(self) -> dict[str, Any]:
@@ -159,6 +162,7 @@ _COMMON: tuple[Callable[[Any], Any], ...] = (
     click.option("--json", "as_json", is_flag=True, help="Print one JSON document instead of text."),
     click.option("--open", "open_page", is_flag=True, help="Open the page when done."),
     click.option("--strict", is_flag=True, help="Refuse a plan that Verification did not approve."),
+    click.option("--thorough", is_flag=True, help=THOROUGH),
 )
 
 

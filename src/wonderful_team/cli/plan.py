@@ -65,13 +65,15 @@ def command(
 ) -> int:
     """Plan for photos of a workspace: subgoals, targets, boxes and points, actions.
 
-    Without --camera or --corners the plan is in pixels; with one of them also in metres.
+    Without --camera or --corners the plan is in pixels; with one of them also in metres. On a terminal, and without --json, you
+    are asked what neither picture nor instruction settles, and planning goes on with your answer.
     """
     if len(words) < 2:
         raise click.UsageError("at least one IMAGE and then the INSTRUCTION are needed")
     from wonderful_team.api.observation import Observation
     from wonderful_team.api.photos import instruction_with_pictures, read_keep_out
     from wonderful_team.api.team import Team
+    from wonderful_team.cli.asking import user_to_ask
     from wonderful_team.cli.progress import ProgressLine
     from wonderful_team.cli.run_summary import report_plan
     from wonderful_team.errors import reading
@@ -83,7 +85,7 @@ def command(
     with reading("--keep-out", "[NAME=]x0,y0,x1,y1[px|m]"):
         regions = read_keep_out(keep_out)
     progress = ProgressLine(live=not common.as_json)
-    team = Team(**common.team_arguments(), subscribers=(progress,))
+    team = Team(**common.team_arguments(), subscribers=(progress,), ask=user_to_ask(common.as_json))
     progress.header(team)
     made = team.plan(
         observation,

@@ -65,13 +65,14 @@ def command(
 ) -> int:
     """Run a method in a world: WORLD/TASK such as tabletop/rotate, or FILE.py:NAME.
 
-    An INSTRUCTION takes the place of the task's own; the task's scorer is then left out.
+    An INSTRUCTION takes the place of the task's own; the task's scorer is then left out. On a terminal, and without --json, you
+    are asked what neither picture nor instruction settles, and planning goes on with your answer.
     """
     from wonderful_team.api.method import Method
     from wonderful_team.api.photos import read_keep_out
     from wonderful_team.api.rollout import make_world, rollout
     from wonderful_team.api.team import Team
-    from wonderful_team.cli.asking import ask
+    from wonderful_team.cli.asking import ask, user_to_ask
     from wonderful_team.cli.progress import ProgressLine
     from wonderful_team.cli.run_summary import report_trial
     from wonderful_team.cli.video import FRAME_S, Film, check_video_name
@@ -91,7 +92,7 @@ def command(
     with reading("--keep-out", "[NAME=]x0,y0,x1,y1[px|m]"):
         regions = read_keep_out(keep_out)
     progress = ProgressLine(live=not common.as_json)
-    method = kind(**common.team_arguments(), subscribers=(progress,))
+    method = kind(**common.team_arguments(), subscribers=(progress,), ask=user_to_ask(common.as_json))
     place = make_world(world, seed, instruction, regions)
     try:
         film = Film() if video is not None else None

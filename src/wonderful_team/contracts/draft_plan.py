@@ -17,14 +17,12 @@ class DraftPlan(Question):
         step_kinds: What the robot can do; the plan must be possible with these alone.
         with_targets: Targets are written with the draft (`lean`); else the lists stay empty (`paper`).
         advice: What went wrong before: from the Replanner, or targets that were not found.
-        done: What was carried out since the instruction was given, as planned; the views are newer than it.
     """
 
     task: ShownTask
     step_kinds: tuple[str, ...]
     with_targets: bool
     advice: tuple[str, ...] = ()
-    done: tuple[str, ...] = ()
 
     def output(self) -> type[AnswerModel]:
         return PlanDraft

@@ -24,7 +24,7 @@ class BoxVerdict(AnswerModel):
 
     reasoning: str = Reasoning
     decision: Literal["accept", "revise", "reject"] = Field(
-        description="accept: tight on the target; revise: on the target but loose or cut; reject: elsewhere."
+        description="accept: on the target, every edge within the limits; revise: on the target, but an edge is not; reject: elsewhere."
     )
     problem: str = Field(description="What should change about the box, in one sentence; empty when accepted.")
     wrong_points: list[WrongPoint] = Field(

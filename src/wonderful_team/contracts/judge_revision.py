@@ -18,7 +18,7 @@ class RevisionVerdict(AnswerModel):
     reasoning: str = Reasoning
     decision: Literal["keep_before", "take_after_go_on", "take_after_stop"] = Field(
         description="keep_before: the revision is worse; take_after_go_on: better, not yet right; "
-        "take_after_stop: tight on the target."
+        "take_after_stop: every edge is within the limits."
     )
     problem: str = Field("", description="What is still wrong with the kept box, in one sentence; empty after stop.")
 

@@ -35,7 +35,7 @@ class SceneTarget(AnswerModel):
     """Where one target is."""
 
     id: str
-    found: bool = Field(description="false when it is not in the picture; box and points are then left out.")
+    found: bool = Field(description="false when it is not in the picture; box is then null and points are empty.")
     box: BoxPx | None = Field(description="Tight round the target, or round the free spot of an area.")
     points: list[RolePoint] = Field(description="One for each use that the target lists.")
     unsure: str = Unsure

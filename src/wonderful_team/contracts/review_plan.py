@@ -74,7 +74,9 @@ class WalkedReview(AnswerModel):
     walk: list[SubgoalCheck] | SkipJsonSchema[None] = Field(
         None, description="Every subgoal that is to be checked now, in the plan's order; empty for a plan without any."
     )
-    approved: bool = Field(description="true exactly when every verdict of the walk is fine and no subgoal is missing.")
+    approved: bool = Field(
+        description="true exactly when every verdict of the walk is fine, no subgoal is missing, and nothing else is in doubt."
+    )
     doubt: CritiqueDraft | None = Field(description="Null exactly when approved.")
 
 

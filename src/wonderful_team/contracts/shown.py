@@ -82,12 +82,18 @@ class BoxPx(AnswerModel):
 
 @dataclass(frozen=True, eq=False)
 class ShownSlot:
-    """One of the instruction's pictures, as shown."""
+    """One of the instruction's pictures, as shown.
+
+    Attributes:
+        times: How many times as large as in the main view's picture its things are shown; None where that is not known,
+            as of a picture that another camera took.
+    """
 
     name: str
     kind: SlotKind
     pictures: tuple[Picture, ...]
     index: int | None = None
+    times: float | None = None
 
     @property
     def whole_scene(self) -> bool:
@@ -101,12 +107,16 @@ class ShownTask:
 
     Attributes:
         facts: What is known of the robot and its place, one fact a line.
+        said: What the user said beside the instruction.
+        done: What was carried out since the instruction was given, as planned; the views are newer than it.
     """
 
     instruction: str
     views: tuple[Picture, ...]
     slots: tuple[ShownSlot, ...] = ()
     facts: tuple[str, ...] = ()
+    said: tuple[str, ...] = ()
+    done: tuple[str, ...] = ()
 
     @property
     def main(self) -> Picture:

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from functools import lru_cache
+
+import numpy as np
 
 from wonderful_team.core.geometry import Box
 from wonderful_team.core.geometry.arrays import Array
@@ -89,7 +92,9 @@ def draw(picture: Picture, ticks: Ticks = Ticks.PIXELS) -> Array:
     for axes in picture.mark(Axes):
         draw_axes(canvas, picture.frame, axes, ticks)
     labels = [PointLabel(point, text, radius, BLUE, off_things=crowd) for point, text in numbered]
-    labels += [PointLabel(mark.point, plain(mark.label), reach * 0.8, INK) for mark in points if mark.label]
+    labels += [
+        PointLabel(mark.point, plain(mark.label), reach * 0.8, INK, off_things=True) for mark in points if mark.label
+    ]
     labels += [
         start_label(canvas, path.points, plain(path.label), step_colour(number))
         for number, path in enumerate(paths, start=1)
@@ -110,8 +115,25 @@ def draw(picture: Picture, ticks: Ticks = Ticks.PIXELS) -> Array:
 
 
 def line_width_px(picture: Picture) -> int:
-    """How wide a box's line is drawn on a picture [px of it]."""
-    return Canvas.over(picture.rgb).stroke_px
+    """How wide the whole line of a box is drawn on a picture, with its rims [px of it]."""
+    return _outline_width(picture.size_px)
+
+
+@lru_cache(maxsize=64)
+def _outline_width(size_px: tuple[int, int]) -> int:
+    width, height = size_px
+    canvas = Canvas(np.full((height, width, 3), 128, dtype=np.uint8))
+    middle, outside = width // 2, 99
+    canvas.outline(
+        [
+            (middle, -outside),
+            (width + outside, -outside),
+            (width + outside, height + outside),
+            (middle, height + outside),
+        ],
+        ORANGE,
+    )
+    return int((canvas.rgb[height // 2] != 128).any(axis=-1).sum())
 
 
 def _round(region: RegionMark) -> Box:

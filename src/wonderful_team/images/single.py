@@ -23,6 +23,8 @@ LONG_SIDE_PX = 256
 """A cut-out's long side has at least about this many pixels."""
 LARGEST_PX = 420
 """The common factor makes no cut-out larger than this."""
+FACTOR_STEP = 0.25
+"""The common factor is a multiple of this."""
 SMALLER = 3.0
 """Things smaller than the largest one by more than this factor are enlarged by another factor than it, one for all of them."""
 MARGIN, LEAST_MARGIN_PX = 0.12, 6
@@ -94,7 +96,8 @@ def _factor(sides: Sequence[float]) -> float:
     """One factor for things with these longer sides [view px]."""
     if not sides:
         return 1.0
-    return float(max(1, min(math.ceil(LONG_SIDE_PX / min(sides)), int(LARGEST_PX / max(sides)))))
+    within = math.floor(LARGEST_PX / max(sides) / FACTOR_STEP) * FACTOR_STEP
+    return float(max(1, min(math.ceil(LONG_SIDE_PX / min(sides)), within)))
 
 
 def changed_pair(before: tuple[str, View], after: tuple[str, View]) -> tuple[Picture, Picture] | None:

@@ -12,11 +12,12 @@ import numpy as np
 from wonderful_team.agents import build_request
 from wonderful_team.contracts import BoxVerdict, JudgeBox, ReadScene, SceneReading
 from wonderful_team.core.geometry import Box
-from wonderful_team.core.pictures import Axes, BoxMark, Point
+from wonderful_team.core.pictures import Axes, BoxMark, Picture, Point
 from wonderful_team.core.protocols import Model
 from wonderful_team.core.values import Target, View
 from wonderful_team.errors import BudgetReached, ConfigError, ModelOutputError, ModelUnavailableError
 from wonderful_team.images import crop, whole
+from wonderful_team.images.cut import MARKED_SIDE_PX
 from wonderful_team.lab.asking import Bench
 from wonderful_team.lab.fit import WILD
 from wonderful_team.lab.marks import marked_scene
@@ -156,7 +157,7 @@ async def _find(bench: Bench, model: Model, scene: LabScene, labelled: bool, tal
     words = [target.words for target in scene.targets] + list(scene.absent)
     order = np.random.default_rng(scene.seed).permutation(len(words))
     targets = tuple(Target(f"T{k}", "object", words[i], use=("pick",)) for k, i in enumerate(order, start=1))
-    picture = whole(scene.view, "scene", marks=(Axes(),) if labelled else ())
+    picture = _shown(scene).marked(*((Axes(),) if labelled else ()))
     reading: SceneReading | None = await _answer(bench, model, ReadScene(targets, (), picture), "find", tally)
     if reading is None:
         return
@@ -178,6 +179,11 @@ async def _find(bench: Bench, model: Model, scene: LabScene, labelled: bool, tal
             _count_point(tally, picture.frame.point_to_view(item.points[0].point.as_tuple), truth, scene, diagonal)
         if item.box is not None:
             _count_box(tally, picture.frame.box_to_view(item.box.as_box), truth.box)
+
+
+def _shown(scene: LabScene) -> Picture:
+    """The scene as large as the team is shown its main view."""
+    return whole(scene.view, "scene", long_side_px=MARKED_SIDE_PX)
 
 
 def _count_point(tally: _Tally, point: Point, truth: LabTarget, scene: LabScene, diagonal: float) -> None:
@@ -214,7 +220,7 @@ async def _judge(bench: Bench, model: Model, scene: LabScene, tally: _Tally) -> 
             continue
         truth = scene.targets[i]
         shown = crop(scene.view, box, "crop", also=(truth.box,) if state != "elsewhere" else ())
-        view_axes = Axes(whole(scene.view, "scene").frame)
+        view_axes = Axes(_shown(scene).frame)
         marked = shown.marked(view_axes, BoxMark(shown.frame.box_to_picture(box)))
         question = JudgeBox(Target("T1", "object", truth.words, use=("pick",)), marked)
         verdict: BoxVerdict | None = await _answer(bench, model, question, "judge", tally)

@@ -12,6 +12,7 @@ import numpy as np
 from wonderful_team.core.caps import Caps
 from wonderful_team.core.values import Usage
 from wonderful_team.errors import BudgetReached, ModelOutputError, WonderfulTeamError
+from wonderful_team.images.cut import MARKED_SIDE_PX
 from wonderful_team.lab.asking import Bench, MakeModel, Seen, convention_of, look
 from wonderful_team.lab.fit import WILD, Fit, fit_convention
 from wonderful_team.lab.limits import picture_limit, schema_kept, thinking_kind
@@ -25,8 +26,8 @@ from wonderful_team.models.providers.facts import Facts
 
 FIT_SIZES: tuple[Size, ...] = ((601, 461), (1563, 879), (1247, 1563))
 """Small and 4:3, wide, tall and large. The sides are far from multiples of 28 and 32, so that such a resize shows."""
-CHECK_SIZES: tuple[Size, ...] = ((640, 480), (1120, 630), (512, 768))
-"""Pictures on which the fitted convention is checked: as users send them."""
+CHECK_SIZES: tuple[Size, ...] = ((MARKED_SIDE_PX, 960), (MARKED_SIDE_PX, 640), (560, 540))
+"""Pictures on which the fitted convention is checked, as the team sends them: main views of two shapes, enlarged, and a crop."""
 LEAST_OVERLAP = 0.4
 """Least median overlap of its boxes with the marks for a model whose boxes are used."""
 LEAST_BOXES = 0.6

@@ -6,6 +6,13 @@ platform.claude.com/docs/en/build-with-claude/vision and …/vision-coordinates)
 api/docs/guides/images-vision), zai-org's skill glmv-grounding (GLM-V), MoonshotAI/Kimi-VL #52 and #56, the issue threads of
 QwenLM/Qwen3-VL (#676, #721, #866, #1035, #1741), the model cards of Molmo, client documentation (Moondream), public
 benchmark code (GPT). Box orders are general knowledge.
+
+Sizes, where they decide the numbers: Claude's and GPT's in the documentation above; Qwen2.5-VL's in preprocessor_config.json of its
+weights (min_pixels 3136, max_pixels 12845056, patches of 14 px merged by 2; servers may be started with others, which `probe`
+finds). Where a family says shares of width and height (Gemini, Qwen2-VL, Qwen3-VL, GLM-V, Kimi-VL, Molmo, InternVL, Gemma,
+Moondream), what it makes of a picture's size does not change what its numbers mean, and no size is stated here. Looked up all the
+same: Gemma 3 sees 896 x 896 px (preprocessor_config.json), Gemini at most 3072 x 3072 px (firebase.google.com/docs/vertex-ai/
+input-file-requirements); of the others it is unknown: `probe` says what they can point at.
 """
 
 from __future__ import annotations

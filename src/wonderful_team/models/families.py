@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 from typing import Literal, TypeAlias
 
 from wonderful_team.models.conventions import CONVENTIONS, Convention
+from wonderful_team.models.wire.weight import UNLIMITED, Weight
 
 Sure: TypeAlias = Literal["documented", "reported", "unknown"]
 
@@ -25,6 +26,11 @@ class Family:
         sure: documented (by its maker), reported (in public threads), unknown (nothing is known: pixels are asked for).
         weak_pointing: It needs labelled axes on whole views to point well.
         detail: What OpenAI's interfaces are asked for with each picture, so that they do not resize it again.
+        weight: Most bytes of a picture and of a request; heavier pictures are sent as JPEG. Sources: for Claude the refusal
+            "image exceeds 5 MB maximum: ... bytes > 5242880 bytes", which counts base64 (anthropics/claude-code #10612), and
+            platform.claude.com/docs/en/build-with-claude/vision (32 MB a request); for Gemini 20 MB a request
+            (firebase.google.com/docs/vertex-ai/input-file-requirements); for OpenAI 50 MB of pictures a request (its guide on images
+            and vision). A little less is used, for the words. A service that names no limit teaches it with status 413.
     """
 
     name: str
@@ -32,6 +38,7 @@ class Family:
     sure: Sure = "reported"
     weak_pointing: bool = False
     detail: Literal["high", "original"] | None = None
+    weight: Weight = UNLIMITED
 
 
 def _family(name: str, sure: Sure = "reported", *, weak: bool = False) -> Family:
@@ -39,15 +46,19 @@ def _family(name: str, sure: Sure = "reported", *, weak: bool = False) -> Family
 
 
 def _gpt(name: str, detail: Literal["high", "original"]) -> Family:
-    return replace(_family(name, weak=True), detail=detail)
+    return replace(_family(name, weak=True), detail=detail, weight=Weight(request=45_000_000))
+
+
+def _claude(name: str) -> Family:
+    return replace(_family(name, "documented"), weight=Weight(5_242_880, 28_000_000))
 
 
 UNKNOWN = Family("unknown", CONVENTIONS["pixels"], "unknown", weak_pointing=True)
 
 _PATTERNS: tuple[tuple[str, Family], ...] = (
-    (r"gemini|robotics-er", _family("gemini", "documented")),
-    (r"claude-[a-z]+-(4[-.]([7-9]|[1-9]\d)|[5-9]|[1-9]\d)(?!\d)", _family("claude-4.7", "documented")),
-    (r"claude", _family("claude", "documented")),
+    (r"gemini|robotics-er", replace(_family("gemini", "documented"), weight=Weight(request=18_000_000))),
+    (r"claude-[a-z]+-(4[-.]([7-9]|[1-9]\d)|[5-9]|[1-9]\d)(?!\d)", _claude("claude-4.7")),
+    (r"claude", _claude("claude")),
     (r"gemma", _family("gemma")),
     (r"\bgpt-[\d.]+-?(mini|nano)|\bo4-mini", _gpt("gpt-patches", "high")),
     # `original` came with GPT-5.4; earlier ones see tiles of a picture whose shorter side is 768 px.

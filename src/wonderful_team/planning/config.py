@@ -71,6 +71,7 @@ class Bounds:
         regrounds: How often a doubt about its point or box sends one target back to grounding.
         functions: Versions of one helper function.
         samples: Independent proposals of a centre or a spot.
+        clarifications: Questions that the user answers for one plan.
     """
 
     questions: int = 10
@@ -80,6 +81,7 @@ class Bounds:
     regrounds: int = 2
     functions: int = 5
     samples: int = 3
+    clarifications: int = 3
 
 
 @dataclass(frozen=True)

@@ -36,3 +36,20 @@ def refused(plan: Plan, what: str) -> Plan:
 def not_found(absent: Sequence[GroundedTarget]) -> str:
     """What was looked for in vain, in one line."""
     return "; ".join(f"{item.target.id} not found: {item.target.words}" for item in absent)
+
+
+def asks_anew(state: PlanState, absent: Sequence[GroundedTarget]) -> bool:
+    """Whether a revised plan looks for something else than what was not found."""
+    missing = {(item.target.words, item.target.where, item.target.like) for item in absent}
+    return not missing & {(target.words, target.where, target.like) for target in state.targets}
+
+
+def same_plan(state: PlanState, last: PlanState) -> bool:
+    """Whether a plan that could not be carried out came back unchanged."""
+    return (state.subgoals, state.targets) == (last.subgoals, last.targets)
+
+
+def named(item: GroundedTarget) -> str:
+    """A target in words, and whether it was found."""
+    state = {"found": "found", "absent": "not here", "gave_up": "gave up"}[item.status]
+    return f"{item.target.words} ({state})"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 
@@ -54,10 +55,23 @@ def measured_lines(executed: Sequence[SubgoalRun]) -> tuple[str, ...]:
 
 
 def _measured(report: StepReport) -> str:
-    values = ", ".join(f"{name} = {_short(value)}" for name, value in report.measured.items())
+    told = (_told(name, value) for name, value in report.measured.items())
+    values = ", ".join(text for text in told if text)
     state = "executed" if report.executed else "not executed"
     fault = f", fault: {report.fault}" if report.fault else ""
     return f"{report.action.kind} {state}{': ' + values if values else ''}{fault}"
+
+
+def _told(name: str, value: object) -> str:
+    """One measured value in words and units that a picture is read with; "" for a position in the robot's own frame."""
+    if name.endswith("_m") and isinstance(value, list | tuple):
+        return ""
+    words = name.replace("_", " ")
+    if isinstance(value, float) and name.endswith("_m"):
+        return f"{words[:-2]} = {100 * value:.1f} cm"
+    if isinstance(value, float) and name.endswith("_rad"):
+        return f"{words[:-4]} = {math.degrees(value):.0f} degrees"
+    return f"{words} = {_short(value)}"
 
 
 def _short(value: object) -> str:

@@ -51,30 +51,32 @@ class PlanState:
     reviewed: bool = False
 
 
-async def draft(
-    session: AgentSession, scene: SceneShown, advice: Sequence[str] = (), done: Sequence[str] = ()
-) -> PlanState:
+async def draft(session: AgentSession, scene: SceneShown, advice: Sequence[str] = ()) -> PlanState:
     """The Supervisor's first draft.
 
     Raises:
         NeedsClarification: Neither picture nor instruction settles what is meant.
     """
     with_targets = session.config.mode == "lean"
-    question = DraftPlan(scene.task, scene.vocabulary.step_kinds, with_targets, tuple(advice), tuple(done))
+    question = DraftPlan(scene.task, scene.vocabulary.step_kinds, with_targets, tuple(advice))
     written: PlanDraft = await session.ask(question, stage="plan")
     if written.clarification is not None:
         raise NeedsClarification(written.clarification.question, written.clarification.choices)
-    state = _as_written(PlanState((), (), written.mode, written.to_subgoals()), written, with_targets)
+    state = _as_written(PlanState((), (), written.mode, written.to_subgoals()), written, session)
     session.stage("draft", _count(state))
     return state
 
 
-def _as_written(state: PlanState, written: PlanDraft, with_targets: bool) -> PlanState:
+def _as_written(state: PlanState, written: PlanDraft, session: AgentSession) -> PlanState:
     """The state with a newly written plan in it, which nobody has looked at yet."""
+    with_targets = session.config.mode == "lean"
+    targets = written.to_targets() if with_targets else ()
+    if session.members.manager:  # without a Manager nobody draws an outline: a point has to do
+        targets = tuple(replace(target, landmark=_is_landmark(target, written)) for target in targets)
     return replace(
         state,
         subgoals=written.to_subgoals(),
-        targets=written.to_targets() if with_targets else (),
+        targets=targets,
         mode=written.mode,
         moves=written.to_moves() if with_targets else (),
         unsure=written.unsure,
@@ -82,6 +84,17 @@ def _as_written(state: PlanState, written: PlanDraft, with_targets: bool) -> Pla
         verified=False,
         reviewed=False,
     )
+
+
+def _is_landmark(target: Target, written: PlanDraft) -> bool:
+    """Whether a target has no use of its own and is only what others are placed beside."""
+    named = [item for item in written.subgoals if target.id in item.targets]
+    moves = [item.move for item in named]
+    beside = all(
+        move is not None and (move.place.target, move.place.how) == (target.id, "beside") and move.pick != target.id
+        for move in moves
+    )
+    return target.kind == "object" and not target.use and bool(named) and beside
 
 
 async def verify_where_needed(
@@ -184,7 +197,7 @@ async def resolve(
         return state, answered
     if revision.plan.clarification is not None:
         raise NeedsClarification(revision.plan.clarification.question, revision.plan.clarification.choices)
-    return _as_written(state, revision.plan, with_targets), answered
+    return _as_written(state, revision.plan, session), answered
 
 
 def remember_doubt(session: AgentSession, stage: str, doubt: Critique, reasoning: str) -> None:

@@ -132,7 +132,7 @@ class AgentSession:
         """Let Memory keep what was decided and the plan does not show, beside the main line; nothing when it is switched off.
 
         Asked only of a doubt that was settled, a box that was rejected, one of several look-alikes that was chosen, an angle
-        that nobody stated, a helper function that was criticised.
+        that nobody stated, a helper function that was criticised, and what the user was asked and answered.
         """
         if not self.members.memory:
             return

@@ -16,6 +16,7 @@ from wonderful_team.core.text import counted
 from wonderful_team.core.together import both
 from wonderful_team.core.values import (
     NO_WORKSPACE,
+    AskUser,
     GroundedTarget,
     Instruction,
     KeepOut,
@@ -26,14 +27,16 @@ from wonderful_team.core.values import (
     Verdict,
 )
 from wonderful_team.detectors import name_of
-from wonderful_team.errors import ActionRefusedError, ConfigError, GeometryError, NotFoundError
+from wonderful_team.errors import ActionRefusedError, ConfigError, GeometryError, NeedsClarification, NotFoundError
 from wonderful_team.models.budget import Budget
 from wonderful_team.models.client import DEADLINE_S, ModelClient
 from wonderful_team.planning import acting, endings, grounding, judging, plan_loop
+from wonderful_team.planning.clarifying import clarify
 from wonderful_team.planning.config import TeamConfig
 from wonderful_team.planning.functions import write_functions
 from wonderful_team.planning.jobs import read_scene
 from wonderful_team.planning.looking import done_lines, first_part, is_uncertain
+from wonderful_team.planning.notes import one_line
 from wonderful_team.planning.plan_loop import PlanState
 from wonderful_team.planning.session import AgentSession, needed_detector, settle
 
@@ -57,6 +60,7 @@ class TeamPolicy:
         caps: Upper limits on calls, tokens, seconds and money, per trial.
         subscribers: Told of everything that happens.
         detector: Who finds things where `config.grounding` is "detector".
+        ask: Asks the user what neither picture nor instruction settles; None: such a question ends planning.
 
     Raises:
         ConfigError: A detector is needed and not there.
@@ -72,7 +76,9 @@ class TeamPolicy:
         concurrency: int = 8,
         deadline_s: float = DEADLINE_S,
         detector: Detector | None = None,
+        ask: AskUser | None = None,
     ) -> None:
+        self._ask = ask
         self.config = config or TeamConfig()
         self.name = self.config.name
         self._detector = needed_detector(self.config, detector)
@@ -87,6 +93,8 @@ class TeamPolicy:
         self._session: AgentSession | None = None
         self._last: tuple[SceneShown, Plan] | None = None
         self._looking = False
+        self._said: tuple[str, ...] = ()
+        self._done: tuple[str, ...] = ()
 
     @property
     def usage_by_role(self) -> Mapping[str, Usage]:
@@ -121,6 +129,7 @@ class TeamPolicy:
         self._client.budget = Budget(self._caps)
         self._session = self._last = None
         self._looking = False
+        self._said = self._done = ()
 
     async def make_plan(
         self,
@@ -147,13 +156,17 @@ class TeamPolicy:
         """
         if until not in UNTIL:
             raise ConfigError(f"until {until!r}: valid are {', '.join(UNTIL)}")
-        scene = SceneShown(observation, instruction, vocabulary, limits, facts, tuple(keep_out))
+        scene = SceneShown(
+            observation, instruction, vocabulary, limits, facts, tuple(keep_out), self._said, tuple(done)
+        )
         session = self._session or self._begin(instruction)
         self._session = session
         start = Plan(instruction, "failed", keep_out=tuple(keep_out), scene_hash=observation.hash, parent=parent)
         progress = _Progress(start)
         try:
-            plan = await self._plan(session, scene, progress, until, tuple(advice), tuple(done))
+            for line in advice:
+                session.note("verification", "before", one_line(f"What went wrong before this plan: {line}"))
+            plan, scene = await self._plan_asking(session, scene, progress, until, tuple(advice))
             # What Memory is still writing belongs to this plan: whether it is kept must not be a matter of luck.
             await session.memory.barrier()
         except ENDS_A_PLAN as error:
@@ -166,21 +179,28 @@ class TeamPolicy:
         self._client.tell("plan", plan.id, plan)
         return plan
 
+    async def _plan_asking(
+        self, session: AgentSession, scene: SceneShown, progress: _Progress, until: Until, advice: tuple[str, ...]
+    ) -> tuple[Plan, SceneShown]:
+        """A plan, the user asked where nothing else settles what is meant; and the scene with what the user said."""
+        start = progress.plan
+        for _ in range(self.config.bounds.clarifications):
+            try:
+                return await self._plan(session, scene, progress, until, advice), scene
+            except NeedsClarification as error:
+                self._said = (*self._said, (await clarify(session, self._ask, error, self._said)).words)
+                scene, progress.plan = replace(scene, said=self._said), start
+        return await self._plan(session, scene, progress, until, advice), scene
+
     async def _plan(
-        self,
-        session: AgentSession,
-        scene: SceneShown,
-        progress: _Progress,
-        until: Until,
-        advice: tuple[str, ...],
-        done: tuple[str, ...],
+        self, session: AgentSession, scene: SceneShown, progress: _Progress, until: Until, advice: tuple[str, ...]
     ) -> Plan:
         absent: list[GroundedTarget] = []
         failed: GeometryError | NotFoundError | None = None
         last: PlanState | None = None
         asked = advice
         for turn in range(1 + self.config.bounds.returns):
-            state = await plan_loop.draft(session, scene, advice, done)
+            state = await plan_loop.draft(session, scene, advice)
             progress.plan = endings.with_state(progress.plan, state, "draft")
             if until == "draft":
                 return progress.plan
@@ -194,7 +214,9 @@ class TeamPolicy:
             if until == "checked":
                 return progress.plan
             state = await plan_loop.extract_targets(session, scene, state)
-            if (absent and not _asks_anew(state, absent)) or (last is not None and _same_plan(state, last)):
+            if (absent and not endings.asks_anew(state, absent)) or (
+                last is not None and endings.same_plan(state, last)
+            ):
                 break
             progress.plan = endings.with_state(progress.plan, state, "checked")
             if not state.subgoals:
@@ -257,7 +279,7 @@ class TeamPolicy:
         else:
             grounded = await grounding.ground(jobs)
         progress.plan = replace(progress.plan, grounded=grounded, status="grounded")
-        session.stage("grounded", "   ".join(f"{name} {_named(item)}" for name, item in grounded.items()))
+        session.stage("grounded", "   ".join(f"{name} {endings.named(item)}" for name, item in grounded.items()))
         absent = [item for item in grounded.values() if item.status != "found"]
         if absent or until == "grounded":
             return progress.plan, absent, None
@@ -298,7 +320,9 @@ class TeamPolicy:
         assert self._session is not None
         if looking and all(report.executed for run in situation.executed for report in run.reports):
             # Not judged first: the new plan holds what is left to do in the new picture.
-            return await self._next_plan(situation, (), plan, done=done_lines(plan))
+            self._done = (*self._done, *done_lines(plan))
+            return await self._next_plan(situation, (), plan)
+        self._done = ()
         verdicts = await judging.judge_outcome(self._session, scene, plan, situation.observation, situation.executed)
         if all(verdict.status == "done" for verdict in verdicts):
             return Done("every subgoal is done", verdicts)
@@ -307,7 +331,7 @@ class TeamPolicy:
         )
         if situation.replans_left <= 0:
             return GaveUp(f"no replans left; {causes}", "execution", plan, verdicts)
-        now = _scene_of(situation)
+        now = replace(_scene_of(situation), said=self._said)
         advice = await judging.advise(self._session, now, plan, verdicts, situation.executed, situation.replans_left)
         if advice.decision == "done":
             return Done(advice.reasoning, verdicts)
@@ -318,6 +342,7 @@ class TeamPolicy:
     async def _after_refusal(self, situation: Situation, plan: Plan) -> Decision:
         assert situation.refused is not None
         if situation.advice:
+            self._said = (*self._said, f"declined the last plan: {situation.advice}")
             return await self._next_plan(situation, (f"A person declined the plan: {situation.advice}",), plan)
         reasons = situation.refused.reasons
         if situation.replans_left <= 0:
@@ -336,7 +361,6 @@ class TeamPolicy:
         advice: tuple[str, ...],
         before: Plan | None,
         verdicts: tuple[Verdict, ...] = (),
-        done: tuple[str, ...] = (),
     ) -> Decision:
         plan = await self.make_plan(
             situation.observation,
@@ -345,7 +369,7 @@ class TeamPolicy:
             situation.limits,
             keep_out=situation.limits.keep_out,
             advice=advice,
-            done=done,
+            done=self._done,
             facts=situation.facts,
             parent=before.id if before is not None else None,
         )
@@ -365,19 +389,3 @@ def _scene_of(situation: Situation) -> SceneShown:
     return SceneShown(
         situation.observation, situation.instruction, situation.vocabulary, situation.limits, situation.facts
     )
-
-
-def _asks_anew(state: PlanState, absent: Sequence[GroundedTarget]) -> bool:
-    """Whether a revised plan looks for something else than what was not found."""
-    missing = {(item.target.words, item.target.where, item.target.like) for item in absent}
-    return not missing & {(target.words, target.where, target.like) for target in state.targets}
-
-
-def _same_plan(state: PlanState, last: PlanState) -> bool:
-    """Whether a plan that could not be carried out came back unchanged."""
-    return (state.subgoals, state.targets) == (last.subgoals, last.targets)
-
-
-def _named(item: GroundedTarget) -> str:
-    state = {"found": "found", "absent": "not here", "gave_up": "gave up"}[item.status]
-    return f"{item.target.words} ({state})"

@@ -118,6 +118,14 @@ class Asked(_Part):
     so_far: SoFar
 
 
+class ClarifiedEntry(_Part):
+    """What the user was asked while planning, and answered."""
+
+    question: str
+    choices: list[str]
+    answer: str
+
+
 class DecisionEntry(_Part):
     """What the method decided."""
 
@@ -254,6 +262,7 @@ class Planner(_Part):
     stages: list[StageEntry]
     plans: list[PlanEntry]
     asked: list[Asked] | None = None
+    clarified: list[ClarifiedEntry] = []
     decisions: list[DecisionEntry]
     gates: list[GateEntry]
     executions: list[ExecutionEntry]

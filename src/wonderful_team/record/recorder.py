@@ -84,6 +84,7 @@ class Recorder:
             "failed": self._on_failed,
             "plan": self._on_plan,
             "asking": self._on_asking,
+            "clarified": self._on_clarified,
             "decision": self._on_decision,
             "gate": self._on_gate,
             "execute": self._on_execute,
@@ -260,6 +261,10 @@ class Recorder:
 
     def _on_asking(self, event: Event) -> None:
         self._planner.setdefault("asked", []).append({**event.content, "so_far": self._so_far()})
+
+    def _on_clarified(self, event: Event) -> None:
+        """What the user answered: a replay gives the same answers."""
+        self._planner.setdefault("clarified", []).append(to_jsonable(event.content))
 
     def _on_decision(self, event: Event) -> None:
         self._planner["decisions"].append({**entries.plain(event.content), "so_far": self._so_far()})

@@ -10,6 +10,7 @@ from wonderful_team.agents.role import Role
 from wonderful_team.core.caps import Caps
 from wonderful_team.core.protocols import Detector, Model, Policy, Subscriber, World
 from wonderful_team.core.renamed import RenamedKeys
+from wonderful_team.core.values import AskUser
 from wonderful_team.errors import ConfigError, MethodCodeError, UnknownNameError
 from wonderful_team.models.budget import Budget
 from wonderful_team.models.client import DEADLINE_S, ModelClient
@@ -42,6 +43,7 @@ class MethodSetup:
         deadline_s: Longest wait for one answer, unless the model itself may take longer.
         detector: Makes the detector that was named, for methods that look with one; weights are loaded once.
         world: Given to methods marked PRIVILEGED alone, which are told of its truth.
+        ask: Asks the user what only the user can settle; None where nobody can be asked.
     """
 
     models: Mapping[str, Model]
@@ -53,6 +55,7 @@ class MethodSetup:
     deadline_s: float = DEADLINE_S
     detector: Callable[[], Detector] = make_detector
     world: World | None = None
+    ask: AskUser | None = None
 
     def client(self) -> ModelClient:
         """Where a method asks its models: capped, and told to subscribers."""
@@ -99,6 +102,7 @@ def _team(setup: MethodSetup) -> Policy:
         concurrency=setup.concurrency,
         deadline_s=setup.deadline_s,
         detector=setup.detector() if setup.config is not None and setup.config.grounding == "detector" else None,
+        ask=setup.ask,
     )
 
 

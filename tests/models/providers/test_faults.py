@@ -46,7 +46,7 @@ EMPTY_IS_AN_ANSWER = {
     "google": ("empty_choices", "empty_200", "error_200", "other_shape"),
 }
 """Where a reply without any content is well-formed: the model may then be told that it said nothing."""
-SPECIAL = ("filtered", "quota", "too_many_pictures", "absent")
+SPECIAL = ("filtered", "quota", "too_many_pictures", "too_heavy", "picture_too_heavy", "absent")
 
 
 @pytest.fixture(scope="module", params=WIRES)

@@ -1,5 +1,6 @@
 """The values that flow through the system: frozen, checked once when built, arrays read-only."""
 
+from wonderful_team.core.values.clarification import AskUser, Clarification
 from wonderful_team.core.values.content import content_hash, file_hash
 from wonderful_team.core.values.detection import Detection, DetectorRun, mask_from_runs, mask_to_runs
 from wonderful_team.core.values.ground_truth import GroundTruthView, TrueThing
@@ -34,6 +35,8 @@ from wonderful_team.core.values.result import (
 __all__ = [
     "Alike",
     "Answer",
+    "AskUser",
+    "Clarification",
     "Critique",
     "Detection",
     "DetectorRun",

@@ -41,6 +41,7 @@ class Target:
         like: Names of the instruction's slots that show what it looks like; for an area, those that define it.
         use: What its points are for; an object is picked and an area placed on unless the plan says otherwise.
         alike: What it has in common with those pictures; surface is colour and pattern.
+        landmark: Others are placed beside it, and nothing else is done with it: only its outline is looked for.
     """
 
     id: str
@@ -52,10 +53,13 @@ class Target:
     like: tuple[str, ...] = ()
     use: tuple[PointRole, ...] = ()
     alike: Alike = later("both")
+    landmark: bool = later(False)
 
     @property
     def roles(self) -> tuple[PointRole, ...]:
-        """The points to be found, never empty."""
+        """The points to be found; none of a landmark."""
+        if self.landmark:
+            return ()
         return self.use or (("pick",) if self.kind == "object" else ("place",))
 
 

@@ -6,7 +6,7 @@ import contextlib
 import math
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from wonderful_team.errors import (
@@ -64,6 +64,12 @@ _PICTURES = re.compile(
     r"|(image|picture)s?\b.{0,40}(limit|at most|too many|exceed)",
     re.I,
 )
+_HEAVY = re.compile(
+    r"image exceeds [\d.]+ ?[KM]i?B|payload (too large|reached size limit)|(request )?entity too large|body (is )?too large"
+    r"|(body|payload).{0,30}length limit exceeded",
+    re.I,
+)
+"""Too many bytes: Anthropic (a picture), SGLang, nginx, FastAPI, text-generation-inference."""
 _CROWDED = re.compile(r"context size has been exceeded", re.I)
 """llama.cpp, whose requests share one context unless it is told otherwise: together they overfilled it, and each of them failed."""
 _SCHEMA = re.compile(
@@ -88,6 +94,7 @@ class Fault:
         retry: Trying the same again may help.
         wait_s: How long the provider asked to wait.
         picture_limit: How many pictures it takes, when that is what it refused; 0 when it did not say.
+        heavy: The request has too many bytes (status 413), or a picture has.
         schema: It refused the schema.
         thinking: It refused the switch for thinking.
         crowded: Requests under way at once were too much for it; it may take this one alone.
@@ -107,6 +114,7 @@ class Fault:
     context: int | None = None
     taken: int | None = None
     most_out: int | None = None
+    heavy: bool = False
 
 
 def fault_of(error: BaseException, name: str, where: str, refused: str) -> Fault:
@@ -183,13 +191,15 @@ def _rejected(status: int, name: str, where: str, said: str, wait_s: float | Non
         return Fault(UnknownModelError(f"{name}: {where} sends elsewhere (status {status}); give the final address"))
     if _BAD_KEY.search(said):
         return Fault(ModelAuthError(f"{name}: {refused} ({said})"))
+    if _HEAVY.search(said):
+        return Fault(RequestRejectedError(f"{name}: {where} takes no request with so many bytes ({said})"), heavy=True)
     pictures = _PICTURES.search(said)
     if pictures is not None:
         limit = int(pictures.group(3)) if pictures.group(3) else 0
         return Fault(TooManyPicturesError(f"{name}: too many pictures in one request ({said})"), picture_limit=limit)
     most_out = _number(_MOST_OUT, said)
     if most_out is None and (status == 413 or _CONTEXT.search(said)):
-        return _too_long(name, said)
+        return replace(_too_long(name, said), heavy=status == 413 and not _CONTEXT.search(said))
     rejected = RequestRejectedError(f"{name}: {where} refused the request ({said})")
     return Fault(rejected, schema=bool(_SCHEMA.search(said)), thinking=bool(_THINKING.search(said)), most_out=most_out)
 

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from wonderful_team.errors import ContextTooLongError
 from wonderful_team.models.budget import LEAST_OUT
 from wonderful_team.models.providers.facts import Facts
 from wonderful_team.models.providers.faults import Fault
 from wonderful_team.models.providers.settings import LONGEST_TRY_S, Settings
+from wonderful_team.models.wire import UNLIMITED, Composed, Weight
 
+LIGHTER = 3
+"""Pictures that a service refused as too heavy are sent again with at most this fraction of their bytes."""
 SLOW_TIMES = 4.0
 """A reply may take so many times as long as the slowest one seen."""
 MOST_UNSEEN = 4.0
@@ -26,6 +29,7 @@ class Learned:
     Attributes:
         schemas, thinking: It takes schemas; it takes the switch for thinking.
         max_pictures: Most pictures in one request; None when nothing is known.
+        weight: How heavy pictures may be.
         facts: What it says of the model; None until it was asked. facts_asked: How often it was.
         context: Most tokens of a request and its answer together.
         most_out: Most tokens of an answer, as it said when it refused more.
@@ -40,6 +44,7 @@ class Learned:
     first_try_s: float
     try_s: float
     thinking: bool = True
+    weight: Weight = UNLIMITED
     facts: Facts | None = None
     facts_asked: int = 0
     context: int | None = None
@@ -53,7 +58,9 @@ class Learned:
     def of(cls, settings: Settings) -> Learned:
         """What is set at the start."""
         first = settings.first_try_s
-        return cls(settings.schemas, settings.max_pictures, first, first, context=settings.context)
+        return cls(
+            settings.schemas, settings.max_pictures, first, first, context=settings.context, weight=settings.weight
+        )
 
     def say(self, what: str, text: str) -> None:
         """Note something for the user, once for each `what`."""
@@ -154,8 +161,9 @@ class Learned:
 
     # -- refusals --------------------------------------------------------------------------------------------------
 
-    def take(self, fault: Fault, pictures: int, thinking: str | None, limit: int, reckoned: float) -> bool:
+    def take(self, fault: Fault, sent: Composed, thinking: str | None, limit: int, reckoned: float) -> bool:
         """Take in what the service refused; True when the request should be sent in another form."""
+        pictures = len(sent.sizes_px)
         if fault.schema:
             # Perhaps another request that is under way has learned it already: this one was still sent with a schema.
             self.schemas = False
@@ -172,7 +180,17 @@ class Learned:
         if fault.most_out is not None and fault.most_out < limit:
             self.most_out = fault.most_out
             return True
+        if fault.heavy and pictures and self._lighter(sent):
+            return True
         return isinstance(fault.error, ContextTooLongError) and self._shorter(fault, limit, reckoned)
+
+    def _lighter(self, sent: Composed) -> bool:
+        """Whether pictures that were too heavy together can be sent lighter."""
+        most = sent.picture_bytes // LIGHTER
+        if self.weight.request is not None and self.weight.request <= most:
+            return False
+        self.weight = replace(self.weight, request=most)
+        return True
 
     def crowd(self) -> None:
         """Requests that were under way at once were too much for the service."""

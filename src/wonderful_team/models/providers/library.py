@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, cast
 from wonderful_team.errors import ConfigError, MissingExtraError
 from wonderful_team.models.providers.bounded import limit_replies
 from wonderful_team.models.providers.specs import Spec, is_loopback
-from wonderful_team.models.wire import Composed
+from wonderful_team.models.wire import Composed, media_type
 
 if TYPE_CHECKING:
     import httpx2
@@ -127,7 +127,7 @@ def messages_of(composed: Composed, turns: Sequence[tuple[str, str]], detail: st
 
     metadata = None if detail is None else {"detail": detail}
     content: list[UserContent] = [
-        piece if isinstance(piece, str) else BinaryImage(piece, media_type="image/png", vendor_metadata=metadata)
+        piece if isinstance(piece, str) else BinaryImage(piece, media_type=media_type(piece), vendor_metadata=metadata)
         for piece in composed.pieces
     ]
     first: list[Any] = [SystemPromptPart(composed.system)] if composed.system else []

@@ -79,7 +79,7 @@ def make_provider(
     )
     family = guess_family(model)
     most = max_tokens or (MAX_TOKENS[thinking] if parsed.vendor or thinking not in (None, "off") else SERVER_MAX_TOKENS)
-    settings = Settings(thinking, most, deadline_s, tries, first_wait_s, timeout_s)
+    settings = Settings(thinking, most, deadline_s, tries, first_wait_s, timeout_s, weight=family.weight)
     if parsed.service.takes_detail:
         settings = replace(settings, detail=family.detail)
     convention, weak = family.convention, family.weak_pointing

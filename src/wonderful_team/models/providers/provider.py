@@ -186,7 +186,7 @@ class Provider:
                 self._learned.crowd()
                 continue
             size = self._reckoned(request)
-            if doubts < 3 and self._learned.take(outcome, len(composed.sizes_px), self._thinking, limit, size):
+            if doubts < 3 and self._learned.take(outcome, composed, self._thinking, limit, size):
                 doubts += 1
                 continue
             left = min(ends, own_ends) - time.monotonic()
@@ -208,7 +208,10 @@ class Provider:
         limit = self._learned.max_pictures
         pasted = limit is not None and len(request.pictures) > limit
         told = not self._learned.schemas or self.spec.vendor is None
-        return compose(request, self.convention, one_picture=pasted, schema_in_words=told)
+        return self._composed(request, pasted, told)
+
+    def _composed(self, request: Request, pasted: bool, told: bool) -> Composed:
+        return compose(request, self.convention, one_picture=pasted, schema_in_words=told, limits=self._learned.weight)
 
     @property
     def _thinking(self) -> Thinking | None:
@@ -249,10 +252,7 @@ class Provider:
                 schema = composed.form.schema if self._learned.schemas and library.enforces_schemas(model) else None
                 told = schema is None or library.hides_schemas(model)
                 if told and self.spec.vendor is not None and self._learned.schemas:
-                    composed = compose(
-                        request, self.convention, one_picture=len(composed.sizes_px) < len(request.pictures),
-                        schema_in_words=True,
-                    )  # fmt: skip
+                    composed = self._composed(request, len(composed.sizes_px) < len(request.pictures), True)
                 turns = [(as_said(request.previous), self._complaint(request, composed))] if request.feedback else []
                 messages = library.messages_of(composed, turns, self.settings.detail)
                 return await library.send(model, messages, self._settings(limit), schema, request.contract)
@@ -326,7 +326,8 @@ class Provider:
             # Half an answer may still hold a whole object inside: that is no wrong answer to send back, but a cut one.
             raise self._cut_off(request, limit, ticket)
         model = response.model_name or self.model
-        return Answer(value, usage, model, said, repairs=repairs, notices=self._learned.told())
+        notices = (*self._learned.told(), *([composed.notice] if composed.notice else []))
+        return Answer(value, usage, model, said, repairs=repairs, notices=notices)
 
     async def _check_whole(self, request: Request, composed: Composed, counted: int) -> None:
         """Refuse the answer to a request that the server has cut without a word; servers named by address may."""

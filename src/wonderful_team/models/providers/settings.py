@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
+from wonderful_team.models.wire.weight import UNLIMITED, Weight
+
 Thinking: TypeAlias = Literal["off", "low", "medium", "high"]
 MAX_TOKENS: dict[Thinking | None, int] = {None: 8192, "off": 8192, "low": 16384, "medium": 32768, "high": 32768}
 """Most tokens of one answer, thinking included, by thinking level; servers named by address: SERVER_MAX_TOKENS."""
@@ -34,6 +36,7 @@ class Settings:
         max_pictures: Most pictures in one request; more are pasted on one sheet. None: no limit is known.
         context: Most tokens of a request and its answer, as measured; what the service says now wins.
         detail: The detail in which pictures are to be looked at, where the service has such a switch.
+        weight: How heavy pictures may be; heavier ones are sent as JPEG.
     """
 
     thinking: Thinking | None
@@ -46,6 +49,7 @@ class Settings:
     max_pictures: int | None = None
     detail: str | None = None
     context: int | None = None
+    weight: Weight = UNLIMITED
 
     @property
     def first_try_s(self) -> float:

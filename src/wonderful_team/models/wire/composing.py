@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Hashable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
@@ -19,6 +20,7 @@ from wonderful_team.models.wire.form import Form, box_keys, point_keys
 from wonderful_team.models.wire.png import fast_png
 from wonderful_team.models.wire.reading import Reading, read_json, read_point_tags
 from wonderful_team.models.wire.showing import Shown, paste, show_encoded, ticks_of
+from wonderful_team.models.wire.weight import UNLIMITED, Weight, lightened, sent_bytes
 
 Piece: TypeAlias = str | bytes
 
@@ -29,10 +31,12 @@ class Composed:
 
     Attributes:
         system: Standing words; the same for every request of the role.
-        pieces: Words and PNG bytes, in order.
+        pieces: Words and the bytes of pictures (PNG, or JPEG where PNG is too heavy), in order.
         form: The answer's schema in the model's format.
         convention: The one in force: plain pixels where the answer holds no places.
         sizes_px: Width and height of every picture sent.
+        picture_bytes: Of all pictures sent, in base64.
+        notice: What was done to pictures that are too heavy, in words; "" for nothing.
     """
 
     system: str
@@ -42,6 +46,8 @@ class Composed:
     sizes_px: tuple[tuple[int, int], ...]
     _where: Shown | None
     _canvas: tuple[int, int]
+    picture_bytes: int = 0
+    notice: str = ""
 
     def read(self, text: str) -> Reading:
         """What a model said, as a value with our names and places in pixels of our picture.
@@ -65,7 +71,12 @@ class Composed:
 
 
 def compose(
-    request: Request, convention: Convention, *, one_picture: bool = False, schema_in_words: bool = False
+    request: Request,
+    convention: Convention,
+    *,
+    one_picture: bool = False,
+    schema_in_words: bool = False,
+    limits: Weight = UNLIMITED,
 ) -> Composed:
     """Words, pictures and schema of a request in the terms of a model.
 
@@ -74,6 +85,7 @@ def compose(
         convention: Of the model. Where the answer holds no points or boxes, plain pixels are drawn and said.
         one_picture: Paste all pictures on one sheet.
         schema_in_words: Tell the schema in words as well, for servers that do not show it to the model.
+        limits: How heavy pictures may be.
     """
     form = _form(cast(Hashable, request.output), convention)
     if not form.has_places:
@@ -81,15 +93,19 @@ def compose(
     pictures = list(dict.fromkeys(request.pictures))
     pasted = one_picture and len(request.pictures) > 1
     files: dict[Picture, bytes] = {}
+    notice = ""
     if pasted:
         sheet, shown = paste(pictures, convention)
         canvas = (sheet.shape[1], sheet.shape[0])
+        one, notice = lightened({"sheet": fast_png(sheet)}, {"sheet": sheet}, {"sheet": 1}, limits)
     else:
         both = [show_encoded(picture, convention) for picture in pictures]
         shown, files = (
             [item for item, _ in both],
             {picture: png for picture, (_, png) in zip(pictures, both, strict=True)},
         )
+        times = Counter(request.pictures)
+        files, notice = lightened(files, dict(zip(pictures, (item.rgb for item in shown), strict=True)), times, limits)
     held = dict(zip(pictures, shown, strict=True))
     target = answer_picture(request) if form.has_places else None
     where = held.get(target) if target is not None else None
@@ -97,7 +113,7 @@ def compose(
         where = shown[0]
     if not pasted:
         canvas = where.picture.size_px if where is not None else (1, 1)
-    pieces: list[Piece] = [fast_png(sheet), _layout(shown)] if pasted else []
+    pieces: list[Piece] = [one["sheet"], _layout(shown)] if pasted else []
     told = False
     for part in request.parts:
         if isinstance(part, Picture):
@@ -115,7 +131,8 @@ def compose(
     if schema_in_words:
         pieces.append(f"Answer with one JSON object and nothing else. Its JSON schema:\n{form.text}")
     sizes = (canvas,) if pasted else tuple(held[picture].picture.size_px for picture in request.pictures)
-    return Composed(request.system, _joined(pieces), form, convention, sizes, where, canvas)
+    weight = sum(sent_bytes(piece) for piece in pieces if isinstance(piece, bytes))
+    return Composed(request.system, _joined(pieces), form, convention, sizes, where, canvas, weight, notice)
 
 
 def answer_picture(request: Request) -> Picture | None:

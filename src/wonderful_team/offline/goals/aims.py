@@ -76,6 +76,7 @@ class Aims:
     Attributes:
         absent: What the words presume and the picture does not show, each by name.
         settled: What was seen in its place already; without any of it, nothing is fulfilled.
+        said: What the user said beside the instruction.
     """
 
     aims: list[Aim] = field(default_factory=list)
@@ -85,6 +86,7 @@ class Aims:
     literal: bool = False
     absent: list[str] = field(default_factory=list)
     settled: list[str] = field(default_factory=list)
+    said: tuple[str, ...] = ()
 
     def misses(self, description: Description, eyes: Eyes) -> None:
         """Note that nothing fits a description."""

@@ -46,7 +46,7 @@ def derive(understood: Understood, eyes: Eyes, *, strict: bool = True, literal: 
         strict: Ask when two things fit equally; else take the better one.
         literal: Keep aims that the picture shows as reached already.
     """
-    result = Aims(literal=literal)
+    result = Aims(literal=literal, said=understood.said)
     moved: dict[int, int] = {}
     stay = frozenset(number for what in understood.spared for number in _numbers(what, eyes, result))
     for command in understood.commands:
@@ -213,6 +213,8 @@ def _one(
     equal = _equal(single, matches)
     if len(equal) > 1:
         equal = _by_size(equal, holds, fits_in) or equal
+    if len(equal) > 1:
+        equal = _as_answered(single, equal, eyes, result.said) or equal
     if strict and not result.question and len(equal) > 1:
         _ask(single, equal, eyes, result)
     best = equal[0] if equal else next(iter(matches), None)
@@ -261,14 +263,28 @@ def _by_size(equal: list[Match], holds: Thing | None, fits_in: Thing | None) -> 
     return []
 
 
+def _as_answered(description: Description, equal: list[Match], eyes: Eyes, said: tuple[str, ...]) -> list[Match]:
+    """The match that the user named when asked, word for word; none where nobody did."""
+    choices = _choices(description, equal, eyes)
+    return [
+        match
+        for match, choice in zip(equal, choices, strict=True)
+        if any(line.endswith(f": {choice}") for line in said) and choices.count(choice) == 1
+    ]
+
+
+def _choices(description: Description, equal: list[Match], eyes: Eyes) -> list[str]:
+    return [
+        told_apart(eyes, match.thing, description.noun, description.name, description.shape)
+        for match in equal
+        if match.thing is not None  # always: filtered by _equal
+    ]
+
+
 def _ask(description: Description, equal: list[Match], eyes: Eyes, result: Aims) -> None:
     """Several things that fit equally well are a question for the human."""
-    places = []
-    for match in equal:
-        assert match.thing is not None  # filtered by _equal
-        places.append(told_apart(eyes, match.thing, description.noun, description.name, description.shape))
     result.question = f"Which one is meant by 'the {description.text}'? {len(equal)} things fit equally well."
-    result.choices = tuple(places)
+    result.choices = tuple(_choices(description, equal, eyes))
 
 
 def _matching_aim(command: Command, goal: Destination, thing: Named, eyes: Eyes, result: Aims) -> list[Aim]:

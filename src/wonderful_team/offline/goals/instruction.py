@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from wonderful_team.contracts import ShownSlot
 from wonderful_team.contracts.shown import ShownTask
@@ -35,4 +35,5 @@ def read_task(task: ShownTask) -> Understood:
     Raises:
         NotUnderstoodError: A word is unknown, a new word is not shown clearly, or the words do not make an instruction.
     """
-    return read_instruction(task.instruction, _Pictures({slot.name: slot for slot in task.slots}))
+    understood = read_instruction(task.instruction, _Pictures({slot.name: slot for slot in task.slots}))
+    return replace(understood, said=task.said)

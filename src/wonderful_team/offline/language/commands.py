@@ -67,6 +67,7 @@ class Understood:
         used: The words that carried meaning, in order, as written.
         nothing_else: The words say that nothing but what they name may be moved.
         spared: Things that the words say must stay where they are.
+        said: What the user said beside the instruction.
     """
 
     text: str
@@ -74,3 +75,4 @@ class Understood:
     used: tuple[str, ...]
     nothing_else: bool = False
     spared: tuple[Description, ...] = ()
+    said: tuple[str, ...] = ()

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from tests.simulated.image_corruption import CHANGES, ImageCorruption
 from tests.simulated.tables import Set, set_table
 from wonderful_team.contracts import (
     ListedObject,
@@ -20,7 +21,6 @@ from wonderful_team.contracts import (
 )
 from wonderful_team.core.pictures import Candidates
 from wonderful_team.errors import NotUnderstoodError
-from wonderful_team.models.image_corruption import CHANGES, ImageCorruption
 from wonderful_team.simulated import PROFILES, SimulatedModel
 
 

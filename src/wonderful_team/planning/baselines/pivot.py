@@ -86,7 +86,6 @@ show, and the targets that they need.
             *task_parts(question.task),
             *ability_parts(question.step_kinds),
             *listed("What went wrong before, to be avoided now", question.advice),
-            *listed("Carried out since the instruction was given", question.done),
             *(words("List targets too.") if question.with_targets else []),
         ],
     ),

@@ -37,6 +37,34 @@ def test_the_team_and_the_team_with_another_grounding_are_configurations_of_it_a
     assert {row.team.ablation for row in registry.METHODS.values() if row.team is not None} == set(ABLATIONS)
 
 
+@pytest.mark.parametrize(
+    ("name", "off"),
+    [
+        ("team:-verification-mover", {"verification", "mover"}),
+        ("team:paper:-memory", {"memory"}),
+        ("team:-manager", {"manager", "checker", "mover"}),
+        ("single-call-grounding:-verification", {"verification", "manager", "checker", "mover"}),
+    ],
+)
+def test_any_members_can_be_left_out_by_name(name: str, off: set[str]) -> None:
+    made = wt.Team(method=name)
+    members = made.policy().config.members  # type: ignore[attr-defined]
+    assert {field for field, there in vars(members).items() if not there} == off
+    assert made.policy().name == name
+    row = registry.method_row(name)
+    assert row is not None
+    assert row.words.startswith(name.partition(":-")[0])
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["team:-checker-verification", "team:-mover-mover", "team:-critic", "team:-", "team:s1:-memory", "direct:-memory"],
+)
+def test_a_combination_has_one_name_and_its_members_are_there(name: str) -> None:
+    with pytest.raises(UnknownNameError):
+        wt.Team(method=name)
+
+
 def test_the_planner_carries_the_name_it_was_asked_for_by() -> None:
     for name in ("team", "team:paper", "team:s3", "team:paper:s3"):
         assert wt.Team(method=name).policy().name == name

@@ -118,7 +118,8 @@ class Method:
 
     @property
     def _privileged(self) -> bool:
-        return self.method in registry.METHODS and registry.METHODS[self.method].privileged
+        row = registry.method_row(self.method)
+        return row is not None and row.privileged
 
     @property
     def model_name(self) -> str:
@@ -160,7 +161,7 @@ class Method:
 
     def _check_detector(self) -> None:
         """Names and weights are wrong before anything is sent, never in the middle of a run."""
-        row = registry.METHODS.get(self.method)
+        row = registry.method_row(self.method)
         if self.detector is not None and not registry.looks_with_detector(self.method):
             looking = ", ".join(name for name, one in registry.METHODS.items() if one.detects)
             raise ConfigError(
@@ -216,7 +217,7 @@ class Method:
         told: dict[str, Any] = {}
         if self._config is not None and self._config.grounding != "team":
             told["grounding"] = self._config.grounding
-        row = registry.METHODS.get(self.method)
+        row = registry.method_row(self.method)
         if self.detector is not None or (row is not None and row.detects):
             chosen = registry.DEFAULT_DETECTOR if self.detector is None else self.detector
             told["detector"] = registry.detector_label(chosen)

@@ -197,15 +197,16 @@ def check_isolation(isolate: str, methods: Sequence[str] = ()) -> None:
     Raises:
         ConfigError: Another word, truth would have to ground where a detector does, or a rival: its roles are not the team's.
     """
-    looking = [name for name in methods if name in registry.METHODS and registry.METHODS[name].detects]
+    rows = {name: row for name in methods if (row := registry.method_row(name)) is not None}
+    looking = [name for name, row in rows.items() if row.detects]
     if isolate == "planning" and looking:
         raise ConfigError(
             f"--isolate planning lets truth ground, and in {looking[0]!r} a detector does: leave one of them out"
         )
     if isolate not in ("planning", "grounding"):
         raise ConfigError(f"--isolate {isolate!r}: valid are planning (truth grounds), grounding (truth plans)")
-    for name in methods:
-        if name in registry.METHODS and registry.METHODS[name].team is None:
+    for name, row in rows.items():
+        if row.team is None:
             raise ConfigError(f"--isolate {isolate!r} is for the team's members; method {name!r} has none of them")
 
 

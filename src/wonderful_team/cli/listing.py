@@ -101,6 +101,8 @@ def _methods(out: Path | None) -> dict[str, str]:
 
     return {
         **{name: row.words for name, row in METHODS.items()},
+        "team:-MEMBER-MEMBER": "the team without any of verification, manager, checker, mover, memory (in this order), "
+        "as in team:-verification-mover; the same after team:paper",
         "FILE.py:NAME": "your own: a class with the Policy interface",
     }
 

@@ -1,6 +1,6 @@
 """The loops of the team: plan and check, ground, act, remember, replan."""
 
-from wonderful_team.planning.config import ABLATIONS, Bounds, Members, TeamConfig
+from wonderful_team.planning.config import ABLATIONS, Bounds, Members, TeamConfig, members_of
 from wonderful_team.planning.team import UNTIL, TeamPolicy, Until
 
-__all__ = ["ABLATIONS", "Bounds", "Members", "TeamConfig", "TeamPolicy", "UNTIL", "Until"]
+__all__ = ["ABLATIONS", "Bounds", "Members", "TeamConfig", "TeamPolicy", "UNTIL", "Until", "members_of"]

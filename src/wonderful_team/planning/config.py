@@ -34,15 +34,11 @@ class Members:
     @property
     def words(self) -> str:
         """What is switched off, in words: "without Verification and Checker"."""
-        if not self.manager:
-            members = (
-                "Verification, Manager, Checker and Mover" if not self.verification else "Manager, Checker and Mover"
-            )
-            return f"without {members}: the Supervisor gives one point for each target"
         names = [member.name.capitalize() for member in fields(self) if not getattr(self, member.name)]
-        return (
-            "without " + " and ".join([", ".join(names[:-1]), names[-1]] if len(names) > 1 else names) if names else ""
-        )
+        if not names:
+            return ""
+        listed = " and ".join([", ".join(names[:-1]), names[-1]] if len(names) > 1 else names)
+        return f"without {listed}" + ("" if self.manager else ": the Supervisor gives one point for each target")
 
 
 ABLATIONS: dict[str, Members] = {
@@ -57,6 +53,26 @@ ABLATIONS: dict[str, Members] = {
     "s8": Members(memory=False),
 }
 """The paper's settings (Wang, Shen & Stadie 2024, arXiv:2407.19094, table "Settings Summary")."""
+
+
+def members_of(setting: str) -> Members:
+    """Who takes part in a setting: one of the paper's (ABLATIONS), or any combination, "-verification-mover".
+
+    Without the Manager there are no Checker and Mover either.
+
+    Raises:
+        UnknownNameError: No such setting, an unknown member, one named twice, or members in another order than theirs: one combination has
+            one name, by which studies know it.
+    """
+    if setting in ABLATIONS:
+        return ABLATIONS[setting]
+    known = [member.name for member in fields(Members)]
+    off = setting.split("-")[1:]
+    if not setting.startswith("-") or off != [name for name in known if name in off]:
+        raise UnknownNameError("setting", setting, [*ABLATIONS, "-MEMBER-MEMBER, in this order: " + ", ".join(known)])
+    if "manager" in off:
+        off += ["checker", "mover"]
+    return replace(Members(), **dict.fromkeys(off, False))
 
 
 @dataclass(frozen=True)
@@ -90,7 +106,7 @@ class TeamConfig:
 
     Attributes:
         mode: `lean` (asks where there is doubt, in few waiting rounds) or `paper` (the algorithms as published, every round).
-        ablation: A name of SETTINGS.
+        ablation: Who is switched off, as `members_of` reads it.
         strict: A plan that Verification did not approve is refused.
         axes: Label the axes of whole views in `lean` too (for models that point badly).
         grounding: Who says where targets are: one of GROUNDINGS, `supervisor` only by the settings without the grounding team.
@@ -114,11 +130,9 @@ class TeamConfig:
     def __post_init__(self) -> None:
         if self.mode not in ("lean", "paper"):
             raise ConfigError(f"way of working {self.mode!r}: valid are lean, paper")
-        if self.ablation not in ABLATIONS:
-            raise UnknownNameError("setting", self.ablation, ABLATIONS)
+        off = members_of(self.ablation)
         if self.grounding not in ("team", *REPLACED):
             raise UnknownNameError("grounding", self.grounding, ("team", *REPLACED))
-        off = ABLATIONS[self.ablation]
         if self.grounding != "team" and not (off.manager and off.checker and off.mover):
             raise ConfigError(
                 f"grounding {self.grounding!r} takes the place of Manager, Checker and Mover; setting {self.ablation!r} "
@@ -148,5 +162,5 @@ class TeamConfig:
     @property
     def members(self) -> Members:
         """Who takes part."""
-        members = ABLATIONS[self.ablation]
+        members = members_of(self.ablation)
         return members if self.grounding == "team" else replace(members, manager=False, checker=False, mover=False)

@@ -8,6 +8,7 @@ from wonderful_team.registry.methods import (
     load_method,
     looks_with_detector,
     make_method,
+    method_row,
     team_mode,
 )
 from wonderful_team.registry.models import (
@@ -48,6 +49,7 @@ __all__ = [
     "made_in_main",
     "make_detector",
     "make_method",
+    "method_row",
     "make_model",
     "make_models",
     "make_world",

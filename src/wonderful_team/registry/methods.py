@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import cast
 
 from wonderful_team.agents.role import Role
@@ -14,7 +14,7 @@ from wonderful_team.core.values import AskUser
 from wonderful_team.errors import ConfigError, MethodCodeError, UnknownNameError
 from wonderful_team.models.budget import Budget
 from wonderful_team.models.client import DEADLINE_S, ModelClient
-from wonderful_team.planning import ABLATIONS, TeamConfig, TeamPolicy
+from wonderful_team.planning import ABLATIONS, TeamConfig, TeamPolicy, members_of
 from wonderful_team.planning.baselines import direct, nlap, pivot, point
 from wonderful_team.planning.config import Grounding, Mode
 from wonderful_team.registry.detectors import make_detector
@@ -196,22 +196,47 @@ METHODS: dict[str, MethodRow] = {
 }
 
 
+def method_row(name: str) -> MethodRow | None:
+    """The row of a method: one of METHODS, or a team without some members, as in "team:-verification-mover"; None for any other name.
+
+    Raises:
+        UnknownNameError: A team without members that there are not.
+    """
+    if name in METHODS:
+        return METHODS[name]
+    base, dash, off = name.partition(":-")
+    row = METHODS.get(base)
+    if not dash or row is None or row.team is None or row.team.ablation != "full":
+        return None
+    members = members_of(f"-{off}")
+    return replace(row, words=f"{base} {members.words}", team=replace(row.team, ablation=f"-{off}"))
+
+
+def known_row(name: str) -> MethodRow:
+    """The same.
+
+    Raises:
+        UnknownNameError: No such method.
+    """
+    row = method_row(name)
+    if row is None:
+        raise UnknownNameError("method", name, [*METHODS, "team:-MEMBER-MEMBER", "FILE.py:NAME"])
+    return row
+
+
 def looks_with_detector(name: str) -> bool:
     """Whether a method looks with a detector; one of the user's own may."""
-    return name not in METHODS or METHODS[name].detects
+    row = method_row(name)
+    return row is None or row.detects
 
 
 def team_mode(name: str) -> TeamMode | None:
     """What a method's name says about the team; None when it names another method.
 
     Raises:
-        UnknownNameError: Neither one of METHODS nor a file's.
+        UnknownNameError: Neither a method nor a file's.
     """
-    if is_file_name(name):
-        return None
-    if name not in METHODS:
-        raise UnknownNameError("method", name, [*METHODS, "FILE.py:NAME"])
-    return METHODS[name].team
+    return None if is_file_name(name) else known_row(name).team
 
 
 def make_method(name: str, setup: MethodSetup) -> Policy:
@@ -222,7 +247,7 @@ def make_method(name: str, setup: MethodSetup) -> Policy:
     """
     if is_file_name(name):
         return load_method(name, setup.client(), setup.detector)
-    return METHODS[name].make(setup)
+    return known_row(name).make(setup)
 
 
 def load_method(name: str, client: ModelClient, detector: Callable[[], Detector] = make_detector) -> Policy:

@@ -51,7 +51,7 @@ SIZES = {
     "kills": ("kills", 50),
     "clocks": ("jumps", 150),
     "files": ("files", 1_000),
-    "writes": ("writes", 1_500),
+    "writes": ("writes", 2_000),
 }
 """Option and size of each group."""
 KILLS_A_SWEEP = 5
@@ -172,22 +172,20 @@ def files(files: int, seed: int) -> Found:
 
 
 def writes(writes: int, seed: int) -> Found:
-    """Writes that fail: as many of each command's as are asked for, at even distances."""
-    found, points = Found(0, ""), 0
+    """Writes that fail: every one of every command, or as many as are asked for, at even distances over all."""
+    found = Found(0, "")
+    ways = [(case, lasting) for case in CASES for lasting in (False, True)]
     with tempfile.TemporaryDirectory() as folder:
         setting = prepare(Path(folder))
-        each = max(1, writes // (2 * len(CASES)))
-        for case in CASES:
-            for lasting in (False, True):
-                # The first one alone tells how many there are.
-                total, outcomes = fail_writes(case, setting, every=10**9, lasting=lasting)
-                if each > 1:
-                    total, outcomes = fail_writes(case, setting, every=max(1, total // each), lasting=lasting)
-                points += total
-                found.attempts += len(outcomes)
-                found.lost += sum(bool(one.wrong) for one in outcomes)
-                found.words += [f"{case.name}, {one.point}: {'; '.join(one.wrong)}" for one in outcomes if one.wrong]
-    found.what = f"writes of {points} in {len(CASES)} commands, once and lasting"
+        # The first one alone tells how many there are.
+        points = sum(fail_writes(case, setting, every=10**9, lasting=lasting)[0] for case, lasting in ways)
+        every = max(1, -(-points // writes))
+        for case, lasting in ways:
+            _, outcomes = fail_writes(case, setting, every=every, lasting=lasting)
+            found.attempts += len(outcomes)
+            found.lost += sum(bool(one.wrong) for one in outcomes)
+            found.words += [f"{case.name}, {one.point}: {'; '.join(one.wrong)}" for one in outcomes if one.wrong]
+    found.what = f"of {points} writes of {len(CASES)} commands, once and from then on"
     return found
 
 

@@ -13,23 +13,14 @@ default options over 34 episodes (two seeds a task) of the same 17 tasks.
 from __future__ import annotations
 
 import argparse
-import math
 import multiprocessing
 import time
 
+from wonderful_team.core.intervals import wilson_interval
 from wonderful_team.sims.tabletop import make_world, partitions, task_names
 
-Z_95 = 1.959964
 REAL_S = 4.7
 """What an episode of VIMA-Bench's oracle takes on one core [s]."""
-
-
-def wilson(successes: int, trials: int) -> tuple[float, float]:
-    """The 95 % Wilson score interval of a proportion. Source: Wilson 1927, J. Am. Stat. Assoc. 22."""
-    share = successes / trials
-    spread = Z_95 * math.sqrt(share * (1 - share) / trials + Z_95**2 / (4 * trials**2))
-    middle, scale = share + Z_95**2 / (2 * trials), 1 + Z_95**2 / trials
-    return (middle - spread) / scale, (middle + spread) / scale
 
 
 def solved(task: str, seed: int, pictures: bool = False) -> tuple[bool, str, int]:
@@ -86,7 +77,7 @@ def main() -> None:
             cpu_s += sum(seconds for *_, seconds in results)
         wall_s = time.perf_counter() - start
     episodes = len(tasks) * len(seeds)
-    low, high = wilson(solved_count, episodes)
+    low, high = wilson_interval(solved_count, episodes)
     print(
         f"{solved_count}/{episodes} solved, 95 % {100 * low:.1f} to {100 * high:.1f} %; seeds {seeds[0]} to {seeds[-1]}"
     )
@@ -101,7 +92,7 @@ def main() -> None:
 def _tell(task: str, seeds: range, results: list[tuple[bool, str, int, float]]) -> int:
     """Print one line for a task and one for each miss; how many were solved."""
     good = sum(success for success, _, _, _ in results)
-    low, high = wilson(good, len(results))
+    low, high = wilson_interval(good, len(results))
     cost_ms = 1e3 * sum(seconds for *_, seconds in results) / len(results)
     steps = sum(count for _, _, count, _ in results) / len(results)
     print(

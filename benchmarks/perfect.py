@@ -11,7 +11,6 @@ with its stage and cause. With `--show` every picture is changed on its way to t
 from __future__ import annotations
 
 import argparse
-import math
 import multiprocessing
 import time
 from dataclasses import dataclass
@@ -19,12 +18,11 @@ from typing import Any
 
 from wonderful_team import registry
 from wonderful_team.api.trial import model_of
+from wonderful_team.core.intervals import wilson_interval
 from wonderful_team.evals.suites import VIMA_TASKS
 from wonderful_team.models.image_corruption import CHANGES, ImageCorruption
 from wonderful_team.planning import ABLATIONS, TeamConfig, TeamPolicy
 from wonderful_team.runtime import rollout
-
-Z_95 = 1.959964
 
 
 @dataclass(frozen=True)
@@ -53,14 +51,6 @@ class Done:
     oracle: bool
     cpu_s: float
     oracle_cpu_s: float
-
-
-def wilson(successes: int, trials: int) -> tuple[float, float]:
-    """The 95 % Wilson score interval of a proportion. Source: Wilson 1927, J. Am. Stat. Assoc. 22."""
-    share = successes / trials
-    spread = Z_95 * math.sqrt(share * (1 - share) / trials + Z_95**2 / (4 * trials**2))
-    middle, scale = share + Z_95**2 / (2 * trials), 1 + Z_95**2 / trials
-    return max(0.0, (middle - spread) / scale), min(1.0, (middle + spread) / scale)
 
 
 def by_oracle(job: Job) -> bool:
@@ -126,7 +116,7 @@ def run(job: Job) -> Done:
 def told(task: str, done: list[Done]) -> str:
     """One line for a task."""
     count, solved, oracle = len(done), sum(one.solved for one in done), sum(one.oracle for one in done)
-    low, high = wilson(solved, count)
+    low, high = wilson_interval(solved, count)
     missed = sum(one.oracle and not one.solved for one in done)
     cpu, alone = (sum(getattr(one, name) for one in done) / count for name in ("cpu_s", "oracle_cpu_s"))
     return (

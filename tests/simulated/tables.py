@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from wonderful_team.agents.scene import SceneShown, show_views
-from wonderful_team.contracts import PlanDraft
+from wonderful_team.contracts import GiveBox, PlanDraft
 from wonderful_team.contracts.draft_plan import DraftPlan
 from wonderful_team.core.geometry import Box
 from wonderful_team.core.protocols import Model
@@ -57,6 +57,11 @@ class Set:
     def shown_box(self, name: str) -> Box:
         """The same in pixels of the main view as it is shown."""
         return self.scene.views[0].frame.box_to_picture(self.thing_box(name))
+
+    def given_box(self, target: Target) -> Box:
+        """The box that the model gives for a target [view px]."""
+        main = self.scene.views[0]
+        return main.frame.box_to_view(self.ask(GiveBox(target, (), main)).box.as_box)
 
     def look(self) -> None:
         """Look again, at the table as it is now."""

@@ -71,7 +71,9 @@ def test_a_world_without_truth_is_refused(world: Any, tmp_path: Path) -> None:
 def test_profiles_have_names() -> None:
     assert not profile_named("perfect").errs
     assert profile_named("coarse").errs
-    with pytest.raises(UnknownNameError, match="Known: coarse, hasty, perfect"):
+    with pytest.raises(
+        UnknownNameError, match="Known: coarse, hasty, paper-claude-3-opus, paper-gpt-4-turbo, paper-gpt-4o, perfect"
+    ):
         wt.make_model("simulated:sharp")
 
 
@@ -87,7 +89,7 @@ def test_a_measured_profile_becomes_an_error_model() -> None:
         failed_requests=none,
     )
     made = from_measured("mine", measured)
-    assert (made.missed, made.wrong_thing, made.accepts_wrong, made.spread) == (0.2, 0.1, 0.3, (0.01, 0.02))
+    assert (made.missed, made.wrong_thing, made.judgement.off[0], made.spread) == (0.2, 0.1, 0.3, (0.01, 0.02))
     assert made.edge == pytest.approx(0.02 / 0.6745)
     assert made.errs
 

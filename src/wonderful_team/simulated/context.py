@@ -19,7 +19,8 @@ from wonderful_team.simulated.error_sampler import ErrorSampler
 from wonderful_team.simulated.finding import meaning_of
 from wonderful_team.simulated.naming import unique_words
 from wonderful_team.simulated.plan import Move, Shove, moves_of
-from wonderful_team.simulated.profiles import PROFILES, Profile
+from wonderful_team.simulated.profile import Profile
+from wonderful_team.simulated.profiles import PROFILES
 from wonderful_team.simulated.seeing import Eyes, Seen
 
 ROOM_M = 0.02

@@ -28,6 +28,7 @@ from wonderful_team.core.pictures import BoxMark, Picture, Point, PointMark
 from wonderful_team.simulated.context import Context
 from wonderful_team.simulated.grounding import find
 from wonderful_team.simulated.places import Place, point_of
+from wonderful_team.simulated.profile import Judged
 from wonderful_team.simulated.seeing import Seen
 
 SLACK = 0.08
@@ -61,21 +62,28 @@ def fits(box: Box, place: Place, seen: Seen, tolerance: Tolerance | None = None)
 
 
 def answer_judge_box(context: Context, question: JudgeBox) -> BoxVerdict:
-    """Accept what is tight, send back what touches the target, reject what is elsewhere."""
+    """Accept what is tight, send back what touches the target, reject what is elsewhere; judged wrongly as often as the profile says."""
+    state, verdict = _judged(context, question)
+    return verdict if context.sampler is None else context.sampler.verdict(verdict, state, question.target.id)
+
+
+def _judged(context: Context, question: JudgeBox) -> tuple[Judged, BoxVerdict]:
+    """What is the matter with the box, and what is right to say of it."""
     box = box_of(question.crop)
     found = find(context, question.target, question.crop, question.examples, box)
     if found is None or box is None:
         why = f"the {question.target.words} does not show in this picture"
-        return BoxVerdict(reasoning=why, decision="reject", problem=why, wrong_points=[])
+        return "elsewhere", BoxVerdict(reasoning=why, decision="reject", problem=why, wrong_points=[])
     seen, place = found
     wrong = _wrong_points(question, seen, place)
     if fits(box, place, seen, Tolerance.on(question.crop)):
-        return BoxVerdict(reasoning="the box is tight", decision="accept", problem="", wrong_points=wrong)
+        return "tight", BoxVerdict(reasoning="the box is tight", decision="accept", problem="", wrong_points=wrong)
     if box.intersection(place.box) is None:
         why = f"the {question.target.words} lies elsewhere"
-        return BoxVerdict(reasoning=why, decision="reject", problem=why, wrong_points=[])
+        state: Judged = "beside" if seen.at(box.centre) is None else "elsewhere"
+        return state, BoxVerdict(reasoning=why, decision="reject", problem=why, wrong_points=[])
     why = f"it should reach from ({place.box.x0:.0f}, {place.box.y0:.0f}) to ({place.box.x1:.0f}, {place.box.y1:.0f})"
-    return BoxVerdict(reasoning=why, decision="revise", problem=why, wrong_points=wrong)
+    return "off", BoxVerdict(reasoning=why, decision="revise", problem=why, wrong_points=wrong)
 
 
 def _wrong_points(question: JudgeBox, seen: Seen, place: Place) -> list[WrongPoint]:

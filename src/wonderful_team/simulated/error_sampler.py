@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
+import math
 import zlib
 from collections.abc import Sequence
-from typing import Any, TypeVar
+from typing import Any, Literal, TypeVar
 
 import numpy as np
 
 from wonderful_team.contracts import (
     BoxAnswer,
+    BoxMove,
     BoxPx,
     BoxVerdict,
-    BoxVerdicts,
     DirectPlan,
     MarkChoice,
     MarkSelection,
@@ -28,10 +29,12 @@ from wonderful_team.contracts import (
 )
 from wonderful_team.core.pictures import Picture
 from wonderful_team.core.values import Request
-from wonderful_team.simulated.profiles import Profile
+from wonderful_team.simulated.profile import Judged, Profile, Rates
 
 T = TypeVar("T")
 LEAST_SIDE_PX = 2.0
+VERDICTS: tuple[Literal["accept", "revise", "reject"], ...] = ("accept", "revise", "reject")
+"""In the order of Rates."""
 
 
 class ErrorSampler:
@@ -79,14 +82,8 @@ class ErrorSampler:
                 return self._selection(value, len(question.candidates.points))
             case TurnChoice():
                 return self._choice(value, len(question.turns))
-            case BoxVerdict():
-                return self._verdict(value)
-            case BoxVerdicts():
-                boxes = [
-                    item.model_copy(update={"verdict": self._verdict(item.verdict, f" {item.target}")})
-                    for item in value.boxes
-                ]
-                return value.model_copy(update={"boxes": boxes})
+            case BoxMove():
+                return self._move(value)
             case RevisionVerdict():
                 return self._revision(value)
             case Outcome():
@@ -95,39 +92,56 @@ class ErrorSampler:
 
     def point(self, point: PointPx, picture: Picture, what: str) -> PointPx:
         """A point beside the right one, kept inside the picture."""
+        off = self._off(picture, what)
+        x, y = (
+            float(np.clip(a + b, 0.0, side)) for a, b, side in zip(point.as_tuple, off, picture.size_px, strict=True)
+        )
+        return PointPx(x=x, y=y)
+
+    def _off(self, picture: Picture, what: str) -> tuple[float, float]:
+        """By how much a point lies off [px]."""
         profile, rng = self.profile, self._rng(what)
-        moved = [
-            float(np.clip(at + side * rng.normal(bias, spread), 0.0, side))
-            for at, side, bias, spread in zip(
-                point.as_tuple, picture.size_px, profile.bias, profile.spread, strict=True
-            )
-        ]
-        return PointPx(x=moved[0], y=moved[1])
+        width, height = picture.size_px
+        if not profile.radial:
+            dx, dy = rng.normal(profile.bias, profile.spread)
+            return float(dx * width), float(dy * height)
+        distance = ring_distance(profile.radial, rng.random()) * math.hypot(width, height)
+        angle = 2.0 * math.pi * rng.random()
+        return distance * math.cos(angle), distance * math.sin(angle)
 
     def box(self, box: BoxPx | None, picture: Picture, what: str) -> BoxPx | None:
-        """A box whose edges lie off, kept inside the picture and in order."""
-        if box is None or not self.profile.edge:
+        """A box that lies off, with edges that lie off, kept inside the picture and in order."""
+        if box is None or not (self.profile.edge or self.profile.shifts_boxes):
             return box
-        off = self._rng(what).normal(0.0, self.profile.edge, 4)
+        dx, dy = self._off(picture, what) if self.profile.shifts_boxes else (0.0, 0.0)
+        off = self._rng(f"{what} edges").normal(0.0, self.profile.edge, 4)
         wide, high = box.x1 - box.x0, box.y1 - box.y0
         width, height = picture.size_px
-        x0, x1 = np.clip((box.x0 + off[0] * wide, box.x1 + off[2] * wide), 0.0, width)
-        y0, y1 = np.clip((box.y0 + off[1] * high, box.y1 + off[3] * high), 0.0, height)
+        x0, x1 = np.clip((box.x0 + dx + off[0] * wide, box.x1 + dx + off[2] * wide), 0.0, width)
+        y0, y1 = np.clip((box.y0 + dy + off[1] * high, box.y1 + dy + off[3] * high), 0.0, height)
         if x1 - x0 < LEAST_SIDE_PX or y1 - y0 < LEAST_SIDE_PX:
             return box
         return BoxPx(x0=float(x0), y0=float(y0), x1=float(x1), y1=float(y1))
 
     def _target(self, item: Any, picture: Picture) -> Any:
+        # One look tells where a thing is: a box that is shifted takes its points along.
+        whole = self.profile.shifts_boxes
         points = [
-            RolePoint(role=one.role, point=self.point(one.point, picture, f"{item.id} {one.role}"))
+            RolePoint(
+                role=one.role,
+                point=self.point(one.point, picture, item.id if whole else f"{item.id} {one.role}"),
+            )
             for one in item.points
         ]
         return item.model_copy(update={"box": self.box(item.box, picture, item.id), "points": points})
 
-    def _choice(self, value: Any, count: int) -> Any:
-        if value.number is None or not self.draws(self.profile.wrong_choice, "choice"):
+    def _move(self, value: BoxMove) -> BoxMove:
+        if not self.profile.correction:
             return value
-        return value.model_copy(update={"number": self.other(value.number, range(1, count + 1), "other")})
+        names = ("right_px", "down_px", "grow_left_px", "grow_top_px", "grow_right_px", "grow_bottom_px")
+        shares = self._rng("correction").normal(1.0, self.profile.correction, len(names))
+        moved = {name: getattr(value, name) * float(share) for name, share in zip(names, shares, strict=True)}
+        return value.model_copy(update=moved)
 
     def _selection(self, value: MarkSelection, count: int) -> MarkSelection:
         if not value.numbers or not self.draws(self.profile.wrong_choice, "choice"):
@@ -135,19 +149,28 @@ class ErrorSampler:
         order = self._rng("other").permutation(count) + 1
         return value.model_copy(update={"numbers": [int(number) for number in order[: len(value.numbers)]]})
 
-    def _verdict(self, value: BoxVerdict, of: str = "") -> BoxVerdict:
-        if value.wrong_points and self.draws(self.profile.accepts_wrong, f"accepts the points{of}"):
-            value = value.model_copy(update={"wrong_points": []})
-        if value.decision == "accept" and self.draws(self.profile.refuses_right, f"refuses{of}"):
-            return value.model_copy(update={"decision": "revise", "problem": "the box looks loose"})
-        if value.decision != "accept" and self.draws(self.profile.accepts_wrong, f"accepts{of}"):
-            return value.model_copy(update={"decision": "accept", "problem": ""})
-        return value
+    def _choice(self, value: Any, count: int) -> Any:
+        if value.number is None or not self.draws(self.profile.wrong_choice, "choice"):
+            return value
+        return value.model_copy(update={"number": self.other(value.number, range(1, count + 1), "other")})
+
+    def verdict(self, right: BoxVerdict, state: Judged, of: str) -> BoxVerdict:
+        """What is said of a box in that state, instead of what is right."""
+        rates: Rates = getattr(self.profile.judgement, state)
+        accepts_wrong = self.profile.judgement.off[0]
+        if right.wrong_points and self.draws(accepts_wrong, f"accepts the points {of}"):
+            right = right.model_copy(update={"wrong_points": []})
+        decision = VERDICTS[min(int(np.searchsorted(np.cumsum(rates), self._rng(f"judges {of}").random())), 2)]
+        if decision == right.decision:
+            return right
+        problem = "" if decision == "accept" else right.problem or "the box looks loose"
+        return right.model_copy(update={"decision": decision, "problem": problem})
 
     def _revision(self, value: RevisionVerdict) -> RevisionVerdict:
-        if value.decision == "take_after_stop" and self.draws(self.profile.refuses_right, "refuses"):
+        judged = self.profile.judgement
+        if value.decision == "take_after_stop" and self.draws(1.0 - judged.tight[0], "refuses"):
             return value.model_copy(update={"decision": "take_after_go_on"})
-        if value.decision == "keep_before" and self.draws(self.profile.accepts_wrong, "accepts"):
+        if value.decision == "keep_before" and self.draws(judged.off[0], "accepts"):
             return value.model_copy(update={"decision": "take_after_stop"})
         return value
 
@@ -160,3 +183,9 @@ class ErrorSampler:
             for item in value.verdicts
         ]
         return value.model_copy(update={"verdicts": verdicts})
+
+
+def ring_distance(radial: Sequence[tuple[float, float]], share: float) -> float:
+    """The distance that this share of points is nearer than; between two entries points are even over the ring's area."""
+    distances, shares = zip((0.0, 0.0), *radial, strict=True)
+    return float(np.sqrt(np.interp(share, shares, np.square(distances))))

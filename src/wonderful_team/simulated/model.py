@@ -42,7 +42,8 @@ from wonderful_team.errors import UnsupportedQuestion
 from wonderful_team.simulated import crops, drafting, grounding, listing, outcome, turns
 from wonderful_team.simulated.context import Context
 from wonderful_team.simulated.error_sampler import ErrorSampler
-from wonderful_team.simulated.profiles import PROFILES, Profile
+from wonderful_team.simulated.profile import Profile
+from wonderful_team.simulated.profiles import PROFILES
 
 
 def answer_plan_directly(context: Context, question: PlanDirectly) -> DirectPlan:

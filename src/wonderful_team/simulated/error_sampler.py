@@ -143,6 +143,12 @@ class ErrorSampler:
         moved = {name: getattr(value, name) * float(share) for name, share in zip(names, shares, strict=True)}
         return value.model_copy(update=moved)
 
+    def _selection(self, value: MarkSelection, count: int) -> MarkSelection:
+        if not value.numbers or not self.draws(self.profile.wrong_choice, "choice"):
+            return value
+        order = self._rng("other").permutation(count) + 1
+        return value.model_copy(update={"numbers": [int(number) for number in order[: len(value.numbers)]]})
+
     def _choice(self, value: Any, count: int) -> Any:
         if value.number is None or not self.draws(self.profile.wrong_choice, "choice"):
             return value
@@ -159,12 +165,6 @@ class ErrorSampler:
             return right
         problem = "" if decision == "accept" else right.problem or "the box looks loose"
         return right.model_copy(update={"decision": decision, "problem": problem})
-
-    def _selection(self, value: MarkSelection, count: int) -> MarkSelection:
-        if not value.numbers or not self.draws(self.profile.wrong_choice, "choice"):
-            return value
-        order = self._rng("other").permutation(count) + 1
-        return value.model_copy(update={"numbers": [int(number) for number in order[: len(value.numbers)]]})
 
     def _revision(self, value: RevisionVerdict) -> RevisionVerdict:
         judged = self.profile.judgement

@@ -13,7 +13,7 @@ PATTERNS = ("plain", "striped", "dotted", "checkered", "swirled", "mottled", "mu
 
 SHAPES = (
     "square", "rectangle", "circle", "ring", "triangle", "diamond", "pentagon", "hexagon", "star", "heart", "cross",
-    "flower", "letter", "l-shape", "oval", "crescent", "frame", "long", "bowl",
+    "flower", "letter", "l-shape", "oval", "crescent", "frame", "long", "bowl", "pan",
 )  # fmt: skip
 """Canonical outline shapes seen from above. ring and frame have a hole: a round and an angular one."""
 

@@ -95,6 +95,14 @@ def _crescent(shift: float) -> Array:
     return image
 
 
+def _pan(handle: float) -> Array:
+    """A disc with a handle so many times its radius long."""
+    image = _canvas()
+    cv2.circle(image, (52, 80), 40, 1, cv2.FILLED)
+    cv2.line(image, (52, 80), (round(86 + 40 * handle), 80), 1, 14)
+    return image
+
+
 @cache
 def ideals() -> tuple[tuple[str, ...], Forms]:
     """Names and polar forms of the drawn ideals."""
@@ -116,6 +124,7 @@ def ideals() -> tuple[tuple[str, ...], Forms]:
         *(("flower", _flower(n, w)) for n in (5, 6, 8) for w in (0.12, 0.2)),
         *(("flower", _lobes(n, s)) for n, s in ((4, 0.45), (5, 0.4), (6, 0.34), (8, 0.27))),
         *(("l-shape", _corner_piece(*size)) for size in ((0.33,), (0.45,), (0.33, 0.67), (0.25,))),
+        *(("pan", _pan(handle)) for handle in (0.9, 1.3)),
         *(("crescent", _crescent(shift)) for shift in (0.35, 0.6)),
     ]
     outlines = [study_outline(image > 0).polar for _, image in drawn]
@@ -177,8 +186,12 @@ def _adjust(scores: dict[str, float], outline: Outline) -> None:
     for sides, name in ((3, "triangle"), (5, "pentagon"), (6, "hexagon"), (4, "square")):
         strongest = int(np.argmax(wobble[2:9])) + 2
         scores[name] *= 1.0 if strongest == sides or name in ("triangle", "square") else 0.6
+    for name in ("pentagon", "hexagon"):
+        scores[name] *= float(np.clip((outline.solidity - 0.93) / 0.03, 0.3, 1))
     scores["square"] *= float(np.clip((1.28 - outline.aspect) / 0.12, 0, 1))
-    scores["flower"] *= float(np.clip((0.985 - outline.solidity) / 0.03, 0.2, 1))
+    scores["flower"] *= float(np.clip((0.965 - outline.solidity) / 0.025, 0.2, 1)) * float(
+        np.clip((outline.solidity - 0.7) / 0.1, 0, 1)
+    )
     scores["star"] *= float(np.clip((0.95 - outline.solidity) / 0.08, 0.1, 1))
     scores["bowl"] = 0.5 * max(scores["circle"], scores["ring"])
 

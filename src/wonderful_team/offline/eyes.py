@@ -82,7 +82,7 @@ class Eyes:
             if not found and description.shape == "frame":
                 # A frame may be open on one side: then it is a thin form that is no line.
                 loose = resolve(self.scene, replace(description, noun="thing", shape=None), self.examples)
-                found = [match for match in loose if match.thing is not None and _is_rim(match.thing)]
+                found = [match for match in loose if match.thing is not None and is_rim(match.thing)]
         except NotSeen:
             return []
         return found
@@ -114,7 +114,7 @@ class Eyes:
         return next((thing for thing in self.scene.things if thing.number == number), None)
 
 
-def _is_rim(thing: Thing) -> bool:
+def is_rim(thing: Thing) -> bool:
     outline = thing.look.outline
     return outline.fill < RIM_FILL and outline.aspect < RIM_ASPECT
 
@@ -281,7 +281,7 @@ def _worded(description: Description) -> Description:
     return replace(description, text=render(description))
 
 
-_PICTURE_SIDES = {"leftmost": "on the left", "rightmost": "on the right", "topmost": "at the top",
+PICTURE_SIDES = {"leftmost": "on the left", "rightmost": "on the right", "topmost": "at the top",
                   "bottommost": "at the bottom", "middle": "in the middle"}  # fmt: skip
 
 
@@ -290,7 +290,7 @@ def side_words(side: str) -> str:
     if " " in side:
         row, column = side.split()
         return f"in the {'top' if row == 'topmost' else 'bottom'} {'left' if column == 'leftmost' else 'right'} corner"
-    return _PICTURE_SIDES[side]
+    return PICTURE_SIDES[side]
 
 
 def is_shown_alone(description: Description) -> bool:

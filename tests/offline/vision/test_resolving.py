@@ -58,7 +58,7 @@ def test_superlatives(superlative: Superlative, ordinal: int, where: tuple[int, 
 
 @pytest.mark.parametrize(
     ("relation", "wanted"),
-    [("left_of", (230, 220)), ("right_of", (540, 200)), ("below", (230, 220)), ("near", (540, 200))],
+    [("left_of", (230, 220)), ("right_of", (540, 200)), ("below", (230, 220)), ("nearest", (540, 200))],
 )
 def test_relations_to_another_thing(relation: Relation, wanted: tuple[int, int]) -> None:
     ball = Description("ball", "the blue ball", colours=("blue",))

@@ -68,7 +68,7 @@ def _is_meant(token: Token, things: Sequence[Description]) -> bool:
     value = token.value
     assert isinstance(value, tuple)  # of every noun and shape
     if token.kind == "SHAPE":
-        return any(item.shape == value[0] or item.noun == "letter" for item in things)
+        return any(item.shape == value[0] for item in things)
     kind, name = value[0], value[1]
     if name:
         return any(item.name == name for item in things)

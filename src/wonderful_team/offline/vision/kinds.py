@@ -122,10 +122,14 @@ FITS_ROUND = 0.6
 
 def is_kind_here(thing: Thing, noun: str, scene: Scene) -> bool:
     """Whether a thing is of a kind beside what else is there: next to a bowl, a block of a tenth of its size is no bowl."""
-    sizes = [other.area_px for other in scene.objects] or [thing.area_px]
+    sizes = [other.area_px for other in (scene.things if noun == "container" else scene.objects)] or [thing.area_px]
     if noun == "container":
         return thing.area_px >= ROOMY * max(sizes)
-    return noun not in ("block", "ball", "fruit") or thing.look.shapes["circle"] < FITS_ROUND or thing.area_px <= BLOCKS * min(sizes)
+    return (
+        noun not in ("block", "ball", "fruit")
+        or thing.look.shapes["circle"] < FITS_ROUND
+        or thing.area_px <= BLOCKS * min(sizes)
+    )
 
 
 def kind_score(thing: Thing, description: Description) -> float:

@@ -49,7 +49,7 @@ def _mosaic(look: Look) -> float:
 
 
 def _wood(look: Look) -> float:
-    grain = float(np.clip((look.surface.edges - 0.9) / 0.8, 0, 1))
+    grain = float(np.clip((look.surface.edges - 0.9) / 0.8, 0, 1)) * (1 - look.patterns["checkered"])
     return grain * _enough(_share(look, "brown", "orange", "olive"), 0.75) * _enough(_share(look, "brown"), 0.3)
 
 

@@ -94,7 +94,7 @@ def suits(
         parts["words: material"] = float(np.clip(material_score(thing.look, description.material) / 0.6, 0, 1))
         score *= parts["words: material"]
     if description.shape is not None:
-        parts["words: shape"] = shape_fit(thing.look, description.shape)
+        parts["words: shape"] = shape_fit(thing, description.shape)
         score *= parts["words: shape"]
     return float(score), parts
 
@@ -189,9 +189,16 @@ def _shade_fit(look: Look, name: str, dark: bool | None) -> float:
     return 0.3 + 0.7 * colour.light
 
 
-def shape_fit(look: Look, shape: str) -> float:
+_ON_A_CORNER = 0.56
+"""A square fills at most this share of the upright box round it where it stands on a corner, as a diamond does."""
+
+
+def shape_fit(thing: Thing, shape: str) -> float:
     """How well a shape named in words fits, 0 to 1: its own fit, and not far behind the best shape."""
-    return float(np.clip((look.shapes[shape] - 0.2) / 0.4, 0, 1)) * formed(look, (shape,))
+    standing = shape == "diamond" and thing.area_px < _ON_A_CORNER * thing.box.width * thing.box.height
+    outlines = ("diamond", "square") if standing else (shape,)
+    own = max(thing.look.shapes[name] for name in outlines)
+    return float(np.clip((own - 0.2) / 0.4, 0, 1)) * formed(thing.look, outlines)
 
 
 def _has_look(description: Description) -> bool:

@@ -132,8 +132,8 @@ def ideals() -> tuple[tuple[str, ...], Forms]:
 
 
 @cache
-def letters() -> tuple[str, Forms]:
-    """Capital letters and their polar forms in several weights; I and O have no outline of their own."""
+def letters() -> tuple[str, Forms, tuple[bool, ...]]:
+    """Capital letters, their polar forms in several weights and which are holed; I and O have no outline of their own."""
     names, forms = "", []
     font = ImageFont.load_default(120)
     for letter in string.ascii_uppercase:
@@ -143,8 +143,14 @@ def letters() -> tuple[str, Forms]:
             image = Image.new("L", (_SIDE + 40, _SIDE + 40), 0)
             ImageDraw.Draw(image).text((100, 100), letter, fill=255, font=font, anchor="mm", stroke_width=weight)
             names += letter
-            forms.append(study_outline(np.asarray(image) > 127).polar)
-    return names, Forms.of(np.stack(forms))
+            forms.append(study_outline(np.asarray(image) > 127))
+    return names, Forms.of(np.stack([form.polar for form in forms])), tuple(form.holes > 0 for form in forms)
+
+
+HOLES_SHOW = 1000.0
+"""A letter of more pixels shows its holes."""
+OTHER_HOLES = 0.85
+"""What is left of the likeness to a letter that has holes where this has none, or the other way round."""
 
 
 def shape_scores(outline: Outline) -> tuple[dict[str, float], dict[str, float]]:
@@ -154,11 +160,13 @@ def shape_scores(outline: Outline) -> tuple[dict[str, float], dict[str, float]]:
     best = dict.fromkeys(SHAPES, 0.0)
     for name, iou in zip(names, found, strict=True):
         best[name] = max(best[name], float(iou))
-    glyphs, letter_forms = letters()
+    glyphs, letter_forms, holed = letters()
     letter_ious, _ = overlaps(outline.polar, letter_forms)
     per_letter: dict[str, float] = {}
-    for glyph, iou in zip(glyphs, letter_ious, strict=True):
-        per_letter[glyph] = max(per_letter.get(glyph, 0.0), float(iou))
+    clear = outline.filled_area > HOLES_SHOW
+    for glyph, iou, hole in zip(glyphs, letter_ious, holed, strict=True):
+        fit = float(iou) * (OTHER_HOLES if clear and hole != (outline.holes > 0) else 1.0)
+        per_letter[glyph] = max(per_letter.get(glyph, 0.0), fit)
     # Convex letters (D, B) resemble plain shapes: a letter must have notches or holes.
     notched = float(np.clip((0.97 - outline.solidity) / 0.05, 0, 1)) if outline.holes == 0 else 1.0
     best["letter"] = max(per_letter.values()) * (0.8 + 0.2 * notched)

@@ -26,7 +26,7 @@ from wonderful_team.offline.vision import (
     with_heights,
 )
 from wonderful_team.offline.vision.changes import came_to
-from wonderful_team.offline.vision.relations import is_at, shares_from
+from wonderful_team.offline.vision.relations import shares_from
 
 NEARLY_EQUAL = 0.06
 """Two scores closer than this, both good, are a genuine ambiguity (0 to 1)."""
@@ -96,10 +96,9 @@ class Eyes:
         wishes = description.name if " " in description.name else str(description.superlative)
 
         def away(match: Match) -> float:
-            return sum(shares_from(self.scene, match.point, wishes)) - 0.1 * match.score
+            return float(sum(shares_from(self.scene, match.point, wishes))) - 0.1 * match.score
 
-        spots = [spot for spot in free_spots(self.scene, count=60) if is_at(self.scene, spot.point, wishes)]
-        return sorted(spots, key=lambda match: round(away(match), 6))
+        return sorted(free_spots(self.scene, side=wishes, count=60), key=lambda match: round(away(match), 6))
 
     def best(self, description: Description) -> Match | None:
         """The best match, or None."""

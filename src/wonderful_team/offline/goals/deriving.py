@@ -183,12 +183,7 @@ def _things(
     if place is not None:
         # What goes into something is neither that thing itself nor larger than it.
         matches = [m for m in matches if m.thing is not None and m.thing.number != place.number] or matches
-    if matches and len(matches) < description.number:
-        result.absent.append(f"{description.number} are asked for, but only {len(matches)} fit '{description.text}'")
-    elif matches and len(matches) < 1 + description.plural and description.noun not in ("object", "thing"):
-        result.absent.append(f"several are spoken of, but only one fits '{description.text}'")
-    elif description.quantity == "all" and 1 < description.number < len(matches):
-        result.absent.append(f"'both' is said of {len(matches)} things that fit '{description.text}'")
+    result.absent += _miscounted(description, len(matches))
     if description.quantity == "number" and not every:
         matches = matches[: description.number]
     if not matches:
@@ -201,6 +196,16 @@ def _things(
             Named(unique_words(eyes, match.thing, noun, description.name, description.shape), match.thing.number)
         )
     return named
+
+
+def _miscounted(description: Description, count: int) -> Iterator[str]:
+    """Where the picture shows things that fit, but not as many as the words say."""
+    if 0 < count < description.number:
+        yield f"{description.number} are asked for, but only {count} fit '{description.text}'"
+    elif count == 1 and description.plural and description.noun not in ("object", "thing"):
+        yield f"several are spoken of, but only one fits '{description.text}'"
+    elif description.quantity == "all" and 1 < description.number < count:
+        yield f"'both' is said of {count} things that fit '{description.text}'"
 
 
 def _has_shape(thing: Thing, shape: str) -> bool:

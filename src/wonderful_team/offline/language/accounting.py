@@ -37,7 +37,7 @@ def passed_over(tokens: Sequence[Token], commands: Sequence[Command]) -> list[st
         "PATTERN": {item.pattern for item in things},
         "MATERIAL": {item.material for item in things},
         "LETTER": {item.name for item in things},
-        "SUPER": {item.superlative for item in things},
+        "SUPER": {item.superlative for item in things} | relations,
         "DARK": {item.dark for item in things},
     }
     for side in ("left", "right", "above", "below", "between"):

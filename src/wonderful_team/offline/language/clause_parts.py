@@ -140,6 +140,7 @@ def _noun_phrase(clause: Sequence[Token], at: int, apart: frozenset[str]) -> tup
         )
         inside = kind in ("IN", "ON") and end > at and (after == "CORNER" or _is_shown(clause, at, end))
         inside = inside or (kind == "IN" and end > at and after in _LOOKS and _is_looks_alone(clause, end + 1))
+        inside = inside or (kind == "TO" and end > at and clause[end - 1].value == "nearest")
         told = (told or (kind in (*PLACES, "BETWEEN") and _is_relative(clause, end))) and kind != "COMMA"
         before = {token.kind for token in clause[at:end]}
         joins = kind == "AND" and (told and "BETWEEN" in before or "EXCEPT" in before)

@@ -42,7 +42,7 @@ def _besides(description: Description, named: Sequence[Description | None]) -> D
     kinds = (description.noun, "thing") if description.noun not in ("object", "thing") else None
     known = [item for item in named if item is not None and (kinds is None or item.noun in kinds)]
     if not known:
-        raise NotUnderstoodError(f"it is not said which ones the other {description.noun} is no part of; name them")
+        raise NotUnderstoodError(f"I do not know: which other {description.noun} is meant; name it")
     left_out = (*(item for item in description.excluded if item.name != OTHERS), *dict.fromkeys(known))
     full = replace(description, excluded=left_out)
     return replace(full, text=render(full))

@@ -104,8 +104,11 @@ def _corner(description: Description) -> str:
 
 def split_colours(thing: Description) -> list[Description]:
     """The words "the red, green and blue blocks" are three kinds of thing, not one in three colours."""
-    if thing.quantity not in ("all", "each", "number") or len(thing.colours) <= 1 or thing.pattern or thing.material:
+    counted = thing.quantity == "number"
+    if thing.quantity == "one" or len(thing.colours) <= 1 or thing.pattern or thing.material:
         return [thing]
-    quantity = "one" if thing.quantity == "number" and thing.number == len(thing.colours) else thing.quantity
+    if counted and thing.number != len(thing.colours):
+        return [thing]  # how many of which colour is not said
+    quantity = "one" if counted else thing.quantity
     parts = [replace(thing, colours=(colour,), quantity=quantity, number=1) for colour in thing.colours]
     return [replace(part, text=render(part)) for part in parts]

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import Any
 
 import cv2
 import numpy as np
 
 from wonderful_team.core.geometry.arrays import Array
-from wonderful_team.core.pictures import Point
 from wonderful_team.offline.vision.examples import alike_colour, alike_pattern
 from wonderful_team.offline.vision.outlines import filled, largest_contour, same_form, study_outline
 from wonderful_team.offline.vision.things import Look, Match, Scene, Thing, covers
@@ -150,8 +150,8 @@ CORNER = 1 / 4
 """The same for what is said to lie in a corner."""
 
 
-def shares_from(scene: Scene, point: Point, wishes: str) -> list[float]:
-    """How far a point is from a side, both sides of a corner or the middle of the table, as shares of its extent."""
+def shares_from(scene: Scene, point: tuple[Any, Any], wishes: str) -> list[Any]:
+    """How far a point (or each of many) is from a side, both sides of a corner or the middle of the table, as shares of it."""
     table = scene.table
     x, y = (point[0] - table.x0) / table.width, (point[1] - table.y0) / table.height
     shares = {
@@ -159,14 +159,14 @@ def shares_from(scene: Scene, point: Point, wishes: str) -> list[float]:
         "rightmost": 1 - x,
         "topmost": y,
         "bottommost": 1 - y,
-        "middle": max(abs(x - 0.5), abs(y - 0.5)),
+        "middle": np.maximum(abs(x - 0.5), abs(y - 0.5)),
     }
     return [shares[wish] for wish in wishes.split()]
 
 
-def is_at(scene: Scene, point: Point, wishes: str, within: float = OUTER) -> bool:
-    """Whether a point lies at that side, corner or middle of the table."""
-    return max(shares_from(scene, point, wishes)) <= within
+def is_at(scene: Scene, point: tuple[Any, Any], wishes: str, within: float = OUTER) -> Any:
+    """Whether a point (or each of many) lies at that side, corner or middle of the table."""
+    return np.maximum.reduce(shares_from(scene, point, wishes)) <= within
 
 
 def pick_in_corner(scene: Scene, matches: list[Match], corner: str) -> list[Match]:

@@ -135,6 +135,7 @@ def ideals() -> tuple[tuple[str, ...], Forms]:
 def letters() -> tuple[str, Forms, tuple[bool, ...]]:
     """Capital letters, their polar forms in several weights and which are holed; I and O have no outline of their own."""
     names, forms = "", []
+    holed: list[bool] = []
     font = ImageFont.load_default(120)
     for letter in string.ascii_uppercase:
         if letter in "IO":
@@ -143,8 +144,10 @@ def letters() -> tuple[str, Forms, tuple[bool, ...]]:
             image = Image.new("L", (_SIDE + 40, _SIDE + 40), 0)
             ImageDraw.Draw(image).text((100, 100), letter, fill=255, font=font, anchor="mm", stroke_width=weight)
             names += letter
-            forms.append(study_outline(np.asarray(image) > 127))
-    return names, Forms.of(np.stack([form.polar for form in forms])), tuple(form.holes > 0 for form in forms)
+            outline = study_outline(np.asarray(image) > 127)
+            forms.append(outline.polar)
+            holed.append(outline.holes > 0 if weight == 1 else holed[-1])  # thick strokes may close a hole
+    return names, Forms.of(np.stack(forms)), tuple(holed)
 
 
 HOLES_SHOW = 1000.0

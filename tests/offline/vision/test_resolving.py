@@ -68,6 +68,11 @@ def test_relations_to_another_thing(relation: Relation, wanted: tuple[int, int])
     assert middle(ROW, Description("block", "", colours=("red",), related=(Related(relation, (missing,)),))) == []
 
 
+def test_what_is_far_away_is_not_next_to_a_thing() -> None:
+    ball = Description("ball", "the blue ball", colours=("blue",))
+    assert middle(ROW, Description("block", "", colours=("red",), related=(Related("near", (ball,)),))) == []
+
+
 def test_everything_that_fits_comes_back_and_nothing_else() -> None:
     assert len(middle(ROW, Description("block", "red blocks", colours=("red",), quantity="all"))) == 3
     assert middle(ROW, Description("block", "green block", colours=("green",))) == []

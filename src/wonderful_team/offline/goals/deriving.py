@@ -30,8 +30,6 @@ from wonderful_team.offline.vision.things import covers
 
 RIVAL = 0.6
 """A second match with at least this share of the best score could be taken for it."""
-SAME_SHAPE = 0.85
-"""A thing has a shape when it fits at least this share as well as its best one."""
 LARGER = 1.3
 """A thing goes into another that is at least so many times its area."""
 AS_LARGE = 0.05
@@ -170,9 +168,6 @@ def _things(
         wanted = replace(wanted, superlative=None)
     left_out = {number for item in description.excluded for number in _numbers(item, eyes, result)}
     matches = [match for match in eyes.find(wanted) if match.thing is not None and match.thing.number not in left_out]
-    if wanted.shape is not None:
-        # Of all that resemble it, those of that very shape: a disc is no square, though it comes near.
-        matches = [m for m in matches if m.thing is not None and _has_shape(m.thing, wanted.shape)] or matches
     if wanted.colours and not (wanted.pattern or wanted.material):
         # Beside yellow blocks, one in yellow and blue is not meant.
         matches = [m for m in matches if m.score >= AS_MANY * max(other.score for other in matches)]
@@ -206,10 +201,6 @@ def _miscounted(description: Description, count: int) -> Iterator[str]:
         yield f"several are spoken of, but only one fits '{description.text}'"
     elif description.quantity == "all" and 1 < description.number < count:
         yield f"'both' is said of {count} things that fit '{description.text}'"
-
-
-def _has_shape(thing: Thing, shape: str) -> bool:
-    return thing.look.shapes[shape] >= SAME_SHAPE * max(thing.look.shapes.values())
 
 
 def _one(

@@ -13,7 +13,7 @@ PATTERNS = ("plain", "striped", "dotted", "checkered", "swirled", "mottled", "mu
 
 SHAPES = (
     "square", "rectangle", "circle", "ring", "triangle", "diamond", "pentagon", "hexagon", "star", "heart", "cross",
-    "flower", "letter", "l-shape", "oval", "crescent", "frame", "long", "bowl",
+    "flower", "letter", "l-shape", "oval", "crescent", "frame", "long", "bowl", "pan",
 )  # fmt: skip
 """Canonical outline shapes seen from above. ring and frame have a hole: a round and an angular one."""
 
@@ -22,7 +22,7 @@ NOUNS = ("thing", "object", "block", "container", "fruit", "area", "letter", "to
 fruit names ("banana") give noun "fruit" and `name`."""
 
 Relation: TypeAlias = Literal[
-    "left_of", "right_of", "above", "below", "near", "far_from", "on", "inside", "between", "same_colour", "same_pattern",
+    "left_of", "right_of", "above", "below", "near", "nearest", "far_from", "on", "inside", "between", "same_colour", "same_pattern",
     "same_shape",
 ]  # fmt: skip
 Superlative: TypeAlias = Literal[
@@ -75,7 +75,8 @@ class Description:
         like_only: Which aspect of that picture counts; all when None ("the {texture} object": colour and pattern).
         related: Relations that must hold.
         quantity: one | each | all (also plurals) | number.
-        number: How many when quantity is number.
+        number: How many when quantity is number; of how many the words speak when it is another.
+        plural: Whether the noun stands in the plural without a word for how many.
         placed: For an area: the thing whose place in the instruction's picture `like` is meant.
         since: Name of the picture before it in a sequence: the place is where the thing came to between the two.
         excluded: What is left out of all that fit ("all blocks except the red one").
@@ -98,6 +99,7 @@ class Description:
     material: str | None = None
     quantity: Literal["one", "each", "all", "number"] = "one"
     number: int = 1
+    plural: bool = False
     excluded: tuple[Description, ...] = ()
     placed: Description | None = None
     since: str | None = None

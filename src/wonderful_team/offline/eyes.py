@@ -26,7 +26,7 @@ from wonderful_team.offline.vision import (
     with_heights,
 )
 from wonderful_team.offline.vision.changes import came_to
-from wonderful_team.offline.vision.relations import is_at, shares_from
+from wonderful_team.offline.vision.relations import shares_from
 
 NEARLY_EQUAL = 0.06
 """Two scores closer than this, both good, are a genuine ambiguity (0 to 1)."""
@@ -82,7 +82,7 @@ class Eyes:
             if not found and description.shape == "frame":
                 # A frame may be open on one side: then it is a thin form that is no line.
                 loose = resolve(self.scene, replace(description, noun="thing", shape=None), self.examples)
-                found = [match for match in loose if match.thing is not None and _is_rim(match.thing)]
+                found = [match for match in loose if match.thing is not None and is_rim(match.thing)]
         except NotSeen:
             return []
         return found
@@ -96,10 +96,9 @@ class Eyes:
         wishes = description.name if " " in description.name else str(description.superlative)
 
         def away(match: Match) -> float:
-            return sum(shares_from(self.scene, match.point, wishes)) - 0.1 * match.score
+            return float(sum(shares_from(self.scene, match.point, wishes))) - 0.1 * match.score
 
-        spots = [spot for spot in free_spots(self.scene, count=60) if is_at(self.scene, spot.point, wishes)]
-        return sorted(spots, key=lambda match: round(away(match), 6))
+        return sorted(free_spots(self.scene, side=wishes, count=60), key=lambda match: round(away(match), 6))
 
     def best(self, description: Description) -> Match | None:
         """The best match, or None."""
@@ -114,7 +113,7 @@ class Eyes:
         return next((thing for thing in self.scene.things if thing.number == number), None)
 
 
-def _is_rim(thing: Thing) -> bool:
+def is_rim(thing: Thing) -> bool:
     outline = thing.look.outline
     return outline.fill < RIM_FILL and outline.aspect < RIM_ASPECT
 
@@ -281,7 +280,7 @@ def _worded(description: Description) -> Description:
     return replace(description, text=render(description))
 
 
-_PICTURE_SIDES = {"leftmost": "on the left", "rightmost": "on the right", "topmost": "at the top",
+PICTURE_SIDES = {"leftmost": "on the left", "rightmost": "on the right", "topmost": "at the top",
                   "bottommost": "at the bottom", "middle": "in the middle"}  # fmt: skip
 
 
@@ -290,7 +289,7 @@ def side_words(side: str) -> str:
     if " " in side:
         row, column = side.split()
         return f"in the {'top' if row == 'topmost' else 'bottom'} {'left' if column == 'leftmost' else 'right'} corner"
-    return _PICTURE_SIDES[side]
+    return PICTURE_SIDES[side]
 
 
 def is_shown_alone(description: Description) -> bool:

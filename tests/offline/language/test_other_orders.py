@@ -71,7 +71,7 @@ MOVES = {
     ],
     "First put {a} into {b} then put the object that was previously at its north into the same {b}.": [
         "put object shown in {a} > in object shown in {b}",
-        "put object above the object shown in {a} next to the object shown in {a} > in object shown in {b}",
+        "put object above the object shown in {a} nearest to the object shown in {a} > in object shown in {b}",
     ],
 }
 

@@ -58,7 +58,7 @@ def test_superlatives(superlative: Superlative, ordinal: int, where: tuple[int, 
 
 @pytest.mark.parametrize(
     ("relation", "wanted"),
-    [("left_of", (230, 220)), ("right_of", (540, 200)), ("below", (230, 220)), ("near", (540, 200))],
+    [("left_of", (230, 220)), ("right_of", (540, 200)), ("below", (230, 220)), ("nearest", (540, 200))],
 )
 def test_relations_to_another_thing(relation: Relation, wanted: tuple[int, int]) -> None:
     ball = Description("ball", "the blue ball", colours=("blue",))
@@ -66,6 +66,11 @@ def test_relations_to_another_thing(relation: Relation, wanted: tuple[int, int])
     assert any(np.allclose(point, wanted, atol=10) for point in found[:2])
     missing = Description("ball", "the green ball", colours=("green",))
     assert middle(ROW, Description("block", "", colours=("red",), related=(Related(relation, (missing,)),))) == []
+
+
+def test_what_is_far_away_is_not_next_to_a_thing() -> None:
+    ball = Description("ball", "the blue ball", colours=("blue",))
+    assert middle(ROW, Description("block", "", colours=("red",), related=(Related("near", (ball,)),))) == []
 
 
 def test_everything_that_fits_comes_back_and_nothing_else() -> None:

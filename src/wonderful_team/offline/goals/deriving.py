@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
 
 from wonderful_team.offline.description import Description
 from wonderful_team.offline.eyes import (
     GOOD,
     NEARLY_EQUAL,
+    PICTURE_SIDES,
     Eyes,
     as_pictured,
+    is_rim,
     is_shown_alone,
     one_of,
     seen_as,
@@ -22,17 +25,19 @@ from wonderful_team.offline.goals.showing import shown_aims
 from wonderful_team.offline.goals.sweeps import swept_aims
 from wonderful_team.offline.language import Command, Destination, Understood, describe, render
 from wonderful_team.offline.vision import Match, Thing
-from wonderful_team.offline.vision.relations import superlative_key
+from wonderful_team.offline.vision.relations import OUTER, is_at, superlative_keys
 from wonderful_team.offline.vision.things import covers
 
 RIVAL = 0.6
 """A second match with at least this share of the best score could be taken for it."""
-SAME_SHAPE = 0.85
-"""A thing has a shape when it fits at least this share as well as its best one."""
 LARGER = 1.3
 """A thing goes into another that is at least so many times its area."""
+AS_LARGE = 0.05
+"""Things that differ by a smaller share are as large, tall or dark as each other."""
 AS_MANY = 0.8
 """Of several that are told by a colour, those that fit at least this share as well as the best are meant."""
+SOLID = ("block", "letter", "fruit", "ball")
+"""Kinds that hold nothing."""
 HOLDERS = ("container", "area")
 """Kinds that are larger than what goes onto them."""
 
@@ -63,6 +68,9 @@ def derive(understood: Understood, eyes: Eyes, *, strict: bool = True, literal: 
             if command.after_last and first:
                 after.add(first - 1)
             if aim.thing.number is not None:
+                twin = next((prior for prior in result.aims[:first] if prior.same(aim)), None)
+                if twin is not None and twin.thing.words != aim.thing.words and command.thing.quantity == "one":
+                    result.absent.append(f"the {twin.thing.words} and the {aim.thing.words} are one and the same thing")
                 if aim.thing.number in moved:
                     after.add(moved[aim.thing.number])
                 moved[aim.thing.number] = len(result.aims)
@@ -109,6 +117,12 @@ def _of_command(command: Command, eyes: Eyes, result: Aims, strict: bool) -> lis
             continue
         moved_before = any(aim.thing.number == thing.number for aim in result.aims if thing.number is not None)
         if (
+            goal.how == "in"
+            and to is not None
+            and not _holds(eyes.thing(to.number), eyes.thing(thing.number), goal.what)
+        ):
+            result.absent.append(f"the {to.words} holds no {thing.words}")
+        if (
             goal.how in ("in", "on")
             and to is not None
             and not (result.literal or moved_before)
@@ -118,6 +132,15 @@ def _of_command(command: Command, eyes: Eyes, result: Aims, strict: bool) -> lis
             continue
         aims.append(Aim(command.kind, thing, goal.how, to, other, goal.side))
     return aims
+
+
+def _holds(holder: Thing | None, thing: Thing | None, said: Description | None) -> bool:
+    """Whether a thing goes into another: into a block, letter or fruit nothing does, into others what is clearly smaller."""
+    if said is not None and said.noun in SOLID and not said.like:
+        return False
+    if holder is None or thing is None or holder.flat or is_rim(holder):
+        return True
+    return holder.area_px > LARGER * thing.area_px
 
 
 def _places(
@@ -145,22 +168,17 @@ def _things(
         wanted = replace(wanted, superlative=None)
     left_out = {number for item in description.excluded for number in _numbers(item, eyes, result)}
     matches = [match for match in eyes.find(wanted) if match.thing is not None and match.thing.number not in left_out]
-    if wanted.shape is not None:
-        # Of all that resemble it, those of that very shape: a disc is no square, though it comes near.
-        matches = [m for m in matches if m.thing is not None and _has_shape(m.thing, wanted.shape)] or matches
     if wanted.colours and not (wanted.pattern or wanted.material):
         # Beside yellow blocks, one in yellow and blue is not meant.
         matches = [m for m in matches if m.score >= AS_MANY * max(other.score for other in matches)]
     matches.sort(key=lambda match: match.box.x0)
     if order is not None:
-        matches.sort(key=lambda match: superlative_key(match.thing, order) if match.thing is not None else 0.0)
+        keys = superlative_keys([match.thing for match in matches if match.thing is not None], order)
+        matches = [match for _, match in sorted(zip(keys, matches, strict=True), key=lambda pair: pair[0])]
     if place is not None:
         # What goes into something is neither that thing itself nor larger than it.
         matches = [m for m in matches if m.thing is not None and m.thing.number != place.number] or matches
-    if matches and len(matches) < description.number:
-        result.absent.append(f"{description.number} are asked for, but only {len(matches)} fit '{description.text}'")
-    elif description.quantity == "all" and 1 < description.number < len(matches):
-        result.absent.append(f"'both' is said of {len(matches)} things that fit '{description.text}'")
+    result.absent += _miscounted(description, len(matches))
     if description.quantity == "number" and not every:
         matches = matches[: description.number]
     if not matches:
@@ -175,8 +193,14 @@ def _things(
     return named
 
 
-def _has_shape(thing: Thing, shape: str) -> bool:
-    return thing.look.shapes[shape] >= SAME_SHAPE * max(thing.look.shapes.values())
+def _miscounted(description: Description, count: int) -> Iterator[str]:
+    """Where the picture shows things that fit, but not as many as the words say."""
+    if 0 < count < description.number:
+        yield f"{description.number} are asked for, but only {count} fit '{description.text}'"
+    elif count == 1 and description.plural and description.noun not in ("object", "thing"):
+        yield f"several are spoken of, but only one fits '{description.text}'"
+    elif description.quantity == "all" and 1 < description.number < count:
+        yield f"'both' is said of {count} things that fit '{description.text}'"
 
 
 def _one(
@@ -203,13 +227,13 @@ def _one(
     single = one_of(description)
     single = replace(single, text=render(single))
     everything = eyes.find(single)
+    taken |= {number for item in description.excluded for number in _numbers(item, eyes, result)}
     matches = [match for match in everything if match.thing is None or match.thing.number not in taken]
     matches = as_pictured(single, matches, eyes)
     if holds is not None and single.noun in HOLDERS:
         matches = [m for m in matches if m.thing is None or m.thing.area_px > LARGER * holds.area_px]
-    compared = replace(single, superlative=None, ordinal=1)
-    if matches and len(fits := eyes.find(compared)) < description.number:
-        result.absent.append(f"{description.number} are spoken of, but only {len(fits)} fit '{render(compared)}'")
+    if matches and matches[0].thing is not None:
+        result.absent += _presumed(single, description.number, matches[0], eyes)
     equal = _equal(single, matches)
     if len(equal) > 1:
         equal = _by_size(equal, holds, fits_in) or equal
@@ -227,10 +251,28 @@ def _one(
     plain = not (single.superlative or single.like or single.related)
     from_side = single.superlative in ("tallest", "shortest") and best.thing.height_m is None
     rivalled = plain and len(equal) == 1 and len(everything) > 1 and _rivalled(everything)
-    if from_side or best is not everything[0] or rivalled:
+    if from_side or best is not everything[0] or rivalled or single.excluded:
         # The words alone lead elsewhere or could: say it so that they do not.
         return Named(unique_words(eyes, best.thing, single.noun, single.name, single.shape), best.thing.number)
     return Named(single, best.thing.number)
+
+
+def _presumed(description: Description, number: int, chosen: Match, eyes: Eyes) -> Iterator[str]:
+    """What words presume of the one that they pick, where the picture shows otherwise.
+
+    That there are so many to pick from, that the only one lies at that side, that one is clearly the largest.
+    """
+    compared, wish = replace(description, superlative=None, ordinal=1), description.superlative
+    fits = [match.thing for match in eyes.find(compared) if match.thing is not None]
+    if len(fits) < number:
+        yield f"{number} are spoken of, but only {len(fits)} fit '{render(compared)}'"
+    elif wish in PICTURE_SIDES and len(fits) == 1 and " " not in description.name:
+        if not is_at(eyes.scene, chosen.point, wish, OUTER if wish == "middle" else 1 / 2):
+            yield f"the {render(compared)} is not {side_words(wish)}"
+    elif wish is not None and wish not in PICTURE_SIDES and wish != "nearest" and len(fits) > description.ordinal:
+        first, second = sorted(superlative_keys(fits, wish))[description.ordinal - 1 :][:2]
+        if abs(first - second) < AS_LARGE * max(abs(first), abs(second)):
+            yield f"no {render(compared)} is clearly the {wish} of {len(fits)}"
 
 
 def _rivalled(matches: list[Match]) -> bool:

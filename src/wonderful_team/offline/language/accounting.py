@@ -37,7 +37,7 @@ def passed_over(tokens: Sequence[Token], commands: Sequence[Command]) -> list[st
         "PATTERN": {item.pattern for item in things},
         "MATERIAL": {item.material for item in things},
         "LETTER": {item.name for item in things},
-        "SUPER": {item.superlative for item in things},
+        "SUPER": {item.superlative for item in things} | relations,
         "DARK": {item.dark for item in things},
     }
     for side in ("left", "right", "above", "below", "between"):
@@ -68,7 +68,7 @@ def _is_meant(token: Token, things: Sequence[Description]) -> bool:
     value = token.value
     assert isinstance(value, tuple)  # of every noun and shape
     if token.kind == "SHAPE":
-        return any(item.shape == value[0] or item.noun == "letter" for item in things)
+        return any(item.shape == value[0] for item in things)
     kind, name = value[0], value[1]
     if name:
         return any(item.name == name for item in things)

@@ -33,9 +33,7 @@ _X = rf"(?P<what>{_NAME}\{{[^{{}}]+\}}|the\s+[a-z -]+?)"
 _BE = r"\s+(?:(?:must|may|should|can|shall|is|are)\s+(?:not|never)\s+(?:to\s+)?be|is\s+never\s+to\s+be)\s+"
 _MUST_STAY = r"\s+(?:must\s+|should\s+|has\s+to\s+|is\s+to\s+)?(?:stay|stays|remain|remains|be\s+left|left|kept|be\s+kept)\s+(?:untouched|alone|free)"
 _KEEP = r"(?:(?:stay|keep|steer|remain)(?:ing)?\s+(?:well\s+)?(?:clear|away|off)(?:\s+(?:of|from))?|(?:watch|look)(?:ing)?\s+out\s+for|beware\s+of|avoid(?:ing)?(?:\s+(?:touching|hitting|contact\s+with))?)"
-_SHORT = (
-    r"(?:stay|stop|keep|remain)(?:s|p?ing)?\s+(?:short\s+of|before|behind|in\s+front\s+of|on\s+this\s+side\s+of|within)"
-)
+_SHORT = r"(?:stay|stop|keep|remain)(?:s|p?ing)?\s+(?:short\s+of|before|behind|in\s+front\s+of|(?:on\s+)?this\s+side\s+of|within)"
 _FORBIDDEN = (
     r"\s+(?:is|are)\s+(?:(?:not|never)\s+(?:allowed|permitted|ok|okay|acceptable)|forbidden|prohibited|off\s+limits)"
 )

@@ -18,6 +18,8 @@ _RELATIONS = {"LEFT_OF": "left_of", "RIGHT_OF": "right_of", "ABOVE": "above", "B
 _SAME = {"colour": "same_colour", "texture": "same_pattern", "shape": "same_shape"}
 ONE = "one"
 """Name of a description whose noun is one that was said before: "the green one"."""
+OTHERS = "others"
+"""Name of what "the other block" leaves out: the things that were named before."""
 PRONOUN = "it"
 """Name of a description that stands for something said before."""
 
@@ -32,13 +34,24 @@ def thing_of(tree: Tree[Token]) -> Description:
             description = CHANGES[str(child.data)](child)(description)
     if _is_bare_one(tree, description):
         description = replace(description, noun="thing", name=PRONOUN)
-    some = {token.type for adj in trees(tree, "adj") for token in tokens_in(adj)} & {"OF_TWO", "OF", "ONE_OF"}
-    both_of_a_list = description.number > 1 and not any(_is_many(head) for head in trees(tree, "head"))
+    words = [token for adj in trees(tree, "adj") for token in tokens_in(adj)]
+    some = {token.type for token in words} & {"OF_TWO", "OF", "ONE_OF"}
+    many = any(_is_many(head) for head in trees(tree, "head"))
+    both_of_a_list = description.number > 1 and not many
     if description.quantity == "all" and (both_of_a_list or some):
         description = replace(
             description, quantity="one", number=1 if both_of_a_list and not some else description.number
         )
+    if description.quantity == "all" and not many and any(item.name == OTHERS for item in description.excluded):
+        description = replace(description, quantity="one")
+    if description.quantity == "one" and any(token.type == "SUPER" and _compares(token) for token in words):
+        description = replace(description, number=max(description.number, 2))
     return replace(description, text=render(description))
+
+
+def _compares(token: Token) -> bool:
+    """Whether a word such as "bigger" or "biggest" speaks of one among several; "big" need not."""
+    return str(token.value.text).endswith(("er", "est")) and value_of(token) not in ("middle", "nearest")
 
 
 def _is_many(head: Tree[Token]) -> bool:
@@ -78,6 +91,11 @@ def _quantity(tree: Tree[Token]) -> Change:
     if "ONE_OF" in kinds:
         # Any of several will do.
         return lambda d: replace(d, quantity="each" if "EACH" in kinds else "number", number=1)
+    if "REST" in kinds:
+        others = Description(noun="thing", name=OTHERS, text="")
+        number = int(float(value_of(kinds["NUMBER"]))) if "NUMBER" in kinds else 1
+        quantity: Literal["all", "number"] = "number" if "NUMBER" in kinds else "all"
+        return lambda d: replace(d, quantity=quantity, number=number, excluded=(*d.excluded, others))
     if "NUMBER" in kinds:
         number = int(float(value_of(kinds["NUMBER"])))
         return lambda d: replace(d, quantity="number", number=number)
@@ -127,7 +145,7 @@ def _head_word(description: Description, token: Token) -> Description:
             return replace(description, name=description.name or ONE)
         case _:
             return description
-    return replace(description, quantity="all") if many and description.quantity == "one" else description
+    return replace(description, quantity="all", plural=True) if many and description.quantity == "one" else description
 
 
 def _adj(tree: Tree[Token]) -> Change:
@@ -205,7 +223,7 @@ def _plain_post(tree: Tree[Token]) -> Change:
             return replace(description, related=(*description.related, Related(_SAME[aspect], (reference,))))  # type: ignore[arg-type]
         if "SUPER" in kinds and "TO" in kinds:
             reference = thing_of(next(trees(tree, "np")))
-            return replace(description, related=(*description.related, Related("near", (reference,))))
+            return replace(description, related=(*description.related, Related("nearest", (reference,))))
         if "LIKE" in kinds and (nouns := list(trees(tree, "np"))):
             shown = thing_of(nouns[0])
             return replace(description, like=shown.like or description.like)
@@ -244,7 +262,7 @@ def _post(tree: Tree[Token]) -> Change:
     if beside is not None:
         named = list(trees(tree, "np"))
         it = (thing_of(named[0]) if named else Description(noun="thing", text="it", name=PRONOUN),)
-        both = (Related(value_of(beside), it), Related("near", it))
+        both = (Related(value_of(beside), it), Related("nearest", it))
         return lambda d: replace(d, related=(*d.related, *both))
     related = related_of(tree)
     if len(related.to) == 1 and related.to[0].like is not None and "scene" in related.to[0].like:

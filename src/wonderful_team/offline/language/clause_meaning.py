@@ -346,7 +346,7 @@ def _without_place(parts: Parts, things: list[Description], meaning: Meaning, go
 
 def _stood_beside(thing: Description) -> bool:
     """Whether a thing is told by where it stands."""
-    return len(thing.related) > 1 and thing.related[-1].relation == "near"
+    return len(thing.related) > 1 and thing.related[-1].relation == "nearest"
 
 
 def _alike_kind(one: Description, other: Description) -> bool:

@@ -63,7 +63,7 @@ def parts_of(clause: Sequence[Token], meaning: Meaning) -> Parts:
     parts = _cut(clause, meaning, _WITH if kinds & {"SWAP", "FILL"} else frozenset())
     if parts.items and parts.items[-1] in (("place", "IN"), ("place", "INTO")) and meaning.last_goal is not None:
         parts.items[-1] = ("there", None)  # "carry it to the bowl and drop it in"
-    if parts.kinds & {"PUT", "PUSH"} and not parts.kinds & _GOALS and kinds & _SIDES:
+    if (parts.kinds & {"PUT", "PUSH"} or not kinds & VERBS) and not parts.kinds & _GOALS and kinds & _SIDES:
         return _cut(clause, meaning, _SIDES)
     return parts
 
@@ -140,8 +140,10 @@ def _noun_phrase(clause: Sequence[Token], at: int, apart: frozenset[str]) -> tup
         )
         inside = kind in ("IN", "ON") and end > at and (after == "CORNER" or _is_shown(clause, at, end))
         inside = inside or (kind == "IN" and end > at and after in _LOOKS and _is_looks_alone(clause, end + 1))
+        inside = inside or (kind == "TO" and end > at and clause[end - 1].value == "nearest")
         told = (told or (kind in (*PLACES, "BETWEEN") and _is_relative(clause, end))) and kind != "COMMA"
-        joins = told and kind == "AND" and any(token.kind == "BETWEEN" for token in clause[at:end])
+        before = {token.kind for token in clause[at:end]}
+        joins = kind == "AND" and (told and "BETWEEN" in before or "EXCEPT" in before)
         two = [token.kind for token in clause[end - 1 : end + 1]] == ["SLOT", "SLOT"] and end > at
         if (
             kind in apart

@@ -157,6 +157,7 @@ def two_of(named: Sequence[Description]) -> tuple[Description, Description]:
         return named[0], named[1]
     if len(named) == 1 and named[0].quantity != "one" and named[0].superlative is None:
         single = replace(named[0], quantity="one", number=1)
+        single = replace(single, number=max(2, named[0].number))  # so many are spoken of
         left, right = (replace(single, superlative=side) for side in ("leftmost", "rightmost"))
         return replace(left, text=render(left)), replace(right, text=render(right))
     raise NotUnderstoodError("'between' needs two things; name both")

@@ -186,7 +186,7 @@ _LISTED: dict[Entry, str] = {
     ("ANGLE", 45.0): "eighth of turn; one eighth of turn; eighth turn",
     ("ANGLE", 360.0): "full turn; complete turn; one full turn; full rotation",
     ("ORIGIN", "origin"): """
-    back again; back home; back there; back to start; to its home; to start;
+    home; home again; back again; back home; back there; back to start; to its home; to start;
     back to its home; back to its place; back to its origin; to its origin; back in its place""",
     ("SHAPE", ("l-shape", False)): "l shaped; l shape; shape of l; shape of letter l",
     ("SHAPED", "shaped"): "shaped; shaped like; in shape of; formed like; with shape of",

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 
+from wonderful_team.errors import NotUnderstoodError
 from wonderful_team.offline.description import Description
-from wonderful_team.offline.language.changes import ONE
+from wonderful_team.offline.language.changes import ONE, OTHERS
 from wonderful_team.offline.language.commands import Command
 from wonderful_team.offline.language.wording import render
 
@@ -18,13 +19,33 @@ def with_nouns(commands: Iterable[Command]) -> tuple[Command, ...]:
     place: Description | None = None
     for item in map(_excepted, commands):
         to = item.to
-        thing = with_noun(item.thing, thing or place or (None if to is None or _holds(to.what) else to.what))
+        there = None if to is None or _holds(to.what) else to.what
+        before = [command.thing for command in done]
+        thing = with_noun(item.thing, thing or place or there)
+        thing = _besides(thing, before or [there])
         if to is not None:
-            what = None if to.what is None else with_noun(to.what, place or thing)
+            what = None if to.what is None else _besides(with_noun(to.what, place or thing), [*before, thing])
             other = None if to.other is None else with_noun(to.other, what or thing)
             to, place = replace(to, what=what, other=other), what or place
         done.append(replace(item, thing=thing, to=to))
     return tuple(done)
+
+
+def _besides(description: Description, named: Sequence[Description | None]) -> Description:
+    """What "the other block" means: a block that is none of those named before.
+
+    Raises:
+        NotUnderstoodError: None was named.
+    """
+    if all(item.name != OTHERS for item in description.excluded):
+        return description
+    kinds = (description.noun, "thing") if description.noun not in ("object", "thing") else None
+    known = [item for item in named if item is not None and (kinds is None or item.noun in kinds)]
+    if not known:
+        raise NotUnderstoodError(f"I do not know: which other {description.noun} is meant; name it")
+    left_out = (*(item for item in description.excluded if item.name != OTHERS), *dict.fromkeys(known))
+    full = replace(description, excluded=left_out)
+    return replace(full, text=render(full))
 
 
 def _holds(what: Description | None) -> bool:

@@ -10,7 +10,7 @@ from wonderful_team.offline.description import Description
 from wonderful_team.offline.language.shows import Shows
 
 _TELLING = frozenset(
-    """a an the this that these those is are was as to from into by of in on with and for like it its be been becomes become goes go going changes change changed
+    """a an the this that these those is are was as to from into by of in on with and or for like it its be been becomes become goes go going changes change changed
     turns turn turned turning rotates rotate rotated rotating rotation spin spun means mean meaning defined define stands stand called call here how what when
     you get one same fixed specific certain some given particular angle amount way word term verb show shows shown example examples instance pair pairs picture
     pictures before after following follows three two several object objects thing things something watch look see learn now then please do does did done

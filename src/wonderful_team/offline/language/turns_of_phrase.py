@@ -31,7 +31,7 @@ _SPOKEN = (
     (r"\b(?:i|we) (?:think|guess|reckon|suppose|believe|figure)\b(?: that\b)?", " "),
     (r"\b(?:i|we) (?:want|need|would (?:like|ask)) you to\b(?! have\b)|\b(?:(?:your|the) )?(?:task|job|goal|aim) is to\b|\bwhat (?:i|we|you) (?:want|need|should do|have to do) is(?: to)?\b", " "),
     (r"\b(?:it |that |i )?would be (?:nice|great|good|happy|glad) if you(?: (?:could|would|can))?\b|\b(?:is it|would it be) possible to\b|\bhelp me(?: to)?\b|\b(?:do me a favou?r|be a dear|be so kind) and\b", " "),
-    (r"\b(?:(?:i|we|it) )?(?:do(?:es)? not (?:care|mind|matter)|no matter) which(?: one)?\b|\bany(?: one)? will do\b", " "),
+    (r"\b(?:(?:i|we|it) )?(?:do(?:es)? not (?:care|mind|matter)|no matter) which(?: (?:ones?|two|three|four))?\b|\bany(?: one)? will do\b", " "),
     (r"\b(?:(?:i|we) )?would not mind (?:having|seeing|getting)\b", "i want"),
     (r"\b(?:would|do) you mind\b|\bwhy (?:do(?:es)? not you|do not we|not)\b|\bwhy do not you\b", " "),
     (r"\bwhy (?:is|are) not (?P<what>[^?.;{}]+)\?", r"\g<what>."),
@@ -42,12 +42,15 @@ _SPOKEN = (
     (r"\ba (?:bit|little|tad)\b(?=[ ,]+(?:say |about |by )*\d+ ?(?:deg|°))|\b(?:say|roughly|about|approximately)\b,?(?= \d+ ?(?:deg|°))", " "),
     (r"\ban? (?P<what>[a-z ]+?)\b(?P<rest>[^.;]*?), any (?P=what)\b", r"any \g<what>\g<rest>"),
     (r"\b(?P<it>it|them) (?:a)?round\b", r"\g<it>"),
+    (r"\b(?P<turned>(?:turn|spin|rotate|twist|swivel)\b[^.,;]*?) (?:a)?round(?= (?:by|through) )", r"\g<turned>"),
     (r"[.;,]?\s*(?:(?:but|and|just|please) )*\bleave (?P<what>the [a-z ]+?) out\b(?: of (?:it|this|that))?", r" except \g<what>"),
     (r",? \b(?:bar|minus) (?=the\b)", " except "),
 )  # fmt: skip
 """How things are said in passing, put as they are written."""
 _TURNS = (
     (r"\b(left|right)[ -]hand\b(?= side)", r"\1"),
+    (r"\blooks? the same as\b", "looks like"),
+    (r"\bup in (?=the )", "in "),
     (r"\b(?:slide|scoot) (?P<what>[^.,;]+?) over\b", r"move \g<what>"),
     (r"\bover\b(?=\s*(?:[,.;!?]|$|(?:to|on|onto|and|so|by|near|next|beside|towards) ))", ""),
     (r"(?:\b(?:on|at|to|towards|in) )(?P<what>(?:the |\{)[^,.;:'\u2019]+?)['\u2019]s (?P<side>left|right)(?: (?:hand )?side)?\b", r"to the \g<side> of \g<what>"),
@@ -65,7 +68,7 @@ _TURNS = (
     (r"\buse (?P<a>(?:the )?\{[^{}]+\}) as (?:the|a) (?:container|place|target)\b", r"take \g<a>"),
     (r"\buse (?:the|your|its) (?:gripper|arm|hand|tool|suction cup|robot) to\b", " "),
     (r"\bit would be (?:great|good|nice|lovely|helpful) if (?P<what>[^,.;]+?) (?:was|were|is|could be)\b", r"\g<what> should be"),
-    (r"\b(?:i|we) (?:would )?(?:like|want|love) to have\b", "i want"),
+    (r"\b(?:i|we) (?:would )?(?:like|want|love) to (?:have|see)\b", "i want"),
     (r"\b(?P<put>put|set|place|lay) (?P<it>it|them) (?:down )?on(?:to)? the (?:table|desk|surface)\b", r"\g<put> \g<it> onto a free area"),
 )  # fmt: skip
 

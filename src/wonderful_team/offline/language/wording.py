@@ -7,7 +7,7 @@ from dataclasses import replace
 from wonderful_team.offline.description import Description, Related
 from wonderful_team.offline.language.vocabulary import plural
 
-_RELATION_WORDS = {"left_of": "left of", "right_of": "right of", "above": "above", "below": "below", "near": "next to",
+_RELATION_WORDS = {"left_of": "left of", "right_of": "right of", "above": "above", "below": "below", "near": "next to", "nearest": "nearest to",
                    "far_from": "far from", "on": "on top of", "inside": "inside", "between": "between",
                    "same_colour": "with the same colour as", "same_pattern": "with the same texture as",
                    "same_shape": "with the same shape as"}  # fmt: skip
@@ -29,7 +29,7 @@ def render(description: Description) -> str:
         tail.append(f"shown in {{{description.like}}}")
     tail += [relation_words(related) for related in description.related]
     if description.excluded:
-        tail.append("except the " + " and the ".join(render(item) for item in description.excluded))
+        tail.append("except the " + " and the ".join(render(item) or item.name for item in description.excluded))
     return " ".join([*words, *tail])
 
 
@@ -104,8 +104,11 @@ def _corner(description: Description) -> str:
 
 def split_colours(thing: Description) -> list[Description]:
     """The words "the red, green and blue blocks" are three kinds of thing, not one in three colours."""
-    if thing.quantity not in ("all", "each", "number") or len(thing.colours) <= 1 or thing.pattern or thing.material:
+    counted = thing.quantity == "number"
+    if thing.quantity == "one" or len(thing.colours) <= 1 or thing.pattern or thing.material:
         return [thing]
-    quantity = "one" if thing.quantity == "number" and thing.number == len(thing.colours) else thing.quantity
+    if counted and thing.number != len(thing.colours):
+        return [thing]  # how many of which colour is not said
+    quantity = "one" if counted else thing.quantity
     parts = [replace(thing, colours=(colour,), quantity=quantity, number=1) for colour in thing.colours]
     return [replace(part, text=render(part)) for part in parts]

@@ -2,58 +2,65 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 import numpy as np
 
 from wonderful_team.offline.description import Description
 from wonderful_team.offline.vision.things import Look, Scene, Thing
 
 FRUITS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
-    "apple": (("red", "green"), ("round",)), "apricot": (("orange",), ("round",)),
-    "avocado": (("green", "olive", "brown"), ("oval",)), "banana": (("yellow",), ("crescent", "long")),
-    "blackberry": (("black", "purple"), ("round",)), "blueberry": (("blue", "purple", "black"), ("round",)),
-    "cherry": (("red",), ("round",)), "coconut": (("brown",), ("round",)),
-    "fig": (("purple", "brown"), ("round", "oval")), "grape": (("purple", "green"), ("round", "oval")),
-    "grapefruit": (("orange", "pink", "yellow"), ("round",)),
-    "kiwi": (("brown", "green", "olive"), ("oval", "round")), "lemon": (("yellow",), ("oval", "round")),
-    "lime": (("green",), ("oval", "round")), "mandarin": (("orange",), ("round",)),
-    "mango": (("orange", "yellow", "green", "red"), ("oval",)), "melon": (("green", "yellow"), ("round", "oval")),
-    "orange": (("orange",), ("round",)), "peach": (("orange", "pink"), ("round",)),
-    "pear": (("green", "yellow", "olive"), ("tapered",)), "plum": (("purple", "blue"), ("round", "oval")),
-    "strawberry": (("red",), ("round", "heart", "triangle", "oval")), "tangerine": (("orange",), ("round",)),
-    "tomato": (("red",), ("round",)), "watermelon": (("green",), ("round", "oval")),
+    "banana": (("yellow",), ("crescent", "long")), "apple": (("red", "green"), ("round",)),
+    "orange": (("orange",), ("round",)), "lemon": (("yellow",), ("oval", "round")),
+    "lime": (("green",), ("oval", "round")), "plum": (("purple", "blue"), ("round", "oval")),
+    "strawberry": (("red",), ("heart", "triangle", "round", "oval")), "pear": (("green", "yellow", "olive"), ("tapered",)),
+    "blueberry": (("blue", "purple", "black"), ("round",)), "peach": (("orange", "pink"), ("round",)),
+    "tomato": (("red",), ("round",)), "cherry": (("red",), ("round",)), "grape": (("purple", "green"), ("round", "oval")),
+    "kiwi": (("brown", "green", "olive"), ("oval", "round")), "avocado": (("green", "olive", "brown"), ("oval",)),
+    "mango": (("orange", "yellow", "green", "red"), ("oval",)), "coconut": (("brown",), ("round",)),
+    "mandarin": (("orange",), ("round",)), "tangerine": (("orange",), ("round",)), "apricot": (("orange",), ("round",)),
+    "grapefruit": (("orange", "pink", "yellow"), ("round",)), "melon": (("green", "yellow"), ("round", "oval")),
+    "watermelon": (("green",), ("round", "oval")), "fig": (("purple", "brown"), ("round", "oval")),
+    "blackberry": (("black", "purple"), ("round",)),
 }  # fmt: skip
-"""Everyday looks of fruit: colours and outlines."""
+"""Everyday looks of fruit, the commonest on a table first: colours and outlines."""
+_AS_WELL = 0.95
+"""A fruit is another, commoner one that fits at least this share as well: a red round one is an apple, no tomato."""
+
+_ROUND, _ANGULAR = ("circle", "ring", "bowl"), ("square", "rectangle", "frame")
+_OUTLINES = {
+    "bowl": _ROUND, "plate": _ROUND, "dish": (*_ROUND, "oval"), "pan": ("pan",), "box": _ANGULAR, "tray": _ANGULAR,
+    "pallet": _ANGULAR,
+}  # fmt: skip
+"""Outlines of containers by name."""
+_HOLDS = (*_ROUND, *_ANGULAR, "oval", "pan")
+"""Outlines of what things are put into."""
+_FRUITY = ("circle", "oval", "long", "crescent")
+"""Outlines of fruit."""
 
 
-_ROUND, _ANGULAR = ("circle", "ring", "oval", "bowl"), ("square", "rectangle", "frame", "diamond")
-_CONTAINERS = {"bowl": (_ROUND, _ANGULAR), "pan": (_ROUND, _ANGULAR), "box": (_ANGULAR, _ROUND), "pallet": (_ANGULAR, _ROUND)}  # fmt: skip
-"""Outlines of containers by name, and those that they do not have."""
-CLEARLY = 0.2
-"""A form that fits better by this much decides."""
-FITS_ROUND = 0.6
-"""Fit of a circle from which something is round."""
-RIVAL_FRUIT = 0.5
-"""A fruit that fits at most this share as well as another fruit is that other one: a green round fruit is a lime, no apple."""
+def unrivalled(own: float, rivals: Iterable[float]) -> float:
+    """How far a word fits beside all others of its family, 0 to 1: what another one names clearly better is that other."""
+    return float(np.clip((own / max(*rivals, 1e-6) - 0.75) / 0.15, 0, 1))
+
+
+def formed(look: Look, outlines: Iterable[str]) -> float:
+    """How far one of these is a thing's outline beside all others, 0 to 1."""
+    return unrivalled(max(look.shapes[name] for name in outlines), look.shapes.values())
 
 
 def named_score(thing: Thing, description: Description) -> float:
-    """How well a particular name fits: a letter, or a fruit; 1 for names that say nothing to the eye."""
-    name = description.name
-    if description.noun == "letter" and name.upper() in thing.look.letters:
-        letters = thing.look.letters
-        own, best = letters[name.upper()], max(letters.values())
-        return float(np.clip((own - 0.3) / 0.35, 0, 1) * np.clip((own / max(best, 1e-6) - 0.6) / 0.3, 0, 1))
+    """How well a particular name fits: a letter, a fruit or a container; 1 for names that say nothing to the eye."""
+    name, letters = description.name, thing.look.letters
+    if description.noun == "letter" and name.upper() in letters:
+        own = letters[name.upper()]
+        return float(np.clip((own - 0.3) / 0.35, 0, 1)) * unrivalled(own, letters.values())
     if name.lower() in FRUITS:
         own = _fruit_fit(thing, name.lower(), named=bool(description.colours))
-        if description.colours:
-            return own  # "the green apple": the words say which of its colours is meant
-        best = max(_fruit_fit(thing, other, named=False) for other in FRUITS)
-        return own * float(np.clip((own / max(best, 1e-6) - RIVAL_FRUIT) / (0.85 - RIVAL_FRUIT), 0, 1))
-    own_form, other_form = _CONTAINERS.get(name, ((), ()))
-    shapes = thing.look.shapes
-    if own_form and max(shapes[form] for form in own_form) < max(shapes[form] for form in other_form) - CLEARLY:
-        return 0.3
-    return 1.0
+        fits = {other: _fruit_fit(thing, other, named=False) for other in FRUITS if other != name.lower()}
+        commoner = [fits[other] for other in list(FRUITS)[: list(FRUITS).index(name.lower())]]
+        return own * unrivalled(own, fits.values()) * float(max(commoner, default=0.0) < _AS_WELL * own)
+    return formed(thing.look, _OUTLINES[name]) if name in _OUTLINES else 1.0
 
 
 def _fruit_fit(thing: Thing, name: str, *, named: bool) -> float:
@@ -92,43 +99,37 @@ def fruit_score(thing: Thing) -> float:
     chroma = max((np.hypot(colour.lab[1], colour.lab[2]) * colour.share for colour in look.colours), default=0.0)
     coloured = float(np.clip(chroma / 14, 0, 1))
     whole = float(np.clip((0.06 - look.outline.hole_share) / 0.03, 0, 1))
-    curved = max(_form(look, "round"), _form(look, "oval"), _form(look, "long"), _form(look, "crescent"))
-    angular = max(look.shapes[name] for name in ("square", "rectangle", "frame", "cross", "l-shape", "letter"))
-    rounded = max(look.shapes[name] for name in ("circle", "oval", "crescent", "long", "heart", "triangle"))
-    corners = float(np.clip((angular - rounded + 0.02) / 0.2, 0, 1))
     calm = 1 - 0.6 * max(look.patterns[name] for name in ("striped", "dotted", "checkered"))
-    return float(coloured * whole * (0.3 + 0.7 * curved) * (1 - 0.75 * corners) * calm)
+    return float(coloured * whole * formed(look, _FRUITY) * calm)
 
 
 def container_score(thing: Thing) -> float:
-    """How much a thing looks like something to put things into: large, round or angular outline, 0 to 1."""
-    if thing.flat:
-        return 0.25
-    look = thing.look
-    hollow = float(np.clip(look.outline.hole_share / 0.1, 0, 1))
-    form = max(look.shapes[name] for name in ("square", "rectangle", "frame", "circle", "ring", "oval"))
-    return float(0.45 + 0.55 * max(hollow, 0.8 * form))
+    """How much a thing looks like something to put things into: a round or angular outline, 0 to 1."""
+    return 0.25 if thing.flat else formed(thing.look, _HOLDS)
 
 
 ROOMY = 0.45
 """What holds things is at least this share of the largest object of its table."""
-GLYPH = 1.3
-"""What fits a letter so many times as well as any other shape is a letter and holds nothing."""
-BENT = 0.3
-"""Fit of a crescent from which a thing is no block."""
 SLIM = 6.0
 """A thing so many times as long as wide is a line and no block."""
-BLOCKS = 4.0
-"""A round object more than so many times the smallest of its table is no block."""
+SOLID = 0.85
+"""A long block fills at least this share of the rectangle round it."""
+BLOCKS = 3.0
+"""A round object more than so many times the smallest of its table is no block, ball or fruit."""
+FITS_ROUND = 0.6
+"""Fit of a circle from which something is round."""
 
 
 def is_kind_here(thing: Thing, noun: str, scene: Scene) -> bool:
     """Whether a thing is of a kind beside what else is there: next to a bowl, a block of a tenth of its size is no bowl."""
-    sizes = [other.area_px for other in scene.objects] or [thing.area_px]
+    sizes = [other.area_px for other in (scene.things if noun == "container" else scene.objects)] or [thing.area_px]
     if noun == "container":
-        others = max(fit for name, fit in thing.look.shapes.items() if name != "letter")
-        return thing.area_px >= ROOMY * max(sizes) and thing.look.shapes["letter"] <= GLYPH * others
-    return noun != "block" or thing.look.shapes["circle"] < FITS_ROUND or thing.area_px <= BLOCKS * min(sizes)
+        return thing.area_px >= ROOMY * max(sizes)
+    return (
+        noun not in ("block", "ball", "fruit")
+        or thing.look.shapes["circle"] < FITS_ROUND
+        or thing.area_px <= BLOCKS * min(sizes)
+    )
 
 
 def kind_score(thing: Thing, description: Description) -> float:
@@ -147,18 +148,16 @@ def kind_score(thing: Thing, description: Description) -> float:
         case "fruit":
             return fruit_score(thing)
         case "letter":
-            own = look.shapes["letter"]
             # A flower or cross resembles some letter too, but itself more.
-            return float(
-                np.clip(own / 0.55, 0, 1) * np.clip((own / max(max(look.shapes.values()), 1e-6) - 0.6) / 0.3, 0, 1)
-            )
+            return float(np.clip(look.shapes["letter"] / 0.55, 0, 1)) * formed(look, ("letter",))
         case "ball":
-            return float(np.clip(look.shapes["circle"] / 0.6, 0, 1))
+            return float(np.clip(look.shapes["circle"] / FITS_ROUND, 0, 1)) * formed(look, ("circle",))
         case "container":
             return container_score(thing)
+        case "block" if not (thing.flat or description.shape):
+            bar = look.outline.aspect <= SLIM and look.outline.fill > SOLID
+            return formed(look, ("square", "rectangle", "long") if bar else ("square", "rectangle"))
         case "object" | "block" | "toy":
-            bent = look.shapes["crescent"] > BENT or look.shapes["oval"] >= max(look.shapes.values())
-            bent |= look.outline.aspect > SLIM
-            return 0.3 if thing.flat or (bent and description.noun == "block" and not description.shape) else 1.0
+            return 0.3 if thing.flat else 1.0
         case _:
             return 0.8 if thing.flat else 1.0

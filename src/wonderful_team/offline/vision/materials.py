@@ -31,16 +31,14 @@ def _rough(look: Look) -> float:
 def _brick(look: Look) -> float:
     warm = _enough(_share(look, "red", "orange", "brown"), 0.5)
     joints = _enough(_share(look, "white", "grey", "brown", "pink"), 0.12)
-    courses = float(np.clip((look.surface.two_way - 0.35) / 0.25, 0, 1))
     no_dark = 1 - _enough(_share(look, "black"), 0.2)
-    return warm * (0.5 + 0.5 * joints) * (0.35 + 0.65 * courses) * _rough(look) * no_dark
+    return warm * (0.5 + 0.5 * joints) * (0.35 + 0.65 * look.surface.checks) * _rough(look) * no_dark
 
 
 def _tile(look: Look) -> float:
-    grid = float(np.clip((look.surface.two_way - 0.35) / 0.25, 0, 1))
     lines = float(np.clip((0.46 - look.surface.rare_share) / 0.08, 0, 1))
     warm = _enough(_share(look, "red", "brown", "orange"), 0.5)
-    return max(grid * (0.4 + 0.6 * lines) * _rough(look) * (1 - 0.5 * warm), _mosaic(look))
+    return max(look.surface.checks * (0.4 + 0.6 * lines) * _rough(look) * (1 - 0.5 * warm), _mosaic(look))
 
 
 def _mosaic(look: Look) -> float:
@@ -51,7 +49,8 @@ def _mosaic(look: Look) -> float:
 
 
 def _wood(look: Look) -> float:
-    return _enough(_share(look, "brown", "orange", "olive"), 0.75) * (0.5 + 0.5 * _enough(_share(look, "brown"), 0.3))
+    grain = float(np.clip((look.surface.edges - 0.9) / 0.8, 0, 1)) * (1 - look.patterns["checkered"])
+    return grain * _enough(_share(look, "brown", "orange", "olive"), 0.75) * _enough(_share(look, "brown"), 0.3)
 
 
 def _granite(look: Look) -> float:

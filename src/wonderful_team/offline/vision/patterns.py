@@ -39,6 +39,16 @@ class Surface:
     two_tone: float
 
     @property
+    def stripes(self) -> float:
+        """How far its edges make stripes, 0 to 1."""
+        return float(np.clip((self.one_way - 0.5) / 0.3, 0, 1))
+
+    @property
+    def checks(self) -> float:
+        """How far they make a grid, as checks, tiles and bricks do, 0 to 1."""
+        return float(np.clip((self.two_way - 0.35) / 0.25, 0, 1)) * (1 - self.stripes)
+
+    @property
     def numbers(self) -> Array:
         """The statistics as one vector for comparison, shape (7,), each about 0 to 1."""
         return np.array(
@@ -170,8 +180,7 @@ def pattern_scores(surface: Surface) -> dict[str, float]:
     speck = float(surface.two_tone > 0.6) * (1 - float(np.clip((surface.rare_share - 0.02) / 0.04, 0, 1)))
     shown = seen * sharp * (1 - speck)
     two_tone = float(np.clip((surface.two_tone - 0.6) / 0.2, 0, 1))
-    stripes = float(np.clip((surface.one_way - 0.5) / 0.3, 0, 1))
-    checks = float(np.clip((surface.two_way - 0.35) / 0.25, 0, 1)) * (1 - stripes)
+    stripes, checks = surface.stripes, surface.checks
     several = float(np.clip((surface.spots - 1.5) / 2, 0, 1))
     isotropic = float(np.clip((0.55 - surface.one_way) / 0.2, 0, 1))
     compact = float(np.clip((surface.spotted - 0.45) / 0.3, 0, 1)) * several

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import Any
 
 import cv2
 import numpy as np
 
 from wonderful_team.core.geometry.arrays import Array
-from wonderful_team.core.pictures import Point
 from wonderful_team.offline.vision.examples import alike_colour, alike_pattern
 from wonderful_team.offline.vision.outlines import filled, largest_contour, same_form, study_outline
 from wonderful_team.offline.vision.things import Look, Match, Scene, Thing, covers
@@ -27,6 +27,9 @@ def relation_score(relation: str, thing: Thing, others: Sequence[Thing], scene: 
     diagonal = float(np.hypot(scene.valid.width, scene.valid.height))
     match relation:
         case "near":
+            sizes = thing.radius_px + other.radius_px
+            return float(np.clip(1.1 - (distance - sizes) / max(sizes, NEAR * scene.table.width), 0, 1))
+        case "nearest":
             return float(np.clip(1.2 - 2.5 * distance / diagonal, 0.05, 1))
         case "far_from":
             return float(np.clip(2.5 * distance / diagonal - 0.2, 0.05, 1))
@@ -66,6 +69,9 @@ def _body(thing: Thing) -> Array:
     opened = cv2.morphologyEx(whole, cv2.MORPH_OPEN, cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (size, size)))
     return np.asarray(opened > 0 if opened.any() else whole > 0)
 
+
+NEAR = 0.12
+"""Things next to each other are no further apart than both are wide together, or this share of the table's width."""
 
 _RIM_SHADE = 1.25
 """Ratio of light up to which two plain surfaces may be one colour."""
@@ -119,13 +125,11 @@ def pick_superlative(scene: Scene, matches: list[Match], superlative: str, ordin
     An `ordinal` beyond what fits gives [].
     """
     placed = [match for match in matches if match.thing is not None]
-    if superlative in ("tallest", "shortest") and any(m.thing is None or _tall(m.thing) is None for m in placed):
-        superlative = "largest" if superlative == "tallest" else "smallest"
     if len(placed) < ordinal:
         return []
     if superlative == "middle":
         return _middle(placed)
-    keys = [superlative_key(match.thing, superlative) for match in placed if match.thing is not None]
+    keys = superlative_keys([match.thing for match in placed if match.thing is not None], superlative)
     order = np.argsort(keys, kind="stable")
     chosen = int(order[ordinal - 1])
     neighbours = [int(order[k]) for k in (ordinal - 2, ordinal) if 0 <= k < len(order)]
@@ -146,8 +150,8 @@ CORNER = 1 / 4
 """The same for what is said to lie in a corner."""
 
 
-def shares_from(scene: Scene, point: Point, wishes: str) -> list[float]:
-    """How far a point is from a side, both sides of a corner or the middle of the table, as shares of its extent."""
+def shares_from(scene: Scene, point: tuple[Any, Any], wishes: str) -> list[Any]:
+    """How far a point (or each of many) is from a side, both sides of a corner or the middle of the table, as shares of it."""
     table = scene.table
     x, y = (point[0] - table.x0) / table.width, (point[1] - table.y0) / table.height
     shares = {
@@ -155,14 +159,14 @@ def shares_from(scene: Scene, point: Point, wishes: str) -> list[float]:
         "rightmost": 1 - x,
         "topmost": y,
         "bottommost": 1 - y,
-        "middle": max(abs(x - 0.5), abs(y - 0.5)),
+        "middle": np.maximum(abs(x - 0.5), abs(y - 0.5)),
     }
     return [shares[wish] for wish in wishes.split()]
 
 
-def is_at(scene: Scene, point: Point, wishes: str, within: float = OUTER) -> bool:
-    """Whether a point lies at that side, corner or middle of the table."""
-    return max(shares_from(scene, point, wishes)) <= within
+def is_at(scene: Scene, point: tuple[Any, Any], wishes: str, within: float = OUTER) -> Any:
+    """Whether a point (or each of many) lies at that side, corner or middle of the table."""
+    return np.maximum.reduce(shares_from(scene, point, wishes)) <= within
 
 
 def pick_in_corner(scene: Scene, matches: list[Match], corner: str) -> list[Match]:
@@ -171,8 +175,14 @@ def pick_in_corner(scene: Scene, matches: list[Match], corner: str) -> list[Matc
     return sorted(there, key=lambda match: sum(shares_from(scene, match.box.centre, corner)))[:1]
 
 
-def superlative_key(thing: Thing, superlative: str) -> float:
-    """Sort key: the smallest is picked."""
+def superlative_keys(things: Sequence[Thing], superlative: str) -> list[float]:
+    """Sort keys of several things: the smallest is picked; where heights do not show, the taller one is the larger one."""
+    if superlative in ("tallest", "shortest") and any(_tall(thing) is None for thing in things):
+        superlative = "largest" if superlative == "tallest" else "smallest"
+    return [_superlative_key(thing, superlative) for thing in things]
+
+
+def _superlative_key(thing: Thing, superlative: str) -> float:
     match superlative:
         case "largest":
             return -thing.area_px
@@ -211,8 +221,4 @@ def _middle(matches: list[Match]) -> list[Match]:
     spread = points - points.mean(axis=0)
     axis = 0 if spread[:, 0].std() >= 0.7 * spread[:, 1].std() else 1
     order = np.argsort(points[:, axis], kind="stable")
-    if len(order) % 2:
-        return [matches[int(order[len(order) // 2])]]
-    centre = np.median(points, axis=0)
-    nearest = int(np.hypot(*(points - centre).T).argmin())
-    return [replace(matches[nearest], score=matches[nearest].score * 0.7)]
+    return [matches[int(order[len(order) // 2])]] if len(order) % 2 else []

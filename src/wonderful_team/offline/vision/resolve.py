@@ -10,7 +10,7 @@ import numpy as np
 from wonderful_team.core.pictures import Point
 from wonderful_team.offline.description import Description
 from wonderful_team.offline.vision.examples import alike, alike_pattern
-from wonderful_team.offline.vision.kinds import is_kind_here, kind_score, named_score
+from wonderful_team.offline.vision.kinds import formed, is_kind_here, kind_score, named_score
 from wonderful_team.offline.vision.materials import material_score
 from wonderful_team.offline.vision.relations import pick_in_corner, pick_superlative, relation_score
 from wonderful_team.offline.vision.spots import free_spots
@@ -94,7 +94,7 @@ def suits(
         parts["words: material"] = float(np.clip(material_score(thing.look, description.material) / 0.6, 0, 1))
         score *= parts["words: material"]
     if description.shape is not None:
-        parts["words: shape"] = shape_fit(thing.look, description.shape)
+        parts["words: shape"] = shape_fit(thing, description.shape)
         score *= parts["words: shape"]
     return float(score), parts
 
@@ -131,24 +131,18 @@ def colour_fit(look: Look, description: Description) -> float:
 
 _CONFUSED = ("swirled", "dotted", "mottled", "checkered")
 """Patterns of patches that are hard to tell apart where only a little of them shows."""
+_LITTLE = 1000
+"""A thing of fewer pixels shows too little of a pattern to be sure of it."""
 
 
 def pattern_fit(look: Look, pattern: str) -> float:
-    """How well a pattern named in words fits, 0 to 1; thin things show too little of a pattern to be sure of it."""
+    """How well a pattern named in words fits, 0 to 1; thin and small things show too little of one to be sure of it."""
     own = float(np.clip(look.patterns[pattern] / 0.45, 0, 1))
     if pattern == "multicoloured":
         return max(own, _rainbow(look))
-    if pattern not in _CONFUSED:
-        return own
-    thin = look.outline.hole_share > 0.2 or look.outline.solidity < 0.7
-    other = max(look.patterns[name] for name in _CONFUSED)
-    fit = max(own, (0.7 if thin else 0.5) * float(np.clip(other / 0.45, 0, 1)))
-    if pattern == "swirled":
-        return max(fit, _bands(look))
-    if pattern == "checkered" and look.surface.two_way > 0.4:
-        # A stroke of a letter shows one row of checks, which is a row of stripes.
-        fit = max(fit, 0.75 * float(np.clip(look.patterns["striped"] / 0.45, 0, 1)))
-    return fit
+    if pattern in _CONFUSED and (look.outline.hole_share > 0.2 or look.outline.filled_area < _LITTLE):
+        own = max(own, 0.7 * float(np.clip(max(look.patterns[name] for name in _CONFUSED) / 0.45, 0, 1)))
+    return max(own, _bands(look)) if pattern == "swirled" else own
 
 
 def _bands(look: Look) -> float:
@@ -192,15 +186,19 @@ def _shade_fit(look: Look, name: str, dark: bool | None) -> float:
         return 1.0 - 0.15 * colour.dark - 0.05 * colour.light
     if dark:
         return 0.3 + 0.7 * max(colour.dark, 0.8 if renamed and colour.name in ("brown", "olive") else 0.0)
-    return 0.35 + 0.65 * max(colour.light, 0.5 * (1 - colour.dark))
+    return 0.3 + 0.7 * colour.light
 
 
-def shape_fit(look: Look, shape: str) -> float:
+_ON_A_CORNER = 0.56
+"""A square fills at most this share of the upright box round it where it stands on a corner, as a diamond does."""
+
+
+def shape_fit(thing: Thing, shape: str) -> float:
     """How well a shape named in words fits, 0 to 1: its own fit, and not far behind the best shape."""
-    own, best = look.shapes[shape], max(look.shapes.values())
-    if best <= 0:
-        return 0.0
-    return float(np.clip((own - 0.2) / 0.4, 0, 1) * np.clip((own / best - 0.55) / 0.35, 0, 1))
+    standing = shape == "diamond" and thing.area_px < _ON_A_CORNER * thing.box.width * thing.box.height
+    outlines = ("diamond", "square") if standing else (shape,)
+    own = max(thing.look.shapes[name] for name in outlines)
+    return float(np.clip((own - 0.2) / 0.4, 0, 1)) * formed(thing.look, outlines)
 
 
 def _has_look(description: Description) -> bool:

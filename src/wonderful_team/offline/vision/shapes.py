@@ -95,6 +95,14 @@ def _crescent(shift: float) -> Array:
     return image
 
 
+def _pan(handle: float) -> Array:
+    """A disc with a handle so many times its radius long."""
+    image = _canvas()
+    cv2.circle(image, (52, 80), 40, 1, cv2.FILLED)
+    cv2.line(image, (52, 80), (round(86 + 40 * handle), 80), 1, 14)
+    return image
+
+
 @cache
 def ideals() -> tuple[tuple[str, ...], Forms]:
     """Names and polar forms of the drawn ideals."""
@@ -116,6 +124,7 @@ def ideals() -> tuple[tuple[str, ...], Forms]:
         *(("flower", _flower(n, w)) for n in (5, 6, 8) for w in (0.12, 0.2)),
         *(("flower", _lobes(n, s)) for n, s in ((4, 0.45), (5, 0.4), (6, 0.34), (8, 0.27))),
         *(("l-shape", _corner_piece(*size)) for size in ((0.33,), (0.45,), (0.33, 0.67), (0.25,))),
+        *(("pan", _pan(handle)) for handle in (0.9, 1.3)),
         *(("crescent", _crescent(shift)) for shift in (0.35, 0.6)),
     ]
     outlines = [study_outline(image > 0).polar for _, image in drawn]
@@ -123,9 +132,10 @@ def ideals() -> tuple[tuple[str, ...], Forms]:
 
 
 @cache
-def letters() -> tuple[str, Forms]:
-    """Capital letters and their polar forms in several weights; I and O have no outline of their own."""
+def letters() -> tuple[str, Forms, tuple[bool, ...]]:
+    """Capital letters, their polar forms in several weights and which are holed; I and O have no outline of their own."""
     names, forms = "", []
+    holed: list[bool] = []
     font = ImageFont.load_default(120)
     for letter in string.ascii_uppercase:
         if letter in "IO":
@@ -134,8 +144,16 @@ def letters() -> tuple[str, Forms]:
             image = Image.new("L", (_SIDE + 40, _SIDE + 40), 0)
             ImageDraw.Draw(image).text((100, 100), letter, fill=255, font=font, anchor="mm", stroke_width=weight)
             names += letter
-            forms.append(study_outline(np.asarray(image) > 127).polar)
-    return names, Forms.of(np.stack(forms))
+            outline = study_outline(np.asarray(image) > 127)
+            forms.append(outline.polar)
+            holed.append(outline.holes > 0 if weight == 1 else holed[-1])  # thick strokes may close a hole
+    return names, Forms.of(np.stack(forms)), tuple(holed)
+
+
+HOLES_SHOW = 1000.0
+"""A letter of more pixels shows its holes."""
+OTHER_HOLES = 0.85
+"""What is left of the likeness to a letter that has holes where this has none, or the other way round."""
 
 
 def shape_scores(outline: Outline) -> tuple[dict[str, float], dict[str, float]]:
@@ -145,11 +163,13 @@ def shape_scores(outline: Outline) -> tuple[dict[str, float], dict[str, float]]:
     best = dict.fromkeys(SHAPES, 0.0)
     for name, iou in zip(names, found, strict=True):
         best[name] = max(best[name], float(iou))
-    glyphs, letter_forms = letters()
+    glyphs, letter_forms, holed = letters()
     letter_ious, _ = overlaps(outline.polar, letter_forms)
     per_letter: dict[str, float] = {}
-    for glyph, iou in zip(glyphs, letter_ious, strict=True):
-        per_letter[glyph] = max(per_letter.get(glyph, 0.0), float(iou))
+    clear = outline.filled_area > HOLES_SHOW
+    for glyph, iou, hole in zip(glyphs, letter_ious, holed, strict=True):
+        fit = float(iou) * (OTHER_HOLES if clear and hole != (outline.holes > 0) else 1.0)
+        per_letter[glyph] = max(per_letter.get(glyph, 0.0), fit)
     # Convex letters (D, B) resemble plain shapes: a letter must have notches or holes.
     notched = float(np.clip((0.97 - outline.solidity) / 0.05, 0, 1)) if outline.holes == 0 else 1.0
     best["letter"] = max(per_letter.values()) * (0.8 + 0.2 * notched)
@@ -177,8 +197,12 @@ def _adjust(scores: dict[str, float], outline: Outline) -> None:
     for sides, name in ((3, "triangle"), (5, "pentagon"), (6, "hexagon"), (4, "square")):
         strongest = int(np.argmax(wobble[2:9])) + 2
         scores[name] *= 1.0 if strongest == sides or name in ("triangle", "square") else 0.6
+    for name in ("pentagon", "hexagon"):
+        scores[name] *= float(np.clip((outline.solidity - 0.93) / 0.03, 0.3, 1))
     scores["square"] *= float(np.clip((1.28 - outline.aspect) / 0.12, 0, 1))
-    scores["flower"] *= float(np.clip((0.985 - outline.solidity) / 0.03, 0.2, 1))
+    scores["flower"] *= float(np.clip((0.965 - outline.solidity) / 0.025, 0.2, 1)) * float(
+        np.clip((outline.solidity - 0.7) / 0.1, 0, 1)
+    )
     scores["star"] *= float(np.clip((0.95 - outline.solidity) / 0.08, 0.1, 1))
     scores["bowl"] = 0.5 * max(scores["circle"], scores["ring"])
 

@@ -11,7 +11,7 @@ import numpy as np
 from wonderful_team.core.geometry import Box
 from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.offline.vision.outlines import filled
-from wonderful_team.offline.vision.relations import DIRECTIONS, direction_score
+from wonderful_team.offline.vision.relations import DIRECTIONS, direction_score, is_at
 from wonderful_team.offline.vision.things import Match, Scene, Thing, whole_mask
 
 
@@ -21,6 +21,7 @@ def free_spots(
     relations: Sequence[tuple[str, Sequence[Thing]]] = (),
     radius_px: float | None = None,
     inside: Thing | None = None,
+    side: str = "",
     count: int = 8,
 ) -> list[Match]:
     """Free places, best first; [] when there is no room.
@@ -30,6 +31,7 @@ def free_spots(
         relations: What must hold, such as ("left_of", [bowl]).
         radius_px: Room that is needed round the spot [picture px]; the size of a typical thing when None.
         inside: A flat thing that the spot must lie on ("a free place on the red paper").
+        side: A side, corner or the middle of the table that it must lie at.
         count: At most so many.
     """
     zoom = scene.zoom
@@ -42,6 +44,8 @@ def free_spots(
     x, y = (columns + 0.5) * zoom, (rows + 0.5) * zoom
     for relation, things in relations:
         rating = rating * _wish(relation, things, x, y, radius_px, scene)
+    if side:
+        rating = rating * is_at(scene, (x, y), side)
     return _best_spots(rating, radius_px, zoom, count)
 
 

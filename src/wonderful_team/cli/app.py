@@ -35,6 +35,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "probe": ("probe", "Measure a model: its coordinates, its limits, its errors; save a profile."),
     "bench": ("bench", "Compare methods and models on suites, with controls, in a durable store."),
     "report": ("report", "Turn stores into one page, tables and plots."),
+    "paper": ("paper", "The paper's tables for your model, beside the paper's figures."),
     "new": ("new", "Write a world, method, task, model or detector of your own that runs, with a test."),
     "check": ("check", "Check a world, method, task, model or detector of your own."),
 }

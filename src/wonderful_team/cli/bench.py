@@ -20,7 +20,9 @@ from wonderful_team.core.deadline import limited
 from wonderful_team.core.interrupts import as_keyboard, exit_code
 
 if TYPE_CHECKING:
+    from wonderful_team.api.study import Study
     from wonderful_team.evals.monitor import StudyStatus
+    from wonderful_team.evals.study import StudyResult
 
 BUDGET = 5
 QUIET_S = 10.0
@@ -126,17 +128,34 @@ def command(**options: Any) -> int:
 
 
 def _bench(options: dict[str, Any]) -> int:
-    from wonderful_team.api.study import PILOT, Study
-    from wonderful_team.errors import FileNotWrittenError, WonderfulTeamError
+    from wonderful_team.api.study import Study
 
     words = shlex.join(["wonderful-team", *(click.get_current_context().obj or ())])
     study = Study.from_options(**options, command=words)
-    for note in study.notes:
-        click.echo(f"note: {note}", err=True)
     if options["estimate"]:
-        click.echo("a few pilot trials are run where nothing is recorded, on development seeds", err=True)
-        estimate = study.estimate(options["pilot"] or PILOT, paid_pilot=options["pilot"] is not None)
-        return finish("bench", text=estimate.text(), result=estimate.to_json(), as_json=options["as_json"], code=0)
+        return tell_estimate("bench", study, options)
+    ended, code = run_study(study, options)
+    lines = [*study.lines(), *stopped_line(ended), f"report: wonderful-team report {study.store}"]
+    if options["open_page"]:
+        click.launch(study.report(Path(study.store).with_suffix(".html")).resolve().as_uri())
+    return finish("bench", text="\n".join(lines), result=study.to_json(ended), as_json=options["as_json"], code=code)
+
+
+def tell_estimate(command: str, study: Study, options: dict[str, Any]) -> int:
+    """What a study would take."""
+    from wonderful_team.api.study import PILOT
+
+    _tell_notes(study)
+    click.echo("a few pilot trials are run where nothing is recorded, on development seeds", err=True)
+    estimate = study.estimate(options["pilot"] or PILOT, paid_pilot=options["pilot"] is not None)
+    return finish(command, text=estimate.text(), result=estimate.to_json(), as_json=options["as_json"], code=0)
+
+
+def run_study(study: Study, options: dict[str, Any]) -> tuple[StudyResult, int]:
+    """Run what is missing of a study; how it ended, and the exit code."""
+    from wonderful_team.errors import FileNotWrittenError, WonderfulTeamError
+
+    _tell_notes(study)
     try:
         with as_keyboard():
             ended = study.run(report=Teller())
@@ -145,14 +164,17 @@ def _bench(options: dict[str, Any]) -> int:
         with contextlib.suppress(WonderfulTeamError, sqlite3.Error):
             say("\n".join(study.lines()), err=options["as_json"])
         raise error
-    code = 0 if not ended.why else BUDGET if "cap" in ended.why else exit_code()
-    lines = study.lines()
-    if ended.why:
-        lines.append(f"stopped: {ended.why}")
-    lines.append(f"report: wonderful-team report {study.store}")
-    if options["open_page"]:
-        click.launch(study.report(Path(study.store).with_suffix(".html")).resolve().as_uri())
-    return finish("bench", text="\n".join(lines), result=study.to_json(ended), as_json=options["as_json"], code=code)
+    return ended, 0 if not ended.why else BUDGET if "cap" in ended.why else exit_code()
+
+
+def stopped_line(ended: StudyResult) -> list[str]:
+    """Why a study ended before its end."""
+    return [f"stopped: {ended.why}"] if ended.why else []
+
+
+def _tell_notes(study: Study) -> None:
+    for note in study.notes:
+        click.echo(f"note: {note}", err=True)
 
 
 class Teller:

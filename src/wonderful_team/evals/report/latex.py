@@ -19,7 +19,7 @@ def latex_tables(summary: Summary, baseline: str | None = None) -> dict[str, str
     pairs = [pair_words(one) for one in summary.pairs(baseline)]
     if pairs:
         caption = "Differences in points on the same scenes: Newcombe's paired interval, exact McNemar test."
-        tables["pairs"] = to_latex(PAIR_HEAD, [[_tex(word) for word in line] for line in pairs], caption, "ll")
+        tables["pairs"] = to_latex(PAIR_HEAD, [[tex(word) for word in line] for line in pairs], caption, "ll")
     return tables
 
 
@@ -33,7 +33,7 @@ def _conditions(summary: Summary) -> str:
             share, bounds = f"{100 * cell.rate.successes / cell.rate.n:.1f}", f"{100 * low:.1f}--{100 * high:.1f}"
         counts = [str(cell.rate.n), str(cell.count("error")), str(cell.count("unscored"))]
         means = [number(cell.usd_per_trial, 3), number(cell.mean("calls"), 1), number(cell.mean("rounds"), 1)]
-        lines.append([_tex(one.label), share, bounds, *counts, *means])
+        lines.append([tex(one.label), share, bounds, *counts, *means])
     return to_latex(CONDITIONS_HEAD, lines, "Success per method and model with 95 % Wilson intervals.", "l")
 
 
@@ -49,7 +49,7 @@ def _tasks(summary: Summary) -> str:
             columns.append([_figure(figure) for figure in figures])
     world = {task.partition("/")[0] for task in summary.tasks}
     names = [task.partition("/")[2] if len(world) == 1 and "/" in task else task for task in summary.tasks]
-    lines = [[_tex(name), *cells] for name, *cells in zip(names, *columns, strict=True)]
+    lines = [[tex(name), *cells] for name, *cells in zip(names, *columns, strict=True)]
     caption = f"Success per task [%]; in brackets the 95 % Wilson interval and n. Paper: {published()['source']}."
     return to_latex(head, lines, caption, "l")
 
@@ -84,7 +84,7 @@ def to_latex(head: Sequence[str], lines: Sequence[Sequence[str]], caption: str, 
     return (
         "% needs \\usepackage{booktabs}\n"
         "\\begin{table}\n  \\centering\\scriptsize\\setlength{\\tabcolsep}{3pt}\n"
-        f"  \\caption{{{_tex(caption)}}}\n"
+        f"  \\caption{{{tex(caption)}}}\n"
         f"  \\begin{{tabular}}{{{columns}}}\n    \\toprule\n"
         f"    {' & '.join(map(_stacked, head))} \\\\\n    \\midrule\n{body}\n    \\bottomrule\n"
         "  \\end{tabular}\n\\end{table}\n"
@@ -93,7 +93,7 @@ def to_latex(head: Sequence[str], lines: Sequence[Sequence[str]], caption: str, 
 
 def _stacked(label: str) -> str:
     """A label over several lines: its parts would widen the column."""
-    parts = [_tex(part) for part in label.split(" · ")]
+    parts = [tex(part) for part in label.split(" · ")]
     return parts[0] if len(parts) == 1 else r"\shortstack[r]{" + r"\\".join(parts) + "}"
 
 
@@ -114,6 +114,6 @@ _TEX = {
 }
 
 
-def _tex(word: str) -> str:
+def tex(word: str) -> str:
     """Words as LaTeX, FILE.py:NAME without its folders."""
     return "".join(_TEX.get(letter, letter) for letter in short_names(word))

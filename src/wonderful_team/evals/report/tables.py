@@ -219,18 +219,18 @@ def to_markdown(summary: Summary, baseline: str | None = None) -> str:
     warnings = summary.warnings()
     if warnings:
         parts.append("\n".join(f"- warning: {text}" for text in warnings))
-    parts.append(_markdown(HEAD, [cell_words(summary.cell(one)) for one in in_order(summary)]))
-    parts.append(_markdown(*task_table(summary)))
+    parts.append(markdown_table(HEAD, [cell_words(summary.cell(one)) for one in in_order(summary)]))
+    parts.append(markdown_table(*task_table(summary)))
     pairs = [pair_words(one) for one in summary.pairs(baseline)]
     if pairs:
-        parts.append(_markdown(PAIR_HEAD, pairs))
+        parts.append(markdown_table(PAIR_HEAD, pairs))
     for whole, members in summary.variants():
         lines = [variant_words(summary.cell(one), against) for one, against in members]
-        parts.append(_markdown((whole.label, *VARIANT_HEAD[1:]), lines))
-    parts += [_markdown(head, lines) for head, lines in fact_tables(summary)]
+        parts.append(markdown_table((whole.label, *VARIANT_HEAD[1:]), lines))
+    parts += [markdown_table(head, lines) for head, lines in fact_tables(summary)]
     return visible("\n\n".join(parts) + "\n", layout=True)
 
 
-def _markdown(head: Sequence[str], lines: Sequence[Sequence[str]]) -> str:
+def markdown_table(head: Sequence[str], lines: Sequence[Sequence[str]]) -> str:
     rows = [head, ["---"] * len(head), *lines]
     return "\n".join("| " + " | ".join(word.replace("|", "\\|") for word in row) + " |" for row in rows)

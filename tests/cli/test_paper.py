@@ -1,0 +1,101 @@
+"""`paper`: tables by name, what they run, and our figures beside the paper's."""
+
+from __future__ import annotations
+
+import csv
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from wonderful_team import registry
+from wonderful_team.api.study import known_suites
+from wonderful_team.cli.app import run
+from wonderful_team.evals.paper_tables import PAPER_TABLES, filled
+from wonderful_team.registry.worlds import task_names
+
+
+def told(capsys: pytest.CaptureFixture[str], *words: str, code: int = 0) -> dict[str, Any]:
+    assert run(["paper", *words, "--json"]) == code
+    found: dict[str, Any] = json.loads(capsys.readouterr().out)["result"]
+    return found
+
+
+def test_without_a_table_all_are_listed(capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(["paper"]) == 0
+    said = capsys.readouterr().out
+    assert all(name in said for name in PAPER_TABLES)
+    assert "cannot be run yet: it needs" in said
+
+
+def test_every_table_names_methods_and_tasks_that_there_are() -> None:
+    for name, table in PAPER_TABLES.items():
+        assert bool(table.suites) != bool(table.lacks), name
+        assert all(registry.method_row(method) is not None for method in table.methods), name
+        assert all(suite in known_suites() or suite in task_names() for suite in table.suites), name
+        head, lines = filled(table, None)
+        assert lines
+        assert all(len(line) == len(head) for line in lines), name
+
+
+def test_what_follows_from_the_papers_own_table_stands_beside_what_it_prints() -> None:
+    head, lines = filled(PAPER_TABLES["training-based"], None)
+    team = dict(zip(head, lines[0], strict=True))
+    assert team["paper: as printed"].startswith("91.25 %")
+    assert team["paper: as it follows"].startswith("92.08 %")
+    assert team["ours: as printed"] == "not run"
+
+
+def test_a_table_runs_and_stands_beside_the_papers(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    words = ("toy", "--model", "simulated:perfect", "--seeds", "1000:1003", "--folder", str(tmp_path), "--jobs", "1")
+    found = told(capsys, *words)
+    table = found["tables"]["toy"]
+    line = dict(zip(table["head"], table["lines"][0], strict=True))
+    assert line["ours: point:axes"].startswith("100 % (n = 3;")
+    assert "[SIMULATED]" in line["ours: team:paper"]
+    assert line["paper: gpt-4o"] == "33 % (n not stated)"
+    page = Path(found["page"]).read_text(encoding="utf-8")
+    assert "SIMULATED" in page
+    assert "default-src 'none'" in page
+    assert (tmp_path / "toy.html").is_file()
+    rows = list(csv.reader((tmp_path / "toy-table.csv").read_text(encoding="utf-8").splitlines()))
+    assert rows[0] == table["head"]
+    assert r"\begin{tabular}" in (tmp_path / "toy-table.tex").read_text(encoding="utf-8")
+    # The same command goes on where it stopped: nothing is run again.
+    assert run(["paper", *words]) == 0
+    assert "within 3 radii" in capsys.readouterr().out
+
+
+def test_the_confusion_matrix_has_a_line_for_every_kind_and_verdict(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    found = told(
+        capsys, "boxes", "--model", "simulated:perfect", "--seeds", "1000:1001", "--folder", str(tmp_path), "--jobs", "1"
+    )  # fmt: skip
+    table = found["tables"]["boxes"]
+    lines = {line[0]: dict(zip(table["head"], line, strict=True)) for line in table["lines"]}
+    assert len(lines) == 12
+    assert lines["around: reject"]["ours: team:paper"].startswith("100 %")
+    assert lines["slightly off: accept"]["ours: point"].startswith("0 %")
+    assert lines["perfect: accept"]["paper: gpt-4-turbo"].startswith("72 % (n = 25;")
+
+
+def test_a_table_that_cannot_be_run_shows_the_papers_figures_and_what_is_missing(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    assert run(["paper", "moka", "--folder", str(tmp_path)]) == 0
+    said = capsys.readouterr().out
+    assert "Cannot be run yet: it needs the methods tg and moka." in said
+    assert "40 %" in said
+
+
+def test_an_estimate_runs_nothing(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    assert run(["paper", "toy", "--estimate", "--pilot", "1", "--seeds", "1000:1002", "--folder", str(tmp_path)]) == 0
+    assert not (tmp_path / "toy-table.html").exists()
+    assert capsys.readouterr().out.strip()
+
+
+def test_an_unknown_table_is_told_the_known_ones(capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(["paper", "tabel"]) == 2
+    assert "vima17" in capsys.readouterr().err

@@ -116,3 +116,21 @@ def test_what_anybody_prints_is_redacted(monkeypatch, capsys):
 def test_pictures_inside_of_a_page_are_left_alone():
     page = f'<img src="data:image/png;base64,AAAA+AIza{"B" * 40}"> AIza{"B" * 40}'
     assert redact(page) == f'<img src="data:image/png;base64,AAAA+AIza{"B" * 40}"> [redacted]'
+
+
+def test_of_two_keys_that_overlap_no_half_is_left(monkeypatch):
+    monkeypatch.setattr(redaction, "_used", {"abcdef-ghi", "ghi-jklmnopqrst"})
+    assert redact("x abcdef-ghi-jklmnopqrst y").replace(HIDDEN, "").strip("x y-") in ("", "abcdef")
+    assert "jklm" not in redact("abcdef-ghi-jklmnopqrst")
+
+
+def test_another_key_does_not_compile_those_before_it_anew(monkeypatch):
+    """A process that serves many users has a key for each."""
+    monkeypatch.setattr(redaction, "_used", set())
+    for number in range(20):
+        keep_secret(f"a-key-of-user-{number:04d}")
+    redact("some words that are long enough")
+    before = redaction._finder.cache_info().misses
+    keep_secret("a-key-of-another-user")
+    assert redact("it is a-key-of-another-user, not a-key-of-user-0007") == f"it is {HIDDEN}, not {HIDDEN}"
+    assert redaction._finder.cache_info().misses == before + 1

@@ -147,40 +147,71 @@ def _known() -> _Known:
     return _known_of(frozenset(_used), frozenset(value for value in set_now if len(value) >= SHORTEST_UNUSED))
 
 
-@functools.lru_cache(maxsize=16)
+@functools.lru_cache(maxsize=4)
 def _known_of(used: frozenset[str], in_environment: frozenset[str]) -> _Known:
     # A variable such as SSH_KEY may name a file, which is no secret.
-    return _Known(used | {value for value in in_environment if not os.path.exists(value)})
+    return _Known({*used, *(value for value in in_environment if not os.path.exists(value))})
 
 
 class _Known:
     """Finds these secrets in every coding and case; the longest first, so that a shorter one leaves no half of another."""
 
-    def __init__(self, secrets: frozenset[str]) -> None:
-        ordered = sorted(secrets, key=lambda secret: (-len(secret), secret))
-        self._whole = tuple(form for secret in ordered for form in _whole_forms(secret))
-        # Base64 may be escaped once more where it holds more than letters and digits.
-        escaped = [*ordered, *(form for form in self._whole if not form.isalnum() and form not in secrets)]
-        first = "".join(re.escape(letter) for letter in sorted({form[0] for form in escaped}))
-        coded = "|".join("".join(map(_character, form)) for form in escaped)
-        # The look ahead makes it ten times as fast.
-        self._coded = re.compile(rf"(?=[{first}\\%&])(?:{coded})", re.IGNORECASE) if ordered else None
-        self._plain = re.compile("|".join(map(re.escape, self._whole)), re.IGNORECASE)
-        self._lower = tuple(dict.fromkeys(form.lower() for form in self._whole))
+    def __init__(self, secrets: set[str]) -> None:
+        # Each is compiled by itself and once: a process that uses a key for each of its users does not compile all of them anew
+        # with every one.
+        self._finders = tuple(_finder(secret) for secret in sorted(secrets, key=lambda secret: (-len(secret), secret)))
+        self._shortest = min((finder.shortest for finder in self._finders), default=0)
 
     @property
     def empty(self) -> bool:
-        return self._coded is None
+        return not self._finders
 
     def hide(self, text: str) -> str:
-        if self._coded is None:
+        if len(text) < self._shortest or not self._finders:
             return text
         if _ESCAPES.search(text):
             # A picture inside of a page holds no escapes.
             pieces = _EMBEDDED.split(text)
-            text = "".join(piece if k % 2 else self._coded.sub(HIDDEN, piece) for k, piece in enumerate(pieces))
+            text = "".join(piece if k % 2 else self._without_coded(piece) for k, piece in enumerate(pieces))
         lower = text.lower()
-        return self._plain.sub(HIDDEN, text) if any(form in lower for form in self._lower) else text
+        for finder in self._finders:
+            if any(form in lower for form in finder.lower):
+                text = finder.plain.sub(HIDDEN, text)
+                lower = text.lower()
+        return text
+
+    def _without_coded(self, piece: str) -> str:
+        for finder in self._finders:
+            piece = finder.coded.sub(HIDDEN, piece)
+        return piece
+
+
+class _Finder:
+    """Finds one secret.
+
+    Attributes:
+        lower: Its whole forms in lower case: plain, in hex, in base64.
+        plain: Finds these in any case.
+        coded: Finds it where letters of it are escaped.
+        shortest: Length of its shortest form.
+    """
+
+    def __init__(self, secret: str) -> None:
+        whole = _whole_forms(secret)
+        # Base64 may be escaped once more where it holds more than letters and digits.
+        escaped = [secret, *(form for form in whole if not form.isalnum() and form != secret)]
+        first = "".join(re.escape(letter) for letter in sorted({form[0] for form in escaped}))
+        forms = "|".join("".join(map(_character, form)) for form in escaped)
+        # The look ahead makes it ten times as fast.
+        self.coded = re.compile(rf"(?=[{first}\\%&])(?:{forms})", re.IGNORECASE)
+        self.plain = re.compile("|".join(map(re.escape, whole)), re.IGNORECASE)
+        self.lower = tuple(dict.fromkeys(form.lower() for form in whole))
+        self.shortest = min(map(len, whole))
+
+
+@functools.lru_cache(maxsize=8192)
+def _finder(secret: str) -> _Finder:
+    return _Finder(secret)
 
 
 def _whole_forms(secret: str) -> list[str]:

@@ -55,7 +55,9 @@ def desk(monkeypatch: pytest.MonkeyPatch, pace: dict[str, float]) -> AgentSessio
 
     monkeypatch.setattr(Provider, "answer", answer)
     monkeypatch.setattr(
-        making, "Settings", lambda thinking, most, *_: made(thinking, most, pace["deadline_s"], 3, QUICK_S)
+        making,
+        "Settings",
+        lambda thinking, most, *_, **more: made(thinking, most, pace["deadline_s"], 3, QUICK_S, **more),
     )
     return desk
 

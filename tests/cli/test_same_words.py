@@ -18,7 +18,7 @@ from wonderful_team.runtime.read_plan_checks import read_plan_checks
 
 DESK = str(Path(__file__).parents[2] / "examples" / "desk.png")
 UNKNOWN, SAID = "put the flurb onto the wurgle", "I do not know: flurb, wurgle"
-UNCLEAR = "rotate the block by 90 degrees"
+UNCLEAR = "rotate the letter by 90 degrees"
 
 
 @pytest.mark.parametrize("command", [["plan", DESK], ["run", "tabletop/rotate"]], ids=["plan", "run"])
@@ -45,12 +45,12 @@ def test_what_is_not_understood_is_called_so_everywhere(
 def test_a_run_asks_what_is_meant_as_a_plan_does(runs_folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert run(["run", "tabletop/rotate", UNCLEAR]) == 7
     first, *choices, page = capsys.readouterr().out.splitlines()
-    assert first == "NEEDS CLARIFICATION  Which one is meant by 'the block'? 2 things fit equally well."
-    assert choices == ["  choice: the yellow block (centre)", "  choice: the yellow dotted block (right)"]
+    assert first == "NEEDS CLARIFICATION  Which one is meant by 'the letter'? 2 things fit equally well."
+    assert choices == ["  choice: the yellow dotted letter (right)", "  choice: the yellow letter (centre)"]
     assert page.startswith("page: ")
     html = (runs_folder / "latest" / "page.html").read_text(encoding="utf-8")
     head = html.partition("<nav")[0]
-    assert head.count("the yellow dotted block (right)") == 1
+    assert head.count("the yellow dotted letter (right)") == 1
 
 
 def test_a_trial_keeps_its_outcome_for_those_who_count() -> None:

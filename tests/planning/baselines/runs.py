@@ -14,6 +14,7 @@ from wonderful_team.core.values import NO_WORKSPACE
 from wonderful_team.registry.methods import METHODS
 
 RIVALS = [name for name, row in METHODS.items() if row.team is None]
+PLANNERS = [name for name in RIVALS if METHODS[name].plans]
 ON_PICTURES = [name for name in RIVALS if METHODS[name].plans and not METHODS[name].privileged and ":text" not in name]
 """Rivals that plan from pictures, and from no more than they show."""
 

@@ -51,7 +51,9 @@ def session(monkeypatch: pytest.MonkeyPatch) -> AgentSession:
             session.take(request)
 
     monkeypatch.setattr(Provider, "answer", answer)
-    monkeypatch.setattr(making, "Settings", lambda thinking, most, *_: made(thinking, most, 20.0, 2, 0.01))
+    monkeypatch.setattr(
+        making, "Settings", lambda thinking, most, *_, **more: made(thinking, most, 20.0, 2, 0.01, **more)
+    )
     return session
 
 

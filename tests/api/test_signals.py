@@ -19,6 +19,16 @@ from wonderful_team.cli import app
 from wonderful_team.core.interrupts import Interrupted, ends_on_signal, held
 
 PATIENCE_S = 60
+
+
+@pytest.fixture(autouse=True)
+def _hearing() -> Iterator[None]:
+    """Under `nohup` SIGHUP is ignored, and by every process that the tests start too."""
+    before = signal.signal(signal.SIGHUP, signal.SIG_DFL)
+    yield
+    signal.signal(signal.SIGHUP, before)
+
+
 OWN = '''
 """A robot whose motion takes long, and that writes down what is done to it."""
 import sys

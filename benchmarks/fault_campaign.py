@@ -51,6 +51,8 @@ NO_ANSWER = (
     "nan",
 )  # fmt: skip
 """Answers that are sent back; three in a row for one question end the plan with code 1."""
+LEARNT = ("too_heavy", "picture_too_heavy")
+"""Not drawn: a provider that was told so sends lighter pictures from then on, and the servers know a request by its pixels."""
 HARMLESS = ("fenced", "thinking_before", "double_encoded", "quoted_number", "parroted", "no_usage", "thinking_field")
 TOLERANCE_PX = 0.6
 
@@ -145,10 +147,10 @@ def draw_blow(rng: random.Random, session: AgentSession) -> Blow:
     passing = (
         *HARMLESS,
         *NO_ANSWER,
-        *(n for n in SERVER if n not in FINAL_CODES),
+        *(n for n in SERVER if n not in (*FINAL_CODES, *LEARNT)),
         *(n for n in LINE if n not in STALLS),
     )
-    everything = tuple(name for name in (*ANSWER, *SERVER, *LINE) if name not in STALLS)
+    everything = tuple(name for name in (*ANSWER, *SERVER, *LINE) if name not in (*STALLS, *LEARNT))
     dice = rng.random()
     if dice < 0.25:
         return Blow(rng, 0.0, (), rng.choice(everything), rng.randrange(8), session)

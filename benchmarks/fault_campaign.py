@@ -51,8 +51,8 @@ NO_ANSWER = (
     "nan",
 )  # fmt: skip
 """Answers that are sent back; three in a row for one question end the plan with code 1."""
-LEARNT = ("too_heavy", "picture_too_heavy")
-"""Not drawn: a provider that was told so sends lighter pictures from then on, and the servers know a request by its pixels."""
+LEARNT = ("too_heavy", "picture_too_heavy", "context_too_long")
+"""Not drawn: a provider that was told so sends lighter pictures from then on, which the servers do not know by their pixels, or refuses early."""
 HARMLESS = ("fenced", "thinking_before", "double_encoded", "quoted_number", "parroted", "no_usage", "thinking_field")
 TOLERANCE_PX = 0.6
 

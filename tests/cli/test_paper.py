@@ -58,7 +58,7 @@ def test_a_table_runs_and_stands_beside_the_papers(capsys: pytest.CaptureFixture
     page = Path(found["page"]).read_text(encoding="utf-8")
     assert "SIMULATED" in page
     assert "default-src 'none'" in page
-    assert (tmp_path / "toy.html").is_file()
+    assert (tmp_path / "paper.html").is_file()
     rows = list(csv.reader((tmp_path / "toy-table.csv").read_text(encoding="utf-8").splitlines()))
     assert rows[0] == table["head"]
     assert r"\begin{tabular}" in (tmp_path / "toy-table.tex").read_text(encoding="utf-8")
@@ -79,6 +79,15 @@ def test_the_confusion_matrix_has_a_line_for_every_kind_and_verdict(
     assert lines["around: reject"]["ours: team:paper"].startswith("100 %")
     assert lines["slightly off: accept"]["ours: point"].startswith("0 %")
     assert lines["perfect: accept"]["paper: gpt-4-turbo"].startswith("72 % (n = 25;")
+
+
+def test_a_cap_holds_for_all_tables_together(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    words = ("--model", "simulated:perfect", "--no-control", "all", "--folder", str(tmp_path), "--jobs", "1")
+    boxes = (*words, "--seeds", "1000:1001")
+    assert told(capsys, "boxes", *boxes)["stopped"] == ""
+    # Eight boxes were judged, a call each: for the next table that leaves nothing.
+    stopped = told(capsys, "toy", *words, "--seeds", "1000:1001", "--max-calls", "8", code=5)["stopped"]
+    assert "cap of 8 calls" in stopped
 
 
 def test_a_table_that_cannot_be_run_shows_the_papers_figures_and_what_is_missing(

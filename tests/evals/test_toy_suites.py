@@ -9,7 +9,9 @@ from typing import Any
 import pytest
 
 from wonderful_team.cli.app import run
-from wonderful_team.evals.toy import score_point, score_verdict
+from wonderful_team.evals.toy import BOX_KINDS, WORDS, score_point, score_verdict
+from wonderful_team.lab.toy import BOX_KINDS as DRAWN
+from wonderful_team.lab.toy import RIGHT
 
 
 def bench(capsys: pytest.CaptureFixture[str], store: Path, *words: str) -> dict[str, Any]:
@@ -55,6 +57,21 @@ def test_pointing_compares_one_question_with_the_grounding_team(
     said = capsys.readouterr().out
     assert "within 3 radii" in said
     assert "error in round 0 [radii]" in said
+
+
+def test_thorough_asks_more_on_the_toy_table_too(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    words = ("pointing", "--seeds", "1000:1004", "--model", "simulated:paper-gpt-4-turbo", "--no-control", "all")
+    calls = [
+        bench(capsys, tmp_path / f"{len(more)}.db", *words, *more)["conditions"][0]["mean_calls"]
+        for more in ((), ("--thorough",))
+    ]
+    assert calls[1] > calls[0]
+
+
+def test_the_kinds_of_boxes_are_those_that_the_laboratory_draws() -> None:
+    assert BOX_KINDS == DRAWN
+    assert WORDS == ("accept", "revise", "reject")
+    assert set(RIGHT.values()) == set(WORDS)
 
 
 def test_boxcheck_gives_the_confusion_matrix_of_the_checker_and_of_one_look(

@@ -5,19 +5,19 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-from typing import Any
+from typing import Any, cast
 
-from wonderful_team.api.method import Method, team_config
+from wonderful_team.api.method import team_config
 from wonderful_team.api.observation import Observation
 from wonderful_team.api.trial_setup import UsageCounter, fingerprint, prepared
 from wonderful_team.core.geometry import Box
-from wonderful_team.core.protocols import Detector
+from wonderful_team.core.protocols import World
 from wonderful_team.core.values import GroundedTarget, Instruction, Target, Usage
+from wonderful_team.core.values import Observation as SeenObservation
 from wonderful_team.errors import BudgetReached, ConfigError, ModelUnavailableError, WonderfulTeamError
-from wonderful_team.evals.photos import Located, PhotoScene, read_photos, score_photo
+from wonderful_team.evals.photos import Located, read_photos, score_photo
 from wonderful_team.evals.trials import RunSettings, TrialRow, TrialSpec
 from wonderful_team.models.client import ModelClient
-from wonderful_team.planning import TeamConfig
 from wonderful_team.planning.ground_only import find
 from wonderful_team.registry.role_models import choice_of
 from wonderful_team.runtime.loop import Caller
@@ -29,65 +29,123 @@ def run_photo(spec: TrialSpec, settings: RunSettings) -> TrialRow:
     Raises:
         ConfigError: An own method without `locate(observation, words)`.
     """
-    started = time.monotonic()
     scene = read_photos(spec.task)[spec.seed]
     words = [asked.words for asked in scene.asked]
-    seen, count = Observation.from_files(scene.picture), UsageCounter()
-    method = prepared(spec, settings, choice_of(spec.condition.model))
-    config = team_config(spec.condition.method, settings.prompts, thorough=bool(settings.extra.get("thorough")))
-    by_role = count.by_role
-    with Caller() as caller:
-        if config is None:
-            result = _judged(scene, lambda: _by_own(caller, method, count, seen, words))
-        else:
-            client = method.client(count)
-            detector = method.make_detector() if config.grounding == "detector" else None
-            result = _judged(scene, lambda: _by_team(caller, client, config, seen, words, detector))
-            by_role = client.budget.by_role
-    usage = sum(by_role.values(), Usage())
-    return replace(
-        result,
-        calls=usage.calls,
-        tokens=usage.tokens,
-        pictures=usage.pictures,
-        usd=usage.usd,
-        seconds=time.monotonic() - started,
-        rounds=count.rounds,
-        provenance=tuple(sorted(count.provenance)),
-        instruction="; ".join(words),
-        versions=fingerprint(spec, settings.extra),
-    )
+    seen = Observation.from_files(scene.picture)
+    with Looking(spec, settings, words) as looking:
+        if looking.config is None:
+            return looking.row(lambda: score_photo(scene, looking.by_own(seen)))
+        return looking.row(lambda: score_photo(scene, [_of_team(item) for item in looking.by_team(seen)]))
 
 
-def _judged(scene: PhotoScene, ask: Callable[[], list[Located]]) -> TrialRow:
-    """Where things were said to be, scored; what ends a method without an answer is its failure, at the stage it names.
+class Looking:
+    """A method at work on things that are only looked at: it says where they are, and nothing moves.
 
-    Raises:
-        ConfigError: Wrong use.
-        ModelUnavailableError: The provider did not answer: an error, not the method's failure.
+    Args:
+        words: What is asked for.
+        world: Whose truth a simulated model answers from.
+
+    Attributes:
+        config: How the team works; None for every other method.
     """
-    try:
-        return score_photo(scene, ask())
-    except (ConfigError, ModelUnavailableError):
-        raise
-    except WonderfulTeamError as error:
-        return TrialRow("failure", error.stage or "grounding", str(error))
 
+    def __init__(
+        self, spec: TrialSpec, settings: RunSettings, words: Sequence[str], world: World | None = None
+    ) -> None:
+        self._started = time.monotonic()
+        self._spec, self._settings, self._words = spec, settings, list(words)
+        self._count = UsageCounter()
+        self.method = prepared(spec, settings, choice_of(spec.condition.model), world)
+        thorough = bool(settings.extra.get("thorough"))
+        self.config = team_config(spec.condition.method, settings.prompts, thorough=thorough)
+        self._client = None if self.config is None else self.method.client(self._count)
+        self._caller = Caller()
 
-def _by_team(
-    caller: Caller,
-    client: ModelClient,
-    config: TeamConfig,
-    seen: Observation,
-    words: Sequence[str],
-    detector: Detector | None,
-) -> list[Located]:
-    targets = [Target(f"T{number}", "object", text) for number, text in enumerate(words, start=1)]
-    asked = Instruction("Find: " + "; ".join(words))
-    plan = caller.wait_for(find(client, config, seen, asked, targets, detector))
-    if plan.status == "budget":
-        raise BudgetReached(plan.message)
-    return [_of_team(plan.grounded.get(target.id)) for target in targets]
+    def __enter__(self) -> Looking:
+        self._caller.__enter__()
+        return self
+
+    def __exit__(self, *about: Any) -> None:
+        self._caller.__exit__(*about)
+
+    def wait_for(self, result: Any) -> Any:
+        """The result of a plain or an async call."""
+        return self._caller.wait_for(result)
+
+    @property
+    def client(self) -> ModelClient:
+        """Where the team asks its models."""
+        assert self._client is not None  # asked for where there is a team
+        return self._client
+
+    def by_team(self, seen: SeenObservation) -> list[GroundedTarget | None]:
+        """What the team says of each thing.
+
+        Raises:
+            BudgetReached: A cap was met.
+        """
+        assert self.config is not None
+        targets = [Target(f"T{number}", "object", text) for number, text in enumerate(self._words, start=1)]
+        asked = Instruction("Find: " + "; ".join(self._words))
+        detector = self.method.make_detector() if self.config.grounding == "detector" else None
+        plan = self.wait_for(find(self.client, self.config, seen, asked, targets, detector))
+        if plan.status == "budget":
+            raise BudgetReached(plan.message)
+        return [plan.grounded.get(target.id) for target in targets]
+
+    def by_own(self, seen: SeenObservation) -> list[Located]:
+        """What a rival or a user's method says of each thing.
+
+        Raises:
+            ConfigError: It has no `locate(observation, words)`, or answers with something else.
+        """
+        forms = "for each a box (x0, y0, x1, y1), a point (x, y) in pixels of the photo, or None"
+        answers = list(self.wait_for(self.offered("locate(observation, words)", forms)(seen, list(self._words))))
+        if len(answers) != len(self._words):
+            raise ConfigError(
+                f"method {self.method.name!r}: locate gave {len(answers)} answers to {len(self._words)} descriptions"
+            )
+        return [_located(answer, self.method.name) for answer in answers]
+
+    def offered(self, form: str, gives: str) -> Callable[..., Any]:
+        """What a rival or a user's method has for such a question.
+
+        Raises:
+            ConfigError: It has none.
+        """
+        policy = self.method.policy(self._count)
+        found = getattr(policy, form.partition("(")[0], None)
+        if not callable(found):
+            raise ConfigError(f"method {self.method.name!r} needs {form}: {gives}")
+        return cast(Callable[..., Any], found)
+
+    def row(self, judge: Callable[[], TrialRow]) -> TrialRow:
+        """The trial; what ends a method without an answer is its failure, at the stage it names.
+
+        Raises:
+            ConfigError: Wrong use.
+            ModelUnavailableError: The provider did not answer: an error, not the method's failure.
+        """
+        try:
+            result = judge()
+        except (ConfigError, ModelUnavailableError):
+            raise
+        except WonderfulTeamError as error:
+            result = TrialRow("failure", error.stage or "grounding", str(error))
+        by_role = self._count.by_role if self._client is None else self._client.budget.by_role
+        usage = sum(by_role.values(), Usage())
+        return replace(
+            result,
+            calls=usage.calls,
+            tokens=usage.tokens,
+            pictures=usage.pictures,
+            usd=usage.usd,
+            seconds=time.monotonic() - self._started,
+            rounds=self._count.rounds,
+            provenance=tuple(sorted(self._count.provenance)),
+            instruction="; ".join(self._words),
+            versions=fingerprint(self._spec, self._settings.extra),
+        )
 
 
 def _of_team(item: GroundedTarget | None) -> Located:
@@ -96,22 +154,7 @@ def _of_team(item: GroundedTarget | None) -> Located:
     return Located(item.box, next(iter(item.points.values()), None))
 
 
-def _by_own(
-    caller: Caller, method: Method, count: UsageCounter, seen: Observation, words: Sequence[str]
-) -> list[Located]:
-    policy: Any = method.policy(count)
-    if not callable(getattr(policy, "locate", None)):
-        raise ConfigError(
-            f"method {method.name!r} needs locate(observation, words): for each a box (x0, y0, x1, y1), a point (x, y) "
-            "in pixels of the photo, or None"
-        )
-    answers = list(caller.wait_for(policy.locate(seen, list(words))))
-    if len(answers) != len(words):
-        raise ConfigError(f"method {method.name!r}: locate gave {len(answers)} answers to {len(words)} descriptions")
-    return [located(answer, method.name) for answer in answers]
-
-
-def located(answer: Any, name: str) -> Located:
+def _located(answer: Any, name: str) -> Located:
     if answer is None:
         return Located()
     numbers = tuple(float(value) for value in (answer.as_tuple if isinstance(answer, Box) else answer))

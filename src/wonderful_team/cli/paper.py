@@ -62,12 +62,13 @@ def _run(names: list[str], folder: Path, open_page: bool, options: dict[str, Any
 
     words = shlex.join(["wonderful-team", *(click.get_current_context().obj or ())])
     parts, code, stopped = [], 0, ""
+    # One store for all: a cap holds for all of them together, and trials that two tables need are run once.
+    store = folder / "paper.db"
+    make_private_folder(folder)
     for name in names:
         table = PAPER_TABLES[name]
         summary, report = None, None
         if table.suites and not stopped:
-            store = folder / f"{name}.db"
-            make_private_folder(store.parent)
             study = Study.from_options(**_options(table, options), store=store, command=words)
             if options["estimate"]:
                 code = bench.tell_estimate("paper", study, options)

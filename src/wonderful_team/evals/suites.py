@@ -77,7 +77,7 @@ def all_suites(known_tasks: Sequence[str], partitions: Mapping[str, Sequence[str
             "fruit", fruit, IMPLICIT_GOAL, "sort fruits by colour: the paper's implicit goal, 4 variations"
         )
     suites["pointing"] = Suite(
-        "pointing", (POINTING,), Protocol("toy table: 100 pictures, one question each", 100, 0),
+        "pointing", (POINTING,), Protocol("toy table: one question a picture (the paper states no number; 100 here)", 100, 0),
         "point at a circle on the toy table: the paper's Appendix F.1",
     )  # fmt: skip
     suites["boxcheck"] = Suite(

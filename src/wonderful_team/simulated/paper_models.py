@@ -1,7 +1,7 @@
 """Error models of the three models that the paper measured: what it measured, and stated guesses for what it did not.
 
-Source: Wang, Shen & Stadie 2024, arXiv:2407.19094, Appendix F: a point within 1, 3 and 4 radii of a circle of 50 px (100 tries a
-model), and verdicts on 25 boxes of each of four kinds. The paper gives no size for its toy pictures: 1,000 x 1,000 px are assumed
+Source: Wang, Shen & Stadie 2024, arXiv:2407.19094, Appendix F: the share of points within 1, 3 and 4 radii of a circle of 50 px (of
+how many it does not say), and verdicts on 25 boxes of each of four kinds. The paper gives no size for its toy pictures: 1,000 x 1,000 px are assumed
 (`RADIUS`), and points beyond 4 radii are spread to `FARTHEST_RADII`. `GUESSED` is what the paper does not measure; it is the same for all
 three, so that they differ by what was measured alone. One profile serves every task: nothing is fitted to a table of successes.
 """

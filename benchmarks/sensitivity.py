@@ -21,15 +21,11 @@ from typing import Any
 
 from wonderful_team import registry
 from wonderful_team.core.intervals import wilson_interval
+from wonderful_team.evals.paper_tables import ABLATED
 from wonderful_team.planning import TeamConfig, TeamPolicy
 from wonderful_team.runtime import rollout
 from wonderful_team.simulated import PROFILES, SimulatedModel
 
-TASKS = (
-    "visual_manipulation", "scene_understanding", "rotate", "novel_adj", "novel_noun", "sweep_without_exceeding", "same_shape",
-    "manipulate_old_neighbor", "pick_in_order_then_restore",
-)  # fmt: skip
-"""The tasks of the paper's ablations: 1, 2, 3, 6, 7, 12, 15, 16 and 17."""
 RATES: dict[str, tuple[float, ...]] = {
     "wrong_plan": (0.0, 0.2, 0.4, 0.8),
     "overlooks": (0.0, 0.3, 0.6, 1.0),
@@ -102,7 +98,7 @@ def main() -> None:
     parser.add_argument("--profile", default="paper-gpt-4o", choices=sorted(PROFILES))
     parser.add_argument("--method", default="team", choices=("team", "team:paper"))
     parser.add_argument("--rates", default=",".join(RATES), help=f"with commas, of {', '.join(RATES)}")
-    parser.add_argument("--tasks", default=",".join(TASKS), help="with commas")
+    parser.add_argument("--tasks", default=",".join(ABLATED), help="with commas")
     parser.add_argument("--first", type=int, default=730_000, help="the first seed")
     parser.add_argument("--seeds", type=int, default=3)
     parser.add_argument("--jobs", type=int, default=multiprocessing.cpu_count())

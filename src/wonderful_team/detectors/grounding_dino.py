@@ -46,15 +46,9 @@ class GroundingDinoDetector:
         self._text_threshold = checked_share("text_threshold", text_threshold)
         self._loaded = load(weights, "detector 'groundingdino'", ("grounding-dino",), "GroundingDinoForObjectDetection")
         self._lock = threading.Lock()
-        self.setting: Mapping[str, str] = {
-            "model": weights.model,
-            "revision": weights.revision,
-            "commit": self._loaded.commit,
-            "device": self._loaded.device,
-            "dtype": weights.dtype,
-            "box_threshold": f"{self._box_threshold:g}",
-            "text_threshold": f"{self._text_threshold:g}",
-        }
+        self.setting: Mapping[str, str] = self._loaded.setting(
+            weights, box_threshold=self._box_threshold, text_threshold=self._text_threshold
+        )
 
     def detect(self, rgb: Array, words: Sequence[str]) -> list[Detection]:
         """All boxes above the thresholds; the model is asked once for each description.

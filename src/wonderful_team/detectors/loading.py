@@ -62,6 +62,17 @@ class Loaded:
     device: str
     commit: str
 
+    def setting(self, weights: Weights, **thresholds: float) -> dict[str, str]:
+        """What a record says of a detector with these weights."""
+        return {
+            "model": weights.model,
+            "revision": weights.revision,
+            "commit": self.commit,
+            "device": self.device,
+            "dtype": weights.dtype,
+            **{name: f"{value:g}" for name, value in thresholds.items()},
+        }
+
 
 def load(weights: Weights, feature: str, types: Sequence[str], model_class: str) -> Loaded:
     """A model of `transformers` with its processor, ready to be asked.

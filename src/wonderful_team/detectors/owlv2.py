@@ -42,14 +42,7 @@ class Owlv2Detector:
         self._threshold = checked_share("threshold", threshold)
         self._loaded = load(weights, "detector 'owlv2'", TYPES, "AutoModelForZeroShotObjectDetection")
         self._lock = threading.Lock()
-        self.setting: Mapping[str, str] = {
-            "model": weights.model,
-            "revision": weights.revision,
-            "commit": self._loaded.commit,
-            "device": self._loaded.device,
-            "dtype": weights.dtype,
-            "threshold": f"{self._threshold:g}",
-        }
+        self.setting: Mapping[str, str] = self._loaded.setting(weights, threshold=self._threshold)
 
     def detect(self, rgb: Array, words: Sequence[str]) -> list[Detection]:
         """All boxes with at least the threshold's score.

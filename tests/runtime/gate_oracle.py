@@ -57,11 +57,11 @@ def _pick_place(
     stated = -math.radians(getattr(step, "rotate_deg", 0.0))
     if abs(math.remainder(action.yaw_rad - stated, 2 * math.pi)) > 1e-4:
         found.append("turns other than the step says")
-    # At an edge it may be one block or another: the one that fits is taken.
+    # At an edge it may be one block or another: of those that fit, and of what is surely below, the tool meets the highest first.
     over = [b for b in blocks if b.outline.buffer(0.008).contains(Point(pick[:2]))]
     sure = [b for b in over if b.outline.buffer(-0.008).contains(Point(pick[:2]))]
     unsure = [b for b in over if b not in sure and abs(pick[2] - b.top) <= 0.025]
-    held = max(unsure or sure, key=lambda b: b.top) if unsure or sure else None
+    held = max([*unsure, *sure], key=lambda b: b.top, default=None)
     if held is not None and abs(pick[2] - held.top) > 0.025:
         found.append(f"picks at {pick[2]:.3f} m, the top is at {held.top:.3f} m{SEEN}")
     if not over and pick[2] > 0.025 and not any(b.x > PUSHED_AWAY_M / 2 for b in blocks):

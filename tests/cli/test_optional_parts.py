@@ -30,6 +30,7 @@ def test_nothing_says_to_install_the_package_by_name_alone() -> None:
         ("vendors", ["pydantic-ai-slim"]),
         ("ray", ["ray"]),
         ("gym", ["gymnasium"]),
+        ("ocr", ["onnxruntime", "rapidocr"]),
         ("detectors", ["torch", "transformers"]),
     ],
 )

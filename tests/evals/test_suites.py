@@ -40,6 +40,9 @@ def test_suites_grow_with_the_registered_tasks_and_say_what_is_missing() -> None
     assert len(whole["vima17"].tasks) == 17
     assert whole["vima17"].note == ""
     assert len(suites["fruit"].tasks) == 2
+    assert "companions" not in suites
+    goals = [f"tabletop/{folder}/one" for folder in ("superhero_companions", "fruit_price_ranking")]
+    assert all_suites([*KNOWN, *goals])["implicit"].tasks == (*KNOWN[2:], *goals)
 
 
 def test_the_papers_protocols() -> None:

@@ -92,6 +92,7 @@ EXTRAS = {
     "report": "pandas matplotlib",
     "gym": "gymnasium",
     "ray": "ray",
+    "ocr": "rapidocr onnxruntime",
     "detectors": "torch transformers",
 }
 """Optional parts, and the modules that each brings."""

@@ -9,7 +9,6 @@ from pathlib import Path
 from typing import Any
 
 from wonderful_team.core.intervals import wilson_interval
-from wonderful_team.evals.suites import FRUIT_FOLDER
 from wonderful_team.evals.trials import Condition
 
 COLUMNS = {
@@ -63,8 +62,9 @@ def paper_figure(task: str, method: str) -> PaperFigure | None:
     if column is None:
         return None
     table, key = ("settings", name) if column.startswith("s") else ("vima17", name)
-    if name.startswith(FRUIT_FOLDER):
-        table, key = "fruit", "fruit_placement"
+    folder = name.partition("/")[0]
+    if folder in published()["implicit"]["success_percent"]:
+        table, key = "implicit", folder
     part = published()[table]
     percent = part["success_percent"].get(key, {}).get(column)
     if percent is None:

@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from wonderful_team.core.text import counted
 from wonderful_team.errors import ConfigError, UnknownNameError
 from wonderful_team.evals.toy import BOX_KINDS, BOXCHECK, POINTING
 from wonderful_team.evals.trials import DEVELOPMENT_BELOW
@@ -17,7 +18,12 @@ VIMA_TASKS = (
 )
 """The 17 tasks of VIMA-Bench in its own order (Jiang et al. 2023, arXiv:2210.03094)."""
 PARTITIONS = ("L1", "L2", "L3", "L4")
-FRUIT_FOLDER = "fruit_placement/"
+IMPLICIT_GOALS = {
+    "fruit": ("fruit_placement", "sort fruits by colour"),
+    "companions": ("superhero_companions", "bring together fruits and snacks of similar colours"),
+    "prices": ("fruit_price_ranking", "rank fruits by price tags and discounts"),
+}
+"""The paper's implicit goals: by suite, the folder of its variations and what they want."""
 
 
 @dataclass(frozen=True)
@@ -71,11 +77,16 @@ def all_suites(known_tasks: Sequence[str], partitions: Mapping[str, Sequence[str
             if tasks:
                 suites[f"vima17/{level}"] = Suite(f"vima17/{level}", tasks, OPEN_LOOP, f"generalisation level {level}")
     suites.update(_real_vima(known_tasks, partitions or {}))
-    fruit = tuple(name for name in known_tasks if name.startswith(f"tabletop/{FRUIT_FOLDER}"))
-    if fruit:
-        suites["fruit"] = Suite(
-            "fruit", fruit, IMPLICIT_GOAL, "sort fruits by colour: the paper's implicit goal, 4 variations"
-        )
+    implicit: list[str] = []
+    for name, (folder, what) in IMPLICIT_GOALS.items():
+        tasks = tuple(task for task in known_tasks if task.startswith(f"tabletop/{folder}/"))
+        implicit += tasks
+        if tasks:
+            words = f"{what}: an implicit goal of the paper's, {counted(len(tasks), 'variation')}"
+            suites[name] = Suite(name, tasks, IMPLICIT_GOAL, words)
+    if implicit:
+        words = f"the paper's implicit goals, {counted(len(implicit), 'variation')}"
+        suites["implicit"] = Suite("implicit", tuple(implicit), IMPLICIT_GOAL, words)
     suites["pointing"] = Suite(
         "pointing", (POINTING,), Protocol("toy table: one question a picture (the paper states no number; 100 here)", 100, 0),
         "point at a circle on the toy table: the paper's Appendix F.1",
@@ -127,7 +138,8 @@ def _one(name: str, known: Sequence[str], suites: Mapping[str, Suite], is_own: C
         return Suite(name, (name,), OPEN_LOOP, "own task")
     for task in (name, f"tabletop/{name}"):
         if task.partition("@")[0] in known:
-            protocol = IMPLICIT_GOAL if FRUIT_FOLDER in task else OPEN_LOOP
+            implicit = task.split("/")[1] in (folder for folder, _ in IMPLICIT_GOALS.values())
+            protocol = IMPLICIT_GOAL if implicit else OPEN_LOOP
             return Suite(task, (task,), protocol)
     raise UnknownNameError("suite or task", name, [*suites, *known])
 

@@ -15,8 +15,8 @@ MODEL_ID = "offline"
 class OfflineModel:
     """Classical vision and a grammar: no key, no weights, no network, no memory between requests.
 
-    It reads `request.question` (everything in it is shown) and the pictures it holds. Text inside pictures is data and
-    is never read.
+    It reads `request.question` (everything in it is shown) and the pictures it holds. Text inside pictures is data:
+    prices and numbers are read where the instruction ranks things by price, and nothing else ever is.
     """
 
     name = MODEL_ID

@@ -76,7 +76,7 @@ def _listed(*lists: str) -> list[str]:
 
 
 def test_there_are_the_29_shapes_of_vima_bench_by_name() -> None:
-    fruits = set(shape_names("fruit")) | {"paper"}
+    fruits = set(shape_names("fruit")) | {"paper", "price tag", "label"}
     assert sorted(set(shape_names()) - fruits) == sorted(_listed(CARRIED, HOLDING, SWEPT))
     assert len(_listed(CARRIED, HOLDING, SWEPT)) == 29
 
@@ -205,6 +205,8 @@ def test_taller_shows_only_from_the_front() -> None:
 def test_the_list_names_every_task_with_a_line_of_help() -> None:
     expected = set(HORIZONS)
     expected |= {f"fruit_placement/{variation}" for variation in ("all_match", "no_area", "misplaced", "both")}
+    expected |= {f"superhero_companions/{variation}" for variation in ("exact", "similar", "two_coloured", "no_match")}
+    expected |= {f"fruit_price_ranking/{variation}" for variation in ("three", "four", "discount", "deals")}
     assert expected <= set(BUILT_IN)
     assert all(len(task_names()[name]) > 20 for name in BUILT_IN)
 

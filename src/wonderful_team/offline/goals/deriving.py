@@ -21,6 +21,7 @@ from wonderful_team.offline.eyes import (
     unique_words,
 )
 from wonderful_team.offline.goals.aims import Aim, Aims, Named
+from wonderful_team.offline.goals.ranking import ranked_aims
 from wonderful_team.offline.goals.showing import shown_aims
 from wonderful_team.offline.goals.sweeps import swept_aims
 from wonderful_team.offline.language import Command, Destination, Understood, describe, render
@@ -100,6 +101,8 @@ def _of_command(command: Command, eyes: Eyes, result: Aims, strict: bool) -> lis
     if command.kind == "rotate":
         return [Aim("rotate", thing, rotate_deg=command.rotate_deg) for thing in things]
     assert goal is not None  # the grammar gives every put and push a goal
+    if goal.how == "ranked" and goal.what is not None:
+        return ranked_aims(things, goal.what, goal.side == "descending", eyes, result)
     if goal.how == "matching":
         return [aim for thing in things for aim in _matching_aim(command, goal, thing, eyes, result)]
     if pushed and goal.what is not None:

@@ -9,7 +9,7 @@ from wonderful_team.offline.description import Description
 
 CommandKind: TypeAlias = Literal["put", "rotate", "push", "arrange", "follow", "restore"]
 Where: TypeAlias = Literal[
-    "in", "on", "left", "right", "above", "below", "near", "between", "origin", "matching", "side"
+    "in", "on", "left", "right", "above", "below", "near", "between", "origin", "matching", "side", "ranked"
 ]
 Aspect: TypeAlias = Literal["colour", "texture", "shape"]
 
@@ -20,11 +20,12 @@ class Destination:
 
     Attributes:
         how: in or on a thing; on a named side of it; near it; between two; origin (where it stood); matching (the one that
-            shares `aspect` with the thing moved); side (towards a side of the picture, `side`).
+            shares `aspect` with the thing moved); side (towards a side of the picture, `side`); ranked (the one of its kind that
+            states the thing's rank by price, `side`: descending or ascending).
         what: The reference, None for side and for its own origin; for origin the thing whose place it takes; the kind of thing that must match for matching.
         other: The second reference of between.
         aspect: What must be shared for matching.
-        side: leftmost | rightmost | topmost | bottommost, for side.
+        side: leftmost | rightmost | topmost | bottommost, for side; descending | ascending, for ranked.
     """
 
     how: Where

@@ -23,6 +23,7 @@ from wonderful_team.offline.language.framing import without_frames
 from wonderful_team.offline.language.grammar import parse
 from wonderful_team.offline.language.meaning import Meaning
 from wonderful_team.offline.language.ordering import in_order
+from wonderful_team.offline.language.ranking import read_ranking
 from wonderful_team.offline.language.references import with_noun, with_nouns
 from wonderful_team.offline.language.rewrites import put_plainly
 from wonderful_team.offline.language.slots import matching_template, read_clauses
@@ -55,6 +56,9 @@ def unframed(text: str, read: Callable[[str], Understood]) -> Understood:
 
 
 def _understand(text: str) -> Understood:
+    ranking = read_ranking(text, try_describe)
+    if ranking is not None:
+        return Understood(text, (ranking,), tuple(re.findall(r"\w+", text)))
     later = _LATER.search(text)
     if later is not None:
         raise NotUnderstoodError(refusal([], [later.group(0)]))

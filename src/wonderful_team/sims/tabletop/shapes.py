@@ -45,6 +45,8 @@ BASES = ("pan", "bowl", "frame", "square", "container", "pallet")
 AREAS = ("paper", "line")
 SMALL = {"shorter block": (BLOCK_M, 0.03), "small block": (0.03, 0.03)}
 """Cuboids by name: side and height [m]."""
+CARDS = {"price tag": (0.11, 0.075), "label": (0.11, 0.044)}
+"""Cards to print on by name: width, which is that of a tile, and depth [m]."""
 THREE_SIDED = "three-sided rectangle"
 ROOM_M = (0.3, 0.172)
 """Width and depth of the room inside the three-sided rectangle; it is open upwards in the drawing plane [m]."""
@@ -92,7 +94,7 @@ class Shape:
 def shape_names(kind: Kind | None = None) -> tuple[str, ...]:
     """All names, or those of one kind that tasks may choose among."""
     chosen = {"kit": KIT, "base": BASES, "area": AREAS, "fruit": fruits.NAMES}
-    return chosen[kind] if kind else (*KIT, *SMALL, *BASES, THREE_SIDED, *AREAS, *fruits.NAMES)
+    return chosen[kind] if kind else (*KIT, *SMALL, *BASES, THREE_SIDED, *AREAS, *CARDS, *fruits.NAMES)
 
 
 @cache
@@ -113,8 +115,9 @@ def shape(name: str, stretch: float = 1.0) -> Shape:
         return _base(name)
     if name == THREE_SIDED:
         return _three_sided()
-    if name in AREAS:
-        across, along = (0.085, 0.085) if name == "paper" else (LINE_M[0] / 2, LINE_M[1] / 2)
+    if name in AREAS or name in CARDS:
+        width, depth = {"paper": (0.17, 0.17), "line": LINE_M, **CARDS}[name]
+        across, along = width / 2, depth / 2
         return _from_layers(name, "area", [(box(-across, -along, across, along), 0.0, PAPER_M)], [], movable=False)
     if name in fruits.NAMES:
         made = fruits.fruit(name)

@@ -9,7 +9,7 @@ import numpy as np
 
 from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.errors import UnknownNameError
-from wonderful_team.sims.tabletop import patterns, table_patterns
+from wonderful_team.sims.tabletop import patterns, prints, table_patterns
 from wonderful_team.sims.tabletop.patterns import SIDE_PX, TILE_M, Colour, mixed
 
 __all__ = ["PAPER_SHADES", "SIDE_PX", "TILE_M", "texture", "texture_names"]
@@ -97,13 +97,14 @@ def texture_names(*, dark: bool = False) -> tuple[str, ...]:
 
 @cache
 def texture(name: str) -> Array:
-    """A seamless tile, shape (SIDE_PX, SIDE_PX, 3), uint8.
+    """A seamless tile, or what is printed on a card, shape (SIDE_PX, SIDE_PX, 3), uint8.
 
     Raises:
         UnknownNameError: No such texture; lists the known ones.
     """
-    if name not in _ALL:
+    if name not in _ALL and not name.startswith(prints.PREFIX):
         raise UnknownNameError("texture", name, _ALL)
-    tile = np.clip(np.rint(_ALL[name]()), 0, 255).astype(np.uint8)
+    drawn = _ALL[name]() if name in _ALL else prints.printed(name)
+    tile = np.clip(np.rint(drawn), 0, 255).astype(np.uint8)
     tile.setflags(write=False)
     return tile

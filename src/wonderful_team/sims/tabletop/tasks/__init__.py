@@ -3,6 +3,7 @@
 from wonderful_team.sims.tabletop.tasks import (
     follow,
     fruit_placement,
+    fruit_price_ranking,
     in_order,
     neighbor,
     novel,
@@ -10,6 +11,7 @@ from wonderful_team.sims.tabletop.tasks import (
     rotate,
     same,
     scene_understanding,
+    superhero_companions,
     sweep,
     tidy_up,
     twist,
@@ -19,6 +21,7 @@ from wonderful_team.sims.tabletop.tasks import (
 __all__ = [
     "follow",
     "fruit_placement",
+    "fruit_price_ranking",
     "in_order",
     "neighbor",
     "novel",
@@ -26,6 +29,7 @@ __all__ = [
     "rotate",
     "same",
     "scene_understanding",
+    "superhero_companions",
     "sweep",
     "tidy_up",
     "twist",

@@ -87,6 +87,26 @@ def test_the_number_of_a_short_arrow_covers_neither_its_line_nor_its_head() -> N
         assert min(math.dist((x, y), point) for point in line) > r
 
 
+def test_numbers_of_crossing_arrows_stand_on_their_own_lines() -> None:
+    crossing = [((20.0, 20.0), (220.0, 200.0)), ((220.0, 20.0), (20.0, 200.0))]
+    lines, plates = [], []
+    for number, (start, end) in enumerate(crossing, start=1):
+        drawn = str(arrow_layer([start, end], number, 8.0))
+        bend = tuple(map(float, re.search(rf"Q({NUMBER}) ({NUMBER})", drawn).groups()))  # type: ignore[union-attr]
+        lines.append(
+            [
+                tuple(
+                    (1 - t) ** 2 * a + 2 * t * (1 - t) * b + t * t * c for a, b, c in zip(start, bend, end, strict=True)
+                )
+                for t in (k / 40 for k in range(41))
+            ]
+        )
+        plates.append(tuple(map(float, re.search(rf'cx="({NUMBER})" cy="({NUMBER})"', drawn).groups())))  # type: ignore[union-attr]
+    for own, other in ((0, 1), (1, 0)):
+        assert min(math.dist(plates[own], point) for point in lines[own]) < 4
+        assert min(math.dist(plates[own], point) for point in lines[other]) > 25
+
+
 @pytest.mark.parametrize("end", [(50.0, 50.0), (51.0, 50.5), (54.0, 50.0), (50.0, 42.0)])
 def test_the_head_of_an_arrow_is_no_longer_than_the_move(end: tuple[float, float]) -> None:
     start, size = (50.0, 50.0), 6.0

@@ -13,6 +13,10 @@ from wonderful_team.pages.pictures import Album, text_in_svg
 
 Corner = Sequence[float]
 _SHADES = 6
+LONG = 6.0
+"""Arrows longer than so many times the size of marks carry their number."""
+NUMBER_AT = 0.27
+"""Where on the way it stands there (0 to 1)."""
 
 
 def shade(position: int) -> str:
@@ -90,24 +94,30 @@ def tag_layer(x: float, y: float, text: str, size: float, css: str) -> Markup:
 
 
 def arrow_layer(points: Sequence[Corner], number: int, size: float) -> Markup:
-    """A move through points, bowed when there are two, with a head at its end and its number beside its middle."""
+    """A move through points, bowed when there are two, with a head at its end.
+
+    Its number stands on its first part, so that of arrows that cross each has its own; beside a short one, which it would hide.
+    """
     start, end = points[0], points[-1]
     middle: Corner = points[len(points) // 2]
     before, outward = points[-2], _outward(start, end)
+    beside = 0.0 if len(points) == 2 and math.dist(start, end) > LONG * size else 1.25 * size
     if len(points) == 2:
         dx, dy = end[0] - start[0], end[1] - start[1]
         side = -1.0 if dx < 0 else 1.0
         before = ((start[0] + end[0]) / 2 + dy * 0.2 * side, (start[1] + end[1]) / 2 - dx * 0.2 * side)
-        middle = (0.25 * start[0] + 0.5 * before[0] + 0.25 * end[0], 0.25 * start[1] + 0.5 * before[1] + 0.25 * end[1])
+        share = 0.5 if beside else NUMBER_AT
+        a, b, c = (1 - share) ** 2, 2 * share * (1 - share), share**2
+        middle = (a * start[0] + b * before[0] + c * end[0], a * start[1] + b * before[1] + c * end[1])
         path = f"M{start[0]:.2f} {start[1]:.2f}Q{before[0]:.2f} {before[1]:.2f} {end[0]:.2f} {end[1]:.2f}"
     else:
         path = "M" + "L".join(f"{x:.2f} {y:.2f}" for x, y in points)
     # A turn on the spot has no way that a head of full size could stand on.
     head = _head(before, end, min(1.1 * size, math.dist(start, end)) if len(points) == 2 else 1.1 * size)
-    beside = (middle[0] + 1.25 * size * outward[0], middle[1] + 1.25 * size * outward[1])
+    number_at = (middle[0] + beside * outward[0], middle[1] + beside * outward[1])
     return Markup(
         '<path d="{0}" class="arrow-rim"/><path d="{0}" class="arrow"/><path d="{1}" class="arrow-head"/>{2}'
-    ).format(path, head, point_layer(beside, 0.75 * size, "move", str(number)))
+    ).format(path, head, point_layer(number_at, 0.75 * size, "move", str(number)))
 
 
 def turn_layer(at: Corner, clockwise_deg: float, size: float) -> Markup:

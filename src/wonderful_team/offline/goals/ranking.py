@@ -13,8 +13,10 @@ from wonderful_team.offline.language import render
 from wonderful_team.offline.vision import Thing
 from wonderful_team.offline.vision.prints import Card, read_cards
 
-NEAR = 0.15
+NEAR = 0.1
 """A card farther from a thing than this share of the picture's longer side says nothing of it."""
+CLOSE = (0.065, 0.1)
+"""So far round a thing, in shares of that side, cards are looked for: twice, as an engine misses a line now and then."""
 SAME_PRICE = 0.005
 """Prices that differ by less than this share are equal."""
 
@@ -22,11 +24,14 @@ SAME_PRICE = 0.005
 def ranked_aims(things: list[Named], into: Description, descending: bool, eyes: Eyes, result: Aims) -> list[Aim]:
     """One aim per thing: into the place that states its rank by price, the dearest first if `descending`."""
     assert eyes.looked_at is not None  # an instruction always comes with its picture
-    cards = read_cards(eyes.looked_at)
+    places = [match.thing.number for match in eyes.find(into) if match.thing is not None]
+    ranked = [thing.number for thing in things if thing.number is not None]
+    boxes, longest = [_thing(number, eyes).box for number in (*ranked, *places)], max(eyes.looked_at.size_px)
+    around = [box.grown(*[share * longest] * 4) for share in CLOSE for box in boxes]
+    cards = read_cards(eyes.looked_at, around)
     prices = [card for card in cards if card.price is not None]
     ranks = [card for card in cards if card.rank is not None]
-    places = [match.thing.number for match in eyes.find(into) if match.thing is not None]
-    priced = _beside([thing.number for thing in things if thing.number is not None], prices, eyes)
+    priced = _beside(ranked, prices, eyes)
     numbered = {card.rank: number for number, card in _beside(places, ranks, eyes).items()}
     result.absent += [f"no price shows beside the {thing.words}" for thing in things if thing.number not in priced]
     cost = {number: card.price or 0.0 for number, card in priced.items()}

@@ -173,7 +173,8 @@ def allowed_codes(blow: Blow) -> set[int]:
     if "absent" in names:
         codes.add(1)
     # Google's own client breaks on JSON that is nested too deep: there it is no reply at all.
-    answered = {*NO_ANSWER, *HARMLESS, *FINAL_CODES, "absent"} - {"deep_json"}
+    # A refusal of many pictures is a try, too: the next one goes out with all of them on one sheet.
+    answered = {*NO_ANSWER, *HARMLESS, *FINAL_CODES, "absent"} - {"deep_json", "too_many_pictures"}
     failing = sum(name not in answered for name in names)
     # With a short deadline, a busy machine is a stalled one.
     if failing >= TRIES or blow.stalls:

@@ -5,12 +5,14 @@ from __future__ import annotations
 import http.server
 import json
 import shlex
+import sys
 import threading
 from pathlib import Path
 
 import pytest
 
 import wonderful_team as wt
+from wonderful_team.cli import run_summary
 from wonderful_team.cli.app import run
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
@@ -90,3 +92,14 @@ def test_a_new_model_asks_a_server(tmp_path, monkeypatch):
     kinds = {part["type"] for part in first["messages"][1]["content"]}
     assert kinds == {"text", "image_url"}
     assert second["messages"][2]["content"] == "I would rather not."
+
+
+@pytest.mark.parametrize("called", ["there/wonderful-team", "there/wonderful_team/__main__.py"])
+def test_what_to_do_next_names_a_command_that_runs(
+    called: str, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setattr("shutil.which", lambda name: None)
+    monkeypatch.setattr("sys.argv", [str(tmp_path / called)])
+    monkeypatch.chdir(tmp_path)
+    said = run_summary.program()
+    assert said == (called if called.endswith("team") else f"{sys.executable} -m wonderful_team")

@@ -92,8 +92,13 @@ def end(
 
 
 def program() -> str:
-    """How a person calls this program here: by its name, or by its path where the name is not found."""
-    return "wonderful-team" if shutil.which("wonderful-team") else shown_path(Path(sys.argv[0]))
+    """How a person calls this program here: by its name, or where that is not found by its path or as a module of this Python."""
+    if shutil.which("wonderful-team"):
+        return "wonderful-team"
+    called = Path(sys.argv[0])
+    return (
+        f"{shown_path(Path(sys.executable))} -m wonderful_team" if called.name == "__main__.py" else shown_path(called)
+    )
 
 
 def shown_path(path: Path) -> str:

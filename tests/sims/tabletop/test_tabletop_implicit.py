@@ -151,3 +151,10 @@ def test_companions_are_right_only_when_every_item_is_where_it_belongs(spoil: st
         put(world, resident, odd, (0.12, 0.0))
     assert world.privileged.score().success is success, world.privileged.score()
     world.close()
+
+
+def test_simulated_models_call_fruits_and_cards_as_people_do() -> None:
+    world = make_world("fruit_price_ranking/deals", seed=3)
+    said = {thing.words for thing in world.privileged.things().values()}
+    assert {"banana", "apple", "lime", "plum", "price tag that says $7.00 / -20%", "label that says 1st"} <= said
+    world.close()

@@ -19,6 +19,7 @@ from shapely.geometry.base import BaseGeometry
 from wonderful_team.core.geometry import Pose
 from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.values import GroundTruthView, Observation, TrueThing, View
+from wonderful_team.sims.tabletop import prints
 from wonderful_team.sims.tabletop.goals import footprint_of
 from wonderful_team.sims.tabletop.model import Thing
 from wonderful_team.sims.tabletop.oracle import grasp_point
@@ -130,7 +131,7 @@ def true_thing(thing: Thing, pose: Pose) -> TrueThing:
     body, position = thing.body, pose.position_m
     return TrueThing(
         name=thing.name,
-        words=f"{thing.texture} {thing.shape}",
+        words=_words(thing),
         kind=KINDS.get(body.kind, "object"),
         shape=thing.shape,
         cover=thing.texture,
@@ -140,6 +141,15 @@ def true_thing(thing: Thing, pose: Pose) -> TrueThing:
         outline_m=_outline(footprint_of(thing, pose)),
         grasp_m=np.array(grasp_point(thing, pose)),
     )
+
+
+def _words(thing: Thing) -> str:
+    """What a person would call it: a fruit by its name, a card by what stands on it, other things by cover and shape."""
+    if thing.body.kind == "fruit":
+        return thing.shape
+    if thing.texture.startswith(prints.PREFIX):
+        return f"{thing.shape} that says {thing.texture.removeprefix(prints.PREFIX)}"
+    return f"{thing.texture} {thing.shape}"
 
 
 def _outline(footprint: BaseGeometry) -> Array:

@@ -21,7 +21,7 @@ from typing import Any
 
 from wonderful_team import registry
 from wonderful_team.core.intervals import wilson_interval
-from wonderful_team.evals.paper_tables import ABLATED
+from wonderful_team.evals.suites import ABLATED
 from wonderful_team.planning import TeamConfig, TeamPolicy
 from wonderful_team.runtime import rollout
 from wonderful_team.simulated import PROFILES, SimulatedModel

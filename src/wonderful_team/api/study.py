@@ -55,7 +55,7 @@ class Study:
 
     Args:
         suite: A suite, a task, FILE.py:TASK, PHOTOS.json, or several.
-        methods, models: A name or several; objects cannot be sent to worker processes. A model may be a mapping from role to name,
+        methods, models: A name or several ("team:-each": the team, and it without each member in turn); objects cannot be sent to worker processes. A model may be a mapping from role to name,
             with "*" for the rest.
         seeds: For every task; None for the suite's own, from 1000 on.
         store: File that keeps what ended; the same study on the same file resumes.
@@ -106,7 +106,7 @@ class Study:
     thorough: bool = False
 
     def __post_init__(self) -> None:
-        self.methods, self.controls = _listed(self.methods), _listed(self.controls)
+        self.methods, self.controls = registry.each_member(_listed(self.methods)), _listed(self.controls)
         self.models = [self.models] if isinstance(self.models, str | Mapping) else list(self.models)
         if isinstance(self.seeds, int):
             raise ConfigError(

@@ -12,16 +12,11 @@ from typing import Any
 
 from wonderful_team.core.intervals import wilson_interval
 from wonderful_team.evals.paper import PaperFigure, published
-from wonderful_team.evals.suites import VIMA_TASKS
+from wonderful_team.evals.suites import ABLATED, VIMA_TASKS
 from wonderful_team.evals.summary import Cell, Summary
 from wonderful_team.evals.toy import BOX_KINDS, BOXCHECK, POINTING, WORDS
 
 SETTINGS = ("complete", *(f"s{number}" for number in range(1, 9)))
-ABLATED = (
-    "visual_manipulation", "scene_understanding", "rotate", "novel_adj", "novel_noun", "sweep_without_exceeding", "same_shape",
-    "manipulate_old_neighbor", "pick_in_order_then_restore",
-)  # fmt: skip
-"""The tasks of the paper's ablations: 1, 2, 3, 6, 7, 12, 15, 16 and 17."""
 SUITES: Mapping[str, tuple[str, ...]] = {
     "simple manipulation": ABLATED[:3],
     "novel concepts": ABLATED[3:5],

@@ -17,6 +17,11 @@ VIMA_TASKS = (
 )
 """The 17 tasks of VIMA-Bench in its own order (Jiang et al. 2023, arXiv:2210.03094)."""
 PARTITIONS = ("L1", "L2", "L3", "L4")
+ABLATED = (
+    "visual_manipulation", "scene_understanding", "rotate", "novel_adj", "novel_noun", "sweep_without_exceeding", "same_shape",
+    "manipulate_old_neighbor", "pick_in_order_then_restore",
+)  # fmt: skip
+"""The tasks of the paper's ablations: 1, 2, 3, 6, 7, 12, 15, 16 and 17."""
 FRUIT_FOLDER = "fruit_placement/"
 
 
@@ -66,6 +71,8 @@ def all_suites(known_tasks: Sequence[str], partitions: Mapping[str, Sequence[str
         suites["vima17"] = Suite("vima17", tuple(vima), OPEN_LOOP, words, note)
         first = tuple(task for task in vima if task.rpartition("/")[2] in VIMA_TASKS[:3])
         suites["vima3"] = Suite("vima3", first, OPEN_LOOP, "its three tasks of simple object manipulation")
+        ablated = tuple(task for task in vima if task.rpartition("/")[2] in ABLATED)
+        suites["ablation"] = Suite("ablation", ablated, OPEN_LOOP, "the nine tasks of the paper's ablations")
         for level in PARTITIONS:
             tasks = tuple(task for task in (partitions or {}).get(level, ()) if task.startswith("tabletop/"))
             if tasks:

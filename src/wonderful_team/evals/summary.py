@@ -80,7 +80,7 @@ class Cell:
         """What a reader must know of where the answers came from."""
         seen = {word for result in self.results for word in result.provenance}
         # Models by role stand as "M, ROLE=N".
-        models = [part.rpartition("=")[2] for part in self.condition.model.split(", ")]
+        models = [_model_of(part) for part in self.condition.model.split(", ")]
         names = {*NO_VLM, "cached", "replayed"} & seen
         names |= {"offline"} if OFFLINE in models and any(result.calls for result in self.results) else set()
         names |= (
@@ -100,6 +100,12 @@ class Cell:
             if whole and len(found) > 1
             else (str(found[0]) if whole else f"{len(found)} of {found[0]}-{found[-1]}")
         )
+
+
+def _model_of(part: str) -> str:
+    """The model of "M" or "ROLE=M"; a model's name may hold "=" after its first ":"."""
+    role, separator, name = part.partition("=")
+    return name if separator and ":" not in role else part
 
 
 def cell(condition: Condition, mine: Sequence[Row]) -> Cell:
@@ -145,9 +151,10 @@ class Summary:
             found.setdefault(row.spec.condition, []).append(row)
         return found
 
-    def compare(self, first: Condition, second: Condition) -> Pair:
-        """Two conditions on the scenes that both have scored."""
-        return pair(first, second, [*self.by_condition.get(first, []), *self.by_condition.get(second, [])])
+    def compare(self, first: Condition, second: Condition, task: str | None = None) -> Pair:
+        """Two conditions on the scenes that both have scored, of one task or of all."""
+        rows = [*self.by_condition.get(first, []), *self.by_condition.get(second, [])]
+        return pair(first, second, rows if task is None else [row for row in rows if row.spec.task == task])
 
     @property
     def main(self) -> tuple[Condition, ...]:

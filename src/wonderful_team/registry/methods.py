@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from typing import cast
 
 from wonderful_team.agents.role import Role
@@ -16,7 +16,7 @@ from wonderful_team.models.budget import Budget
 from wonderful_team.models.client import DEADLINE_S, ModelClient
 from wonderful_team.planning import ABLATIONS, TeamConfig, TeamPolicy, members_of
 from wonderful_team.planning.baselines import direct, nlap, pivot, point
-from wonderful_team.planning.config import Grounding, Mode
+from wonderful_team.planning.config import Grounding, Members, Mode
 from wonderful_team.registry.detectors import make_detector
 from wonderful_team.registry.files import is_file_name, make_from_file
 from wonderful_team.registry.models import DEFAULT_ROLE
@@ -212,6 +212,30 @@ def method_row(name: str) -> MethodRow | None:
     return replace(row, words=f"{base} {members.words}", team=replace(row.team, ablation=f"-{off}"))
 
 
+EACH = ":-each"
+"""After the name of a whole team: that team, and it without each member in turn."""
+
+
+def each_member(names: Sequence[str]) -> list[str]:
+    """Names of methods, with "team:-each" and "team:paper:-each" written out; each method once where it comes so."""
+    found: list[str] = []
+    for name in names:
+        base = name.removesuffix(EACH)
+        row = METHODS.get(base)
+        if (
+            base == name
+            or row is None
+            or row.team is None
+            or row.team.ablation != "full"
+            or row.team.grounding != "team"
+        ):
+            found.append(name)
+            continue
+        written = [base, *(f"{base}:-{member.name}" for member in fields(Members))]
+        found += [one for one in written if one not in (*found, *names)]
+    return found
+
+
 def known_row(name: str) -> MethodRow:
     """The same.
 
@@ -220,7 +244,7 @@ def known_row(name: str) -> MethodRow:
     """
     row = method_row(name)
     if row is None:
-        raise UnknownNameError("method", name, [*METHODS, "team:-MEMBER-MEMBER", "FILE.py:NAME"])
+        raise UnknownNameError("method", name, [*METHODS, "team:-MEMBER-MEMBER", "team:-each", "FILE.py:NAME"])
     return row
 
 

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections import Counter
+from collections.abc import Mapping, Sequence
 from itertools import zip_longest
 from pathlib import Path
 from typing import Any
@@ -12,10 +13,11 @@ from markupsafe import Markup
 
 from wonderful_team.core.text import counted
 from wonderful_team.errors import MissingExtraError
+from wonderful_team.evals.ablation import Ablation, ablations, ends_of
 from wonderful_team.evals.pairing import Pair
 from wonderful_team.evals.paper import published
-from wonderful_team.evals.report import tables
-from wonderful_team.evals.report.plots import cost_plot, rate_plot, task_plot
+from wonderful_team.evals.report import ablation, tables
+from wonderful_team.evals.report.plots import cost_plot, ends_plot, rate_plot, task_plot
 from wonderful_team.evals.summary import Summary
 from wonderful_team.evals.trials import Condition, Row
 from wonderful_team.images.thumbnail import run_thumbnail
@@ -36,6 +38,10 @@ def page_content(summary: Summary, warnings: Sequence[str], baseline: str | None
         "compared": [tables.cell_words(summary.cell(one)) for one in summary.main],
         "bounds": [tables.cell_words(summary.cell(one)) for one in summary.main_bounds],
         "plots": _plots(summary),
+        "ends_plot": _ends_plot(summary.main, {one: ends_of(summary, one) for one in summary.main}),
+        "effect_head": ablation.EFFECT_HEAD,
+        "moved_head": ablation.MOVED_HEAD,
+        "ablations": [_ablation(one) for one in ablations(summary)],
         "task_head": head,
         "task_lines": lines,
         "paper": published(),
@@ -77,6 +83,29 @@ def _plots(summary: Summary) -> dict[str, Any]:
         return {name: Markup(text) for name, text in made.items() if text}  # noqa: S704
     except MissingExtraError as error:
         return {"missing": str(error)}
+
+
+def _ends_plot(conditions: Sequence[Condition], ends: Mapping[Condition, Counter[str]]) -> Markup | str:
+    try:
+        return Markup(ends_plot(conditions, ends))  # noqa: S704  matplotlib escapes labels
+    except MissingExtraError:
+        return ""
+
+
+def _ablation(found: Ablation) -> dict[str, Any]:
+    """What each member adds, and where failures move."""
+    end_head, end_lines = ablation.end_lines(found)
+    task_head, task_lines = ablation.task_effects(found)
+    return {
+        "label": found.base.label,
+        "effects": ablation.effect_lines(found),
+        "plot": _ends_plot(found.conditions, found.ends),
+        "end_head": end_head,
+        "end_lines": end_lines,
+        "moved": ablation.moved_lines(found),
+        "task_head": task_head,
+        "task_lines": task_lines,
+    }
 
 
 def _stage_table(summary: Summary) -> dict[str, Any]:

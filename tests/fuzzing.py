@@ -46,7 +46,7 @@ class AgentSession:
         self.trial = self._trial()
         np.save(folder / "depth.npy", np.full((240, 320), 0.8, np.float32))
         self.store = folder / "study.db"
-        wt.Study(TASK, seeds=[0], store=self.store, controls=(), jobs=1, out=self.runs, pages="none").run()
+        wt.Study(TASK, seeds=[0], store=self.store, controls=(), jobs=1, out=self.runs, record="none").run()
         self.kept = self.good("desk.png")
         self.scratch = folder
 
@@ -140,7 +140,20 @@ def stores(desk: AgentSession, draw: st.DrawFn) -> Argv:
     else:
         _spoil_table(store, draw)
     report = ["report", store, "--out", str(desk.scratch / "report.html")]
-    bench = ["bench", TASK, "--seeds", "0:1", "--store", store, "--jobs", "1", "--no-control", "all", "--pages", "none"]
+    bench = [
+        "bench",
+        TASK,
+        "--seeds",
+        "0:1",
+        "--store",
+        store,
+        "--jobs",
+        "1",
+        "--no-control",
+        "all",
+        "--record",
+        "none",
+    ]
     return draw(st.sampled_from([report, bench, [*bench, "--estimate"]]))
 
 
@@ -182,7 +195,7 @@ def photos(desk: AgentSession, draw: st.DrawFn) -> Argv:
         "1",
         "--no-control",
         "all",
-        "--pages",
+        "--record",
         "none",
         "--max-seconds",
         "2",
@@ -275,7 +288,7 @@ def study_options(desk: AgentSession, draw: st.DrawFn) -> Argv:
         "--seeds": ("0:2", "1000:1001"), "--perturb": ("lighting=0..3", "clutter=2"), "--shard": ("1/2",), "--isolate": ("whole,planning",),
         "--no-control": ("oracle", "all"), "--method": ("team,team:s1",), "--model": ("offline,checker=offline", "simulated:perfect"),
         "--price": ("1,2",), "--thinking": ("low",), "--repeats": ("2",), "--max-usd": ("1",), "--trial-max-calls": ("1",),
-        "--store": (str(desk.scratch / "s.db"),), "--ray": (), "--pages": ("none",),
+        "--store": (str(desk.scratch / "s.db"),), "--ray": (), "--record": ("none",),
     }  # fmt: skip
     suite = draw(st.sampled_from(["rotate", draw(damaged_text("vima17/L1", "rotate@L2", "fruit", "photos.json"))]))
     argv = [

@@ -106,7 +106,7 @@ def test_a_simulated_model_takes_rates_of_its_own() -> None:
 
 def study(tmp_path: Path, capsys: pytest.CaptureFixture[str], *words: str) -> tuple[Ablation, Path]:
     store = tmp_path / "s.db"
-    assert run(["bench", *words, "--no-control", "all", "--pages", "none", "--store", str(store), "--jobs", "1"]) == 0
+    assert run(["bench", *words, "--no-control", "all", "--record", "none", "--store", str(store), "--jobs", "1"]) == 0
     assert "SIMULATED" in capsys.readouterr().out
     made = write_all([store], tmp_path / "page.html")
     (found,) = ablations(made.summary)

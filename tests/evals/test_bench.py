@@ -33,7 +33,7 @@ def _bench(*words: str, store: Path) -> int:
 def test_a_method_of_fifteen_lines_against_the_controls(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (tmp_path / "mine.py").write_text(METHOD, encoding="utf-8")
     name = f"{tmp_path / 'mine.py'}:Pusher"
-    words = ("rotate", "--method", name, "--seeds", "1000:1002", "--no-control", "offline", "--pages", "all")
+    words = ("rotate", "--method", name, "--seeds", "1000:1002", "--no-control", "offline", "--record", "full")
     assert _bench(*words, store=tmp_path / "s.db") == 0
     told = json.loads(capsys.readouterr().out)["result"]
     rates = {one["method"]: (one["successes"], one["scored"]) for one in told["conditions"]}
@@ -53,7 +53,7 @@ def test_a_method_of_fifteen_lines_against_the_controls(tmp_path: Path, capsys: 
 
 
 def test_offline_runs_through_the_study_like_any_model(tmp_path: Path) -> None:
-    study = wt.Study("rotate", seeds=[1000], store=tmp_path / "s.db", controls=("offline",), jobs=1, pages="none")
+    study = wt.Study("rotate", seeds=[1000], store=tmp_path / "s.db", controls=("offline",), jobs=1, record="none")
     ended = study.run()
     assert ended.status.done == 1
     summary = study.summary()
@@ -301,7 +301,7 @@ def test_models_by_role_answer_for_their_roles_and_stand_in_the_label(
 ) -> None:
     (tmp_path / "mine.py").write_text(BY_ROLE, encoding="utf-8")
     file = tmp_path / "mine.py"
-    words = ("rotate", "--seeds", "1000", "--no-control", "all", "--pages", "none", "--thinking", "checker=low")
+    words = ("rotate", "--seeds", "1000", "--no-control", "all", "--record", "none", "--thinking", "checker=low")
     models = f"{file}:Big,checker={file}:Small"
     assert _bench(*words, "--model", models, "--concurrency", "2", store=tmp_path / "s.db") == 0
     told = json.loads(capsys.readouterr().out)["result"]["conditions"]

@@ -7,12 +7,13 @@ import tempfile
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any
 
 from wonderful_team import registry
 from wonderful_team.api.trial import check_isolation, check_names, code_of_names, run_trial
 from wonderful_team.core.caps import Caps
 from wonderful_team.core.renamed import renamed_arguments
+from wonderful_team.core.text import counted
 from wonderful_team.errors import ConfigError, UnknownNameError
 from wonderful_team.evals.controls import CONTROLS
 from wonderful_team.evals.estimate import Estimate, estimate
@@ -25,7 +26,7 @@ from wonderful_team.evals.study import StudyResult, run_study, started_by_spawn
 from wonderful_team.evals.suites import PARTITIONS, Suite, all_suites, read_seeds, resolve
 from wonderful_team.evals.summary import Summary, summarise
 from wonderful_team.evals.toy import is_toy
-from wonderful_team.evals.trials import Condition, RunSettings, TrialRow, TrialSpec
+from wonderful_team.evals.trials import RECORDED, Condition, Recorded, RunSettings, TrialRow, TrialSpec
 from wonderful_team.evals.workers import run_safely
 from wonderful_team.models.cache import CacheMode
 from wonderful_team.models.providers import PriceChoice
@@ -41,14 +42,14 @@ FREE = ("-", OFFLINE)
 
 _OF_MODELS = ("allow_unpriced", "local_only", "timeout", "cache", "cache_file", "detector", "thorough")
 _SAME_AS_OPTIONS = (
-    *("repeats", "replans", "reobserve", "isolate", "perturb", "concurrency", "pages", "out", "prompts"),
+    *("repeats", "replans", "reobserve", "isolate", "perturb", "concurrency", "record", "out", "prompts"),
     *("jobs", "at_once", "ray", "retry_errors"),
     *_OF_MODELS,
 )
 """Options of `bench` that a study takes as they are."""
 
 
-@renamed_arguments(looks="reobserve")
+@renamed_arguments(looks="reobserve", pages="record")
 @dataclass
 class Study:
     """A comparison.
@@ -66,7 +67,8 @@ class Study:
         controls: Those that run beside the methods; () refuses them all.
         caps: Of the whole study. trial_caps: of each trial.
         concurrency: Most model calls at once, over all workers.
-        pages: Which trials get a page of their own.
+        record: Which trials keep their run folder with record, pictures and page: full, failures (those that did not succeed) or
+            none; what ended stands in the store all the same. `pages` with "all" is its old name.
 
     Raises:
         ConfigError: A name or a value that is not valid; before anything runs.
@@ -87,7 +89,7 @@ class Study:
     caps: Caps = Caps()
     trial_caps: Caps = Caps()
     concurrency: int | None = None
-    pages: Literal["all", "failures", "none"] = "failures"
+    record: Recorded = "failures"
     out: str | Path | None = None
     prompts: str | Path | None = None
     thinking: str | Mapping[str, str] | None = None
@@ -108,6 +110,7 @@ class Study:
     def __post_init__(self) -> None:
         self.methods, self.controls = registry.each_member(_listed(self.methods)), _listed(self.controls)
         self.models = [self.models] if isinstance(self.models, str | Mapping) else list(self.models)
+        self.record = new_name_of(self.record)
         if isinstance(self.seeds, int):
             raise ConfigError(
                 f"seeds {self.seeds}: valid is a sequence, as in range(1000, 1020), or None for the suite's own"
@@ -184,7 +187,7 @@ class Study:
         tasks = [task for suite in self.plan.suites for task in suite.tasks]
         named = code_of_names((*tasks, *self.plan.methods), self.plan.models)
         return RunSettings(
-            self.trial_caps, self.concurrency or 8, self.pages, out, prompts, extra=self._asked(), named_code=named
+            self.trial_caps, self.concurrency or 8, self.record, out, prompts, extra=self._asked(), named_code=named
         )
 
     def _asked(self) -> dict[str, Any]:
@@ -291,6 +294,14 @@ class Study:
             found.append(f"{one.label:<{width}}  {cell.rate}{rest}{badges}")
         return [*found, *summary.headline(), *(f"warning: {text}" for text in summary.warnings())]
 
+    def kept_line(self) -> str:
+        """How many trials keep their run folder, and how to see those that do not."""
+        with Store(self.store, must_exist=True) as store:
+            ended = [row for row in store.rows(self.plan.name) if row.result is not None]
+        kept = sum(bool(row.result.page) for row in ended if row.result is not None)
+        more = "" if kept == len(ended) else f"; how to run the others again: wonderful-team show {self.store}"
+        return f"records: {kept} of {counted(len(ended), 'trial')} keep a run folder (--record {self.record}){more}"
+
     def report(self, path: str | Path, baseline: str | None = None) -> Path:
         """Write the page; its CSV and LaTeX tables lie beside it."""
         from wonderful_team.evals.report import write_all
@@ -322,6 +333,19 @@ class Study:
 
 def _listed(words: str | Sequence[str]) -> list[str]:
     return [words] if isinstance(words, str) else list(words)
+
+
+def new_name_of(record: str) -> Recorded:
+    """Which trials keep their run folder, "all" being the old name of "full".
+
+    Raises:
+        ConfigError: Another word.
+    """
+    word = "full" if record == "all" else record
+    for one in RECORDED:
+        if one == word:
+            return one
+    raise ConfigError(f"record {record!r}: valid are {', '.join(RECORDED)}")
 
 
 def _is_free(text: str) -> bool:

@@ -31,13 +31,11 @@ from wonderful_team.evals.controls import CONTROLS, make_control
 from wonderful_team.evals.perturb import WorldInDisguise, perturbed, read_tier
 from wonderful_team.evals.toy import is_toy
 from wonderful_team.evals.trials import Condition, RunSettings, TrialRow, TrialSpec
+from wonderful_team.record.run_folders import TRIALS
 from wonderful_team.registry.files import check_names_no_code, is_file_name
 from wonderful_team.registry.role_models import REST, choice_of
 from wonderful_team.runtime import rollout as roll_out
 from wonderful_team.runtime.user_code import GuardedWorld
-
-SUCCESS_EVERY = 10
-"""With pages of failures, successes of these seeds (1000, 1010, ...) keep theirs too: a reader wants to see both."""
 
 
 def run_trial(spec: TrialSpec, settings: RunSettings) -> TrialRow:
@@ -132,7 +130,7 @@ def _run(spec: TrialSpec, settings: RunSettings, world: World, count: UsageCount
         trial = roll_out(control, blind, scorer=truth, seed=spec.seed, scene=spec.scene, max_age_s=None)
         return trial, ""
     method = prepared(spec, settings, models_of(condition, world), world)
-    if settings.pages == "none":
+    if settings.record == "none":
         policy: Policy = method.policy(count)
         trial = roll_out(
             policy,
@@ -146,7 +144,7 @@ def _run(spec: TrialSpec, settings: RunSettings, world: World, count: UsageCount
         )
         return trial, ""
     # A folder of its own: trials that run at the same time must not share the pointer to the newest run.
-    out = (settings.out or Path("runs")) / "trials" / hashlib.sha256(spec.key.encode()).hexdigest()[:12]
+    out = (settings.out or Path("runs")) / TRIALS / hashlib.sha256(spec.key.encode()).hexdigest()[:12]
     recorded = rollout(
         method,
         world,
@@ -157,7 +155,7 @@ def _run(spec: TrialSpec, settings: RunSettings, world: World, count: UsageCount
         out=out,
         subscribers=(count,),
     )
-    if settings.pages == "failures" and recorded.outcome == "success" and spec.seed % SUCCESS_EVERY:
+    if settings.record == "failures" and recorded.outcome == "success":
         shutil.rmtree(out, ignore_errors=True)
         return recorded, ""
     return recorded, str(recorded.page)

@@ -107,7 +107,7 @@ def reproduce(spec: TrialSpec, asked: Mapping[str, Any] | None = None) -> str:
     levels = {REST: levels} if isinstance(levels, str) else levels
     thinking = [word for role, level in levels.items() for word in ("--thinking", _of_role(role, level))]
     if condition.method in CONTROLS or condition.isolate or condition.perturb:
-        words = ["bench", spec.task, "--seeds", str(spec.seed), "--no-control", "all", "--pages", "all"]
+        words = ["bench", spec.task, "--seeds", str(spec.seed), "--no-control", "all", "--record", "full"]
         words += ["--isolate", condition.isolate] if condition.isolate else []
         words += ["--perturb", condition.perturb] if condition.perturb else []
         models = [] if condition.method in CONTROLS else ["--model", ",".join(by_role), *thinking]

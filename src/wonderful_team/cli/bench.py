@@ -93,13 +93,14 @@ QUIET_S = 10.0
 @click.option("--ray", metavar="ADDRESS", help='Run on a Ray cluster; "local" starts one here.')
 @click.option("--retry-errors", is_flag=True, help="Run trials again that ended as errors.")
 @click.option(
-    "--pages",
-    type=click.Choice(["all", "failures", "none"]),
+    "--record",
+    type=click.Choice(["full", "failures", "none"]),
     default="failures",
     show_default=True,
-    help="Trials that keep a page; failures: those, and the successes of every tenth seed (1000, 1010, ...).",
+    help="Trials that keep their run folder (record, pictures, page): all, those that did not succeed, or none.",
 )
-@click.option("--out", type=PATH, metavar="DIR", help="Where the pages of trials go. [default: runs]")
+@click.option("--pages", type=click.Choice(["all", "failures", "none"]), hidden=True)
+@click.option("--out", type=PATH, metavar="DIR", help="Where the run folders of trials go. [default: runs]")
 @click.option("--prompts", type=PATH, metavar="DIR", help="Your own words for the roles.")
 @click.option("--thorough", is_flag=True, help=THOROUGH)
 @click.option("--concurrency", type=click.IntRange(1), help="Model calls at once, over all workers.")
@@ -131,14 +132,23 @@ def _bench(options: dict[str, Any]) -> int:
     from wonderful_team.api.study import Study
 
     words = shlex.join(["wonderful-team", *(click.get_current_context().obj or ())])
-    study = Study.from_options(**options, command=words)
+    study = Study.from_options(**by_new_names(options), command=words)
     if options["estimate"]:
         return tell_estimate("bench", study, options)
     ended, code = run_study(study, options)
-    lines = [*study.lines(), *stopped_line(ended), f"report: wonderful-team report {study.store}"]
+    lines = [*study.lines(), *stopped_line(ended), study.kept_line(), f"report: wonderful-team report {study.store}"]
     if options["open_page"]:
         click.launch(study.report(Path(study.store).with_suffix(".html")).resolve().as_uri())
     return finish("bench", text="\n".join(lines), result=study.to_json(ended), as_json=options["as_json"], code=code)
+
+
+def by_new_names(options: dict[str, Any]) -> dict[str, Any]:
+    """The options with --pages, an old name, as --record."""
+    pages = options.get("pages")
+    if pages is None:
+        return options
+    click.echo("warning: --pages is called --record now (all: full); the old name goes with the next release", err=True)
+    return {**options, "record": pages}
 
 
 def tell_estimate(command: str, study: Study, options: dict[str, Any]) -> int:

@@ -69,7 +69,7 @@ def _run(names: list[str], folder: Path, open_page: bool, options: dict[str, Any
         table = PAPER_TABLES[name]
         summary, report = None, None
         if table.suites and not stopped:
-            study = Study.from_options(**_options(table, options), store=store, command=words)
+            study = Study.from_options(**bench.by_new_names(_options(table, options)), store=store, command=words)
             if options["estimate"]:
                 code = bench.tell_estimate("paper", study, options)
                 continue

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from wonderful_team.errors import ConfigError, UnknownNameError
-from wonderful_team.evals.toy import BOX_KINDS, BOXCHECK, POINTING
+from wonderful_team.evals.toy import BOX_KINDS, BOXCHECK, POINTING, is_toy
 from wonderful_team.evals.trials import DEVELOPMENT_BELOW
 
 VIMA_TASKS = (
@@ -132,6 +132,9 @@ def _one(name: str, known: Sequence[str], suites: Mapping[str, Suite], is_own: C
         return Suite(name, (name,), Protocol("photos: each once", 1, 0), "grounding on photos, no simulator")
     if is_own(name):
         return Suite(name, (name,), OPEN_LOOP, "own task")
+    for suite in suites.values():
+        if is_toy(name) and name in suite.tasks:
+            return Suite(name, (name,), suite.protocol, suite.help)
     for task in (name, f"tabletop/{name}"):
         if task.partition("@")[0] in known:
             protocol = IMPLICIT_GOAL if FRUIT_FOLDER in task else OPEN_LOOP

@@ -14,6 +14,7 @@ from markupsafe import Markup
 from wonderful_team.core.text import counted
 from wonderful_team.errors import MissingExtraError
 from wonderful_team.evals.ablation import Ablation, ablations, ends_of
+from wonderful_team.evals.again import command_again
 from wonderful_team.evals.pairing import Pair
 from wonderful_team.evals.paper import published
 from wonderful_team.evals.report import ablation, tables
@@ -149,7 +150,12 @@ def _failures(one: Condition, summary: Summary, page: Path) -> dict[str, Any]:
     stages = []
     for stage, count in summary.stages(one).most_common():
         examples = [
-            {"scene": row.spec.scene, "reason": row.result.reason, "page": link(row.result.page, page)}
+            {
+                "scene": row.spec.scene,
+                "reason": row.result.reason,
+                "page": link(row.result.page, page),
+                "again": _again(row),
+            }
             for row in summary.rows
             if row.spec.condition == one
             and row.result is not None
@@ -163,6 +169,11 @@ def _failures(one: Condition, summary: Summary, page: Path) -> dict[str, Any]:
         if row.spec.condition == one and row.result is not None and row.result.outcome == "error"
     ]
     return {"label": one.label, "stages": stages, "errors": errors[:EXAMPLES], "error_count": len(errors)}
+
+
+def _again(row: Row) -> str:
+    """How to get a record that was not kept; "" where it was."""
+    return "" if row.result is not None and row.result.page else command_again(row.spec)
 
 
 def _gallery(summary: Summary, page: Path) -> list[dict[str, Any]]:

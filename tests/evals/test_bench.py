@@ -234,13 +234,14 @@ def test_wrong_use_is_told_before_anything_runs(tmp_path: Path, words: tuple[str
 def test_isolation_gives_the_other_roles_to_truth(monkeypatch: pytest.MonkeyPatch) -> None:
     truth = object()
     monkeypatch.setattr(registry, "make_model", lambda name, **more: truth)
-    planning = model_of("mine", "planning", object())  # type: ignore[arg-type]
+    team = registry.grounding_roles("team")
+    planning = model_of("mine", "planning", object(), team)  # type: ignore[arg-type]
     assert planning["*"] == "mine"
     assert {role for role, model in planning.items() if model is truth} == {"manager", "checker", "mover"}
-    grounding = model_of("mine", "grounding", object())  # type: ignore[arg-type]
+    grounding = model_of("mine", "grounding", object(), team)  # type: ignore[arg-type]
     assert grounding["*"] is truth
     assert {role for role, model in grounding.items() if model == "mine"} == {"manager", "checker", "mover"}
-    assert model_of("mine", "", object()) == "mine"  # type: ignore[arg-type]
+    assert model_of("mine", "", object(), team) == "mine"  # type: ignore[arg-type]
 
 
 def test_generalisation_levels_are_suites(tmp_path: Path) -> None:
@@ -259,12 +260,12 @@ def test_generalisation_levels_are_suites(tmp_path: Path) -> None:
         ),
         (
             Condition("team", "big, checker=small", "planning", "clutter=2"),
-            "wonderful-team bench tabletop/rotate --seeds 5 --no-control all --pages all --isolate planning --perturb clutter=2 "
+            "wonderful-team bench tabletop/rotate --seeds 5 --no-control all --record full --isolate planning --perturb clutter=2 "
             "--replans 0 --method team --model big,checker=small --thinking low",
         ),
         (
             Condition("oracle", "-", perturb="camera=1"),
-            "wonderful-team bench tabletop/rotate --seeds 5 --no-control all --pages all --perturb camera=1 --replans 0 "
+            "wonderful-team bench tabletop/rotate --seeds 5 --no-control all --record full --perturb camera=1 --replans 0 "
             "--method oracle",
         ),
     ],

@@ -16,7 +16,6 @@ from typing import Any
 import numpy as np
 
 from wonderful_team import registry
-from wonderful_team.agents import ROLES
 from wonderful_team.api.method import Method
 from wonderful_team.api.photo_trial import run_photo
 from wonderful_team.api.rollout import rollout
@@ -163,20 +162,22 @@ def _run(spec: TrialSpec, settings: RunSettings, world: World, count: UsageCount
 
 def models_of(condition: Condition, world: World) -> Any:
     """One model, or models by role, as a condition names them; truth in the place of what is isolated away."""
-    chosen = choice_of(condition.model)
-    if isinstance(chosen, str) or not condition.isolate:
-        return model_of(chosen, condition.isolate, world) if isinstance(chosen, str) else chosen
+    chosen, grounding = choice_of(condition.model), registry.grounding_roles(condition.method)
+    if isinstance(chosen, str):
+        return model_of(chosen, condition.isolate, world, grounding)
+    if not condition.isolate:
+        return chosen
     looked_at = condition.isolate == "grounding"
-    own = {role: name for role, name in chosen.items() if role != REST and (role in GROUNDING_ROLES) == looked_at}
-    return {**model_of(chosen[REST], condition.isolate, world), **own}
+    own = {role: name for role, name in chosen.items() if role != REST and (role in grounding) == looked_at}
+    return {**model_of(chosen[REST], condition.isolate, world, grounding), **own}
 
 
-GROUNDING_ROLES = tuple(name for name, role in ROLES.items() if role.grounds)
 TRUTH_MODEL = "simulated:perfect"
 
 
-def model_of(model: str, isolate: str, world: World) -> Any:
-    """The model of a condition; `isolate` lets truth answer for the roles that are not looked at.
+def model_of(model: str, isolate: str, world: World, grounding: Sequence[str]) -> Any:
+    """The model of a condition; `isolate` lets truth answer for the roles that are not looked at: `grounding` are the method's that find
+    targets, the others plan.
 
     Raises:
         ConfigError: Truth cannot answer for this world.
@@ -185,15 +186,16 @@ def model_of(model: str, isolate: str, world: World) -> Any:
         return model
     truth = registry.make_model(TRUTH_MODEL, world=world)
     if isolate == "planning":
-        return {**dict.fromkeys(GROUNDING_ROLES, truth), "*": model}
-    return {**dict.fromkeys(GROUNDING_ROLES, model), "*": truth}
+        return {**dict.fromkeys(grounding, truth), "*": model}
+    return {**dict.fromkeys(grounding, model), "*": truth}
 
 
 def check_isolation(isolate: str, methods: Sequence[str] = ()) -> None:
     """Whether this part of these methods can be isolated.
 
     Raises:
-        ConfigError: Another word, truth would have to ground where a detector does, or a rival: its roles are not the team's.
+        ConfigError: Another word, truth would have to ground where a detector does, or a method that does not ask as one role
+            where things are and as another what to do.
     """
     rows = {name: row for name in methods if (row := registry.method_row(name)) is not None}
     looking = [name for name, row in rows.items() if row.detects]
@@ -203,9 +205,19 @@ def check_isolation(isolate: str, methods: Sequence[str] = ()) -> None:
         )
     if isolate not in ("planning", "grounding"):
         raise ConfigError(f"--isolate {isolate!r}: valid are planning (truth grounds), grounding (truth plans)")
-    for name, row in rows.items():
-        if row.team is None:
-            raise ConfigError(f"--isolate {isolate!r} is for the team's members; method {name!r} has none of them")
+    for name in rows:
+        if not _has_parts(name):
+            roles = ", ".join(registry.roles_of(name)) or "none"
+            valid = ", ".join(one for one in registry.METHODS if _has_parts(one) and not one.startswith("team:"))
+            raise ConfigError(
+                f"--isolate {isolate}: method {name!r} does not ask as one role where things are and as another what to do "
+                f"(its roles: {roles}), so no part of it can be told the truth alone; valid: {valid}, and the team without members"
+            )
+
+
+def _has_parts(method: str) -> bool:
+    grounding, roles = registry.grounding_roles(method), registry.roles_of(method)
+    return bool(grounding) and set(grounding) != set(roles)
 
 
 def check_names(

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from typing import cast
 
+from wonderful_team.agents.prompts import ROLES, role_names
 from wonderful_team.agents.role import Role
 from wonderful_team.core.caps import Caps
 from wonderful_team.core.protocols import Detector, Model, Policy, Subscriber, World
@@ -246,6 +247,39 @@ def known_row(name: str) -> MethodRow:
     if row is None:
         raise UnknownNameError("method", name, [*METHODS, "team:-MEMBER-MEMBER", "team:-each", "FILE.py:NAME"])
     return row
+
+
+def roles_of(method: str) -> tuple[str, ...]:
+    """Whom a method asks as: the roles that can have a model of their own. One of the user's own may ask as any."""
+    row = method_row(method)
+    if row is None:
+        return all_roles()
+    return role_names() if row.team is not None else tuple(role.name for role in row.roles)
+
+
+def all_roles() -> tuple[str, ...]:
+    """Every role of the team, then those of rivals."""
+    rivals = (role.name for row in METHODS.values() for role in row.roles)
+    return tuple(dict.fromkeys((*role_names(), *rivals)))
+
+
+def grounding_roles(method: str) -> tuple[str, ...]:
+    """Those of a method's roles that find targets in pictures; the others plan."""
+    row = method_row(method)
+    roles = ROLES.values() if row is None or row.team is not None else row.roles
+    return tuple(role.name for role in roles if role.grounds)
+
+
+def check_roles(method: str, named: Iterable[str]) -> None:
+    """Whether a method has these roles.
+
+    Raises:
+        UnknownNameError: It has not; lists those that it has.
+    """
+    known = roles_of(method)
+    for role in named:
+        if role not in (*known, DEFAULT_ROLE):
+            raise UnknownNameError(f"role of method {method!r}", role, known)
 
 
 def looks_with_detector(name: str) -> bool:

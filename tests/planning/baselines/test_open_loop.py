@@ -132,5 +132,5 @@ def test_a_study_estimates_and_runs_a_rival_and_isolates_none_of_its_parts(tmp_p
     assert study.run().status.outcomes == {"success": 1}
     line = study.estimate().lines[0]
     assert (line.calls, line.measured) == (1, 1)
-    with pytest.raises(ConfigError, match="is for the team's members; method 'direct' has none"):
+    with pytest.raises(ConfigError, match="'direct' does not ask as one role .* valid: .*pivot"):
         wt.Study("tabletop/rotate", isolate="grounding", **asked)

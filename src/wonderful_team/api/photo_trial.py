@@ -2,23 +2,30 @@
 
 from __future__ import annotations
 
+import hashlib
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from pathlib import Path
 from typing import Any, cast
 
 from wonderful_team.api.method import team_config
 from wonderful_team.api.observation import Observation
 from wonderful_team.api.trial_setup import UsageCounter, fingerprint, prepared
+from wonderful_team.core.filesystem import make_private_folder, write_private
 from wonderful_team.core.geometry import Box
+from wonderful_team.core.pictures import BoxMark, Picture, Point, PointMark
 from wonderful_team.core.protocols import World
 from wonderful_team.core.values import GroundedTarget, Instruction, Target, Usage
 from wonderful_team.core.values import Observation as SeenObservation
 from wonderful_team.errors import BudgetReached, ConfigError, ModelUnavailableError, WonderfulTeamError
 from wonderful_team.evals.photos import Located, read_photos, score_photo
 from wonderful_team.evals.trials import RunSettings, TrialRow, TrialSpec
+from wonderful_team.images import to_png, whole
+from wonderful_team.images.drawn import drawn
 from wonderful_team.models.client import ModelClient
 from wonderful_team.planning.ground_only import find
+from wonderful_team.record.run_folders import TRIALS
 from wonderful_team.registry.role_models import choice_of
 from wonderful_team.runtime.loop import Caller
 
@@ -33,9 +40,16 @@ def run_photo(spec: TrialSpec, settings: RunSettings) -> TrialRow:
     words = [asked.words for asked in scene.asked]
     seen = Observation.from_files(scene.picture)
     with Looking(spec, settings, words) as looking:
-        if looking.config is None:
-            return looking.row(lambda: score_photo(scene, looking.by_own(seen)))
-        return looking.row(lambda: score_photo(scene, [_of_team(item) for item in looking.by_team(seen)]))
+
+        def judged() -> TrialRow:
+            by_team = looking.config is not None
+            found = [_of_team(item) for item in looking.by_team(seen)] if by_team else looking.by_own(seen)
+            true = [BoxMark(asked.box, "after", "true") for asked in scene.asked]
+            said = [mark for one in found for mark in _marks(one)]
+            looking.show(whole(seen.main, "photo"), *true, *said)
+            return score_photo(scene, found)
+
+        return looking.row(judged)
 
 
 class Looking:
@@ -58,6 +72,7 @@ class Looking:
         self.method = prepared(spec, settings, choice_of(spec.condition.model), world)
         thorough = bool(settings.extra.get("thorough"))
         self.config = team_config(spec.condition.method, settings.prompts, thorough=thorough)
+        self._shown: Picture | None = None
         self._client = None if self.config is None else self.method.client(self._count)
         self._caller = Caller()
 
@@ -119,6 +134,21 @@ class Looking:
             raise ConfigError(f"method {self.method.name!r} needs {form}: {gives}")
         return cast(Callable[..., Any], found)
 
+    def show(self, picture: Picture, *marks: BoxMark | PointMark) -> None:
+        """What a picture of the hit or the miss shows: marks in pixels of the view."""
+        self._shown = picture.marked(*(_in_picture(mark, picture) for mark in marks))
+
+    def _kept(self, outcome: str) -> str:
+        """Write that picture where the study keeps records of such an outcome; its path, or ""."""
+        record = self._settings.record
+        if self._shown is None or record == "none" or (record == "failures" and outcome == "success"):
+            return ""
+        name = hashlib.sha256(self._spec.key.encode()).hexdigest()[:12]
+        path = (self._settings.out or Path("runs")) / TRIALS / name / "final.png"
+        make_private_folder(path.parent)
+        write_private(path, to_png(drawn(self._shown)))
+        return str(path)
+
     def row(self, judge: Callable[[], TrialRow]) -> TrialRow:
         """The trial; what ends a method without an answer is its failure, at the stage it names.
 
@@ -143,15 +173,35 @@ class Looking:
             seconds=time.monotonic() - self._started,
             rounds=self._count.rounds,
             provenance=tuple(sorted(self._count.provenance)),
+            page=self._kept(result.outcome),
             instruction="; ".join(self._words),
             versions=fingerprint(self._spec, self._settings.extra),
         )
+
+
+def point_marks(said: Point | None, centre: Point, radius_px: float) -> tuple[BoxMark | PointMark, ...]:
+    """What a picture of a hit or a miss shows: the circle as a box, and what was said."""
+    x, y = centre
+    true = BoxMark(Box(x - radius_px, y - radius_px, x + radius_px, y + radius_px), "after", "true")
+    return (true,) if said is None else (true, PointMark(said, "said"))
 
 
 def _of_team(item: GroundedTarget | None) -> Located:
     if item is None or item.status != "found":
         return Located()
     return Located(item.box, next(iter(item.points.values()), None))
+
+
+def _in_picture(mark: BoxMark | PointMark, picture: Picture) -> BoxMark | PointMark:
+    """A mark given in pixels of the view."""
+    if isinstance(mark, BoxMark):
+        return replace(mark, box=picture.frame.box_to_picture(mark.box))
+    return replace(mark, point=picture.frame.point_to_picture(mark.point))
+
+
+def _marks(one: Located) -> list[BoxMark | PointMark]:
+    box = [] if one.box is None else [BoxMark(one.box, "target", "said")]
+    return [*box, *([] if one.point is None else [PointMark(one.point, "" if one.box else "said")])]
 
 
 def _located(answer: Any, name: str) -> Located:

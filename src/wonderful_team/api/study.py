@@ -162,7 +162,7 @@ class Study:
             raise ConfigError(f"--no-control {wrong[0]}: valid are {', '.join(ALL_CONTROLS)}, all")
         return cls(
             options["suites"],
-            split_names(options["methods"]) or ("team",),
+            split_names(options["methods"]) or _methods_of(options["suites"]),
             read_choices(options["models"], OFFLINE),
             None if options["seeds"] is None else read_seeds(options["seeds"]),
             options["store"],
@@ -333,6 +333,13 @@ class Study:
 
 def _listed(words: str | Sequence[str]) -> list[str]:
     return [words] if isinstance(words, str) else list(words)
+
+
+def _methods_of(suites: Sequence[str]) -> tuple[str, ...]:
+    """Whom suites compare where no method is named."""
+    known = known_suites()
+    named = dict.fromkeys(method for name in suites if name in known for method in known[name].methods)
+    return tuple(named) or ("team",)
 
 
 def new_name_of(record: str) -> Recorded:

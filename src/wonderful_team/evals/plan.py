@@ -79,7 +79,7 @@ class StudyPlan:
             asked += [self._condition(*names, perturb, replans) for names in self._named()]
         for perturb in self.perturb:
             asked += [Condition(name, NO_MODEL, "", perturb, 0) for name in bounds]
-            if OFFLINE in self.controls:
+            if OFFLINE in self.controls and not suite.methods:
                 asked.append(Condition("team", OFFLINE, "", perturb, replans, self.how, self.reobserve))
         return tuple(dict.fromkeys(asked))
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from wonderful_team.errors import ConfigError, UnknownNameError
-from wonderful_team.evals.toy import BOX_KINDS, BOXCHECK, POINTING, is_toy
+from wonderful_team.evals.toy import ANNOTATIONS, BOX_KINDS, BOXCHECK, POINTING, is_toy
 from wonderful_team.evals.trials import DEVELOPMENT_BELOW
 
 VIMA_TASKS = (
@@ -46,13 +46,18 @@ SPATIAL = Protocol("spatial planning: 5 runs a task, closed loop, up to 3 replan
 
 @dataclass(frozen=True)
 class Suite:
-    """Tasks with the protocol they are run by; `note` says what is missing of a suite that is not whole."""
+    """Tasks with the protocol they are run by; `note` says what is missing of a suite that is not whole.
+
+    Attributes:
+        methods: Whom it compares unless others are named.
+    """
 
     name: str
     tasks: tuple[str, ...]
     protocol: Protocol
     help: str = ""
     note: str = ""
+    methods: tuple[str, ...] = ()
 
 
 def all_suites(known_tasks: Sequence[str], partitions: Mapping[str, Sequence[str]] | None = None) -> dict[str, Suite]:
@@ -86,6 +91,10 @@ def all_suites(known_tasks: Sequence[str], partitions: Mapping[str, Sequence[str
     suites["pointing"] = Suite(
         "pointing", (POINTING,), Protocol("toy table: one question a picture (the paper states no number; 100 here)", 100, 0),
         "point at a circle on the toy table: the paper's Appendix F.1",
+    )  # fmt: skip
+    suites["annotations"] = Suite(
+        "annotations", ANNOTATIONS, Protocol("toy table: each question with an annotation and without, 40 tables each", 40, 0),
+        "what labelled axes, crops, strips of turned cut-outs and a picture of before each buy", methods=("annotated", "bare"),
     )  # fmt: skip
     suites["boxcheck"] = Suite(
         "boxcheck", tuple(f"{BOXCHECK}{kind}" for kind in BOX_KINDS), Protocol("toy table: 25 boxes of each of 4 kinds", 25, 0),

@@ -16,7 +16,7 @@ from wonderful_team.errors import ConfigError, MethodCodeError, UnknownNameError
 from wonderful_team.models.budget import Budget
 from wonderful_team.models.client import DEADLINE_S, ModelClient
 from wonderful_team.planning import ABLATIONS, TeamConfig, TeamPolicy, members_of
-from wonderful_team.planning.baselines import direct, nlap, pivot, point
+from wonderful_team.planning.baselines import direct, nlap, pivot, point, shown
 from wonderful_team.planning.config import Grounding, Members, Mode
 from wonderful_team.registry.detectors import make_detector
 from wonderful_team.registry.files import is_file_name, make_from_file
@@ -184,6 +184,15 @@ METHODS: dict[str, MethodRow] = {
         roles=(point.POINTER,),
         plans=False,
     ),
+    **{
+        name: MethodRow(
+            f"for the suite annotations: one question a picture, {how} what the team draws or cuts out",
+            lambda setup, annotated=annotated: shown.ShownWith(setup.client(), annotated=annotated),  # type: ignore[misc]
+            roles=(shown.VIEWER,),
+            plans=False,
+        )
+        for name, how, annotated in (("annotated", "with", True), ("bare", "without", False))
+    },
     "pivot": MethodRow(
         "points found among numbered marks in 3 iterations and 3 parallel runs (PIVOT, arXiv 2402.07872)",
         lambda setup: pivot.Pivot(setup.client()),

@@ -48,6 +48,7 @@ def page_content(summary: Summary, warnings: Sequence[str], baseline: str | None
         "paper": published(),
         "with_paper": any(name.startswith("paper (") for name in head),
         "pair_head": tables.PAIR_HEAD,
+        "pair_task_head": tables.PAIR_TASK_HEAD[2:],
         "pairs": [_pair(one, summary, page) for one in summary.pairs(baseline)],
         "stages": _stage_table(summary),
         "failures": [_failures(one, summary, page) for one in summary.compared],
@@ -143,7 +144,12 @@ def _pair(one: Pair, summary: Summary, page: Path) -> dict[str, Any]:
         }
         for (task, seed, repeat), won in one.discordant
     ]
-    return {"pair": one, "words": tables.pair_words(one), "discordant": listed}
+    return {
+        "pair": one,
+        "words": tables.pair_words(one),
+        "tasks": [line[2:] for line in tables.pair_tasks(summary, one)],
+        "discordant": listed,
+    }
 
 
 def _failures(one: Condition, summary: Summary, page: Path) -> dict[str, Any]:

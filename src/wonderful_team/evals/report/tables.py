@@ -147,6 +147,19 @@ def pair_words(one: Pair) -> tuple[str, ...]:
     return (one.first.label, one.second.label, *paired_figures(one))
 
 
+FEW_PAIRS = 3
+"""So many comparisons are written out task by task in text."""
+PAIR_TASK_HEAD = ("first", "second", "task", *PAIR_HEAD[2:])
+
+
+def pair_tasks(summary: Summary, one: Pair) -> list[tuple[str, ...]]:
+    """A comparison task by task, in the order of PAIR_TASK_HEAD; none where there is one task."""
+    if len(summary.tasks) < 2:
+        return []
+    by_task = ((task, summary.compare(one.first, one.second, task)) for task in summary.tasks)
+    return [(one.first.label, one.second.label, task, *paired_figures(found)) for task, found in by_task if found.n]
+
+
 VARIANT_HEAD = ("", "success", "95 %", "n", "errors", "less the whole", "95 %", "exact p", "pairs")
 
 
@@ -222,6 +235,9 @@ def to_markdown(summary: Summary, baseline: str | None = None) -> str:
     pairs = [pair_words(one) for one in summary.pairs(baseline)]
     if pairs:
         parts.append(markdown_table(PAIR_HEAD, pairs))
+    by_task = [line for one in summary.pairs(baseline)[:FEW_PAIRS] for line in pair_tasks(summary, one)]
+    if by_task and len(pairs) <= FEW_PAIRS:
+        parts.append(markdown_table(PAIR_TASK_HEAD, by_task))
     for found in ablations(summary):
         parts.append(f"What each member is worth: {found.base.label}")
         parts.append(markdown_table(ablation.EFFECT_HEAD, ablation.effect_lines(found)))

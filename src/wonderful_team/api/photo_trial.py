@@ -7,7 +7,7 @@ import time
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any, cast
+from typing import Any, Literal, cast
 
 from wonderful_team.api.method import team_config
 from wonderful_team.api.observation import Observation
@@ -93,14 +93,14 @@ class Looking:
         assert self._client is not None  # asked for where there is a team
         return self._client
 
-    def by_team(self, seen: SeenObservation) -> list[GroundedTarget | None]:
-        """What the team says of each thing.
+    def by_team(self, seen: SeenObservation, kind: Literal["object", "area"] = "object") -> list[GroundedTarget | None]:
+        """What the team says of each thing, or of each place to put something.
 
         Raises:
             BudgetReached: A cap was met.
         """
         assert self.config is not None
-        targets = [Target(f"T{number}", "object", text) for number, text in enumerate(self._words, start=1)]
+        targets = [Target(f"T{number}", kind, text) for number, text in enumerate(self._words, start=1)]
         asked = Instruction("Find: " + "; ".join(self._words))
         detector = self.method.make_detector() if self.config.grounding == "detector" else None
         plan = self.wait_for(find(self.client, self.config, seen, asked, targets, detector))
@@ -184,6 +184,13 @@ def point_marks(said: Point | None, centre: Point, radius_px: float) -> tuple[Bo
     x, y = centre
     true = BoxMark(Box(x - radius_px, y - radius_px, x + radius_px, y + radius_px), "after", "true")
     return (true,) if said is None else (true, PointMark(said, "said"))
+
+
+def middle_of(item: GroundedTarget | None) -> Point | None:
+    """Where the team would act."""
+    if item is None or item.status != "found":
+        return None
+    return next(iter(item.points.values()), None) or (None if item.box is None else item.box.centre)
 
 
 def _of_team(item: GroundedTarget | None) -> Located:

@@ -19,8 +19,9 @@ from wonderful_team.evals.controls import CONTROLS
 from wonderful_team.evals.estimate import Estimate, estimate
 from wonderful_team.evals.monitor import Report
 from wonderful_team.evals.perturb import IN_PICTURE, read_tier, read_tiers
-from wonderful_team.evals.photos import read_photos
+from wonderful_team.evals.photos import SET, is_photo, read_photos
 from wonderful_team.evals.plan import OFFLINE, WHOLE, StudyPlan, of_photos, read_shard, split_names
+from wonderful_team.evals.pointing_sets import count_of, set_suites
 from wonderful_team.evals.store import Store
 from wonderful_team.evals.study import StudyResult, run_study, started_by_spawn
 from wonderful_team.evals.suites import PARTITIONS, Suite, all_suites, read_seeds, resolve
@@ -64,6 +65,8 @@ class Study:
         isolate: whole, planning, grounding: one or several. perturb: KIND=LEVEL: one or several; "" is the scene as it is.
         thinking, price, allow_unpriced, local_only, timeout, cache, cache_file, prompts, thorough: As `Method` takes them.
         detector: Its name, for methods that look with one.
+        photo_set, set_format: With the suites pointing and boxcheck: pictures of your own instead of the toy table, and how they are written
+            (where2place, refspatial, coco; None: as their files show).
         controls: Those that run beside the methods; () refuses them all.
         caps: Of the whole study. trial_caps: of each trial.
         concurrency: Most model calls at once, over all workers.
@@ -106,6 +109,8 @@ class Study:
     retry_errors: bool = False
     command: str = ""
     thorough: bool = False
+    photo_set: str | Path | None = None
+    set_format: str | None = None
 
     def __post_init__(self) -> None:
         self.methods, self.controls = registry.each_member(_listed(self.methods)), _listed(self.controls)
@@ -124,7 +129,12 @@ class Study:
             raise ConfigError(f"control {unknown[0]!r}: valid are {', '.join(ALL_CONTROLS)}")
         tiers = read_tiers(_listed(self.perturb))
         words = _listed(self.suite)
-        suites = resolve(words, list(registry.task_names()), known_suites(), is_file_name)
+        if self.set_format is not None and self.photo_set is None:
+            raise ConfigError(f"--format {self.set_format} says how a set of pictures is written: name it with --set")
+        if self.photo_set is None:
+            suites = resolve(words, list(registry.task_names()), known_suites(), is_file_name)
+        else:
+            suites = set_suites(words, Path(self.photo_set).absolute(), self.set_format)
         _check_levels(suites)
         _check_scenes(suites, tiers)
         if self.detector is not None and not any(map(registry.looks_with_detector, self.methods)):
@@ -173,6 +183,8 @@ class Study:
             thinking=read_roles(options["thinking"], "--thinking", "LEVEL"),
             price=read_roles(options["price"], "--price", "IN,OUT"),
             command=options.get("command", ""),
+            photo_set=options.get("photo_set"),
+            set_format=options.get("set_format"),
             **{name: options[name] for name in _SAME_AS_OPTIONS},
         )
 
@@ -366,7 +378,7 @@ def _check_scenes(suites: Sequence[Suite], tiers: Sequence[str]) -> None:
     registry.check_ready(task for suite in suites for task in suite.tasks)
     kinds = dict.fromkeys(read_tier(tier)[0] for tier in tiers if tier)
     for task in dict.fromkeys(task for suite in suites for task in suite.tasks):
-        if task.endswith(".json"):
+        if is_photo(task):
             if kinds:
                 raise ConfigError(f"--perturb: {task} is photos, and no tier is made of photos")
             continue
@@ -392,7 +404,8 @@ def _check_levels(suites: Sequence[Suite]) -> None:
 
 
 def _photo_counts(suites: Sequence[Suite]) -> dict[str, int]:
-    return {f"photos:{one.name}": len(read_photos(one.name)) for one in suites if of_photos(one)}
+    photos = [one.name for one in suites if of_photos(one)]
+    return {f"photos:{name}": count_of(name) if name.startswith(SET) else len(read_photos(name)) for name in photos}
 
 
 def known_suites() -> dict[str, Suite]:

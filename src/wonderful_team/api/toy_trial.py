@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from wonderful_team.api.annotation_trial import run_annotation
-from wonderful_team.api.photo_trial import Looking, point_marks
+from wonderful_team.api.photo_trial import Looking, middle_of, point_marks
 from wonderful_team.core.pictures import BoxMark, Point
 from wonderful_team.core.values import GroundedTarget
 from wonderful_team.errors import ConfigError
@@ -45,7 +45,7 @@ def _pointed(looking: Looking, table: ToyTable) -> TrialRow:
     """How far off the circle's middle is said to be."""
     if looking.config is not None:
         (item,) = looking.by_team(table.observe())
-        point, rounds = _middle(item), _rounds(item)
+        point, rounds = middle_of(item), _rounds(item)
     else:
         (place,) = looking.by_own(table.observe())
         point, rounds = place.point or (None if place.box is None else place.box.centre), []
@@ -58,13 +58,6 @@ def _kind(task: str) -> BoxKind:
     if kind not in BOX_KINDS:
         raise ConfigError(f"task {task!r}: valid are {', '.join(BOXCHECK + one for one in BOX_KINDS)}")
     return kind
-
-
-def _middle(item: GroundedTarget | None) -> Point | None:
-    """Where the team would act."""
-    if item is None or item.status != "found":
-        return None
-    return next(iter(item.points.values()), None) or (None if item.box is None else item.box.centre)
 
 
 def _rounds(item: GroundedTarget | None) -> list[Point]:

@@ -19,6 +19,7 @@ from wonderful_team import registry
 from wonderful_team.api.method import Method
 from wonderful_team.api.photo_trial import run_photo
 from wonderful_team.api.rollout import rollout
+from wonderful_team.api.set_trial import run_set
 from wonderful_team.api.toy_trial import run_toy
 from wonderful_team.api.trial_setup import UsageCounter, fingerprint, method_options, prepared
 from wonderful_team.core.deadline import limited
@@ -28,6 +29,7 @@ from wonderful_team.core.values import Instruction, Observation, Trial, Usage, V
 from wonderful_team.errors import ConfigError
 from wonderful_team.evals.controls import CONTROLS, make_control
 from wonderful_team.evals.perturb import WorldInDisguise, perturbed, read_tier
+from wonderful_team.evals.photos import SET
 from wonderful_team.evals.toy import is_toy
 from wonderful_team.evals.trials import Condition, RunSettings, TrialRow, TrialSpec
 from wonderful_team.record.run_folders import TRIALS
@@ -45,6 +47,8 @@ def run_trial(spec: TrialSpec, settings: RunSettings) -> TrialRow:
 
 
 def _trial(spec: TrialSpec, settings: RunSettings) -> TrialRow:
+    if spec.task.startswith(SET):
+        return run_set(spec, settings)
     if spec.task.endswith(".json"):
         return run_photo(spec, settings)
     if is_toy(spec.task):

@@ -84,6 +84,19 @@ QUIET_S = 10.0
 @click.option(
     "--no-control", "refused", multiple=True, metavar="NAME|all", help="Leave a control out; may be repeated."
 )
+@click.option(
+    "--set",
+    "photo_set",
+    type=PATH,
+    metavar="PATH",
+    help="With pointing and boxcheck: your own pictures instead of the toy table.",
+)
+@click.option(
+    "--format",
+    "set_format",
+    metavar="FORMAT",
+    help="How they are written: where2place, refspatial or coco. [default: as the files show]",
+)
 @click.option("--estimate", is_flag=True, help="Say what it would take, from a few pilot trials, and run no more.")
 @click.option("--pilot", type=click.IntRange(1), help="With --estimate: so many trials per condition, also paid ones.")
 @click.option("--store", type=PATH, default=Path("study.db"), show_default=True, help="Where trials are kept.")

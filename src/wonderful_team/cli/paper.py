@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from wonderful_team.evals.paper_tables import PaperTable
     from wonderful_team.evals.summary import Summary
 
-OWN = ("suites", "methods", "store", "open_page")
+OWN = ("suites", "methods", "store", "open_page", "photo_set", "set_format")
 """Options of `bench` that a table decides by itself."""
 SHARED = [option for option in bench.command.params if option.name not in OWN]
 

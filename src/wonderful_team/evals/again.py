@@ -6,6 +6,7 @@ import re
 import shlex
 
 from wonderful_team.evals.names import NO_MODEL
+from wonderful_team.evals.photos import SET, is_photo
 from wonderful_team.evals.trials import TrialSpec
 
 NOT_KEPT = "its record was not kept"
@@ -27,8 +28,8 @@ _OPTIONS = (
 def command_again(spec: TrialSpec) -> str:
     """Runs this trial alone, in a store of its own. A photo's number cannot be chosen: there all photos of the file are run."""
     one = spec.condition
-    words = ["wonderful-team", "bench", spec.task]
-    words += [] if spec.task.endswith(".json") else ["--seeds", str(spec.seed)]
+    words = ["wonderful-team", "bench", *_task(spec.task)]
+    words += [] if is_photo(spec.task) else ["--seeds", str(spec.seed)]
     words += ["--method", one.method]
     words += [] if one.model == NO_MODEL else ["--model", one.model.replace(", ", ",")]
     words += ["--isolate", one.isolate] if one.isolate else []
@@ -39,6 +40,14 @@ def command_again(spec: TrialSpec) -> str:
     for said in one.how.split(", ") if one.how else []:
         words += _option(said)
     return shlex.join([*words, "--no-control", "all", "--record", "full", "--store", STORE])
+
+
+def _task(task: str) -> list[str]:
+    """A task as `bench` takes it."""
+    if not task.startswith(SET):
+        return [task]
+    head, _, path = task.removeprefix(SET).partition(":")
+    return [head.partition("/")[0], "--set", path, "--format", head.rpartition("/")[2]]
 
 
 def _option(said: str) -> list[str]:

@@ -11,6 +11,7 @@ from wonderful_team.core.intervals import Rate
 from wonderful_team.core.text import counted
 from wonderful_team.evals.controls import CONTROLS, ORACLE, control_faults
 from wonderful_team.evals.pairing import Pair, pair
+from wonderful_team.evals.photos import is_photo
 from wonderful_team.evals.plan import OFFLINE
 from wonderful_team.evals.toy import is_toy
 from wonderful_team.evals.trials import DEVELOPMENT_BELOW, Condition, Row, TrialRow
@@ -234,11 +235,7 @@ class Summary:
                 found.append(f"{condition.label}: not ended yet: {counted(whole.missing, 'trial')}")
         found += _origins([self.cell(one) for one in self.compared])
         development = sorted(
-            {
-                row.spec.seed
-                for row in self.rows
-                if row.spec.seed < DEVELOPMENT_BELOW and not row.spec.task.endswith(".json")
-            }
+            {row.spec.seed for row in self.rows if row.spec.seed < DEVELOPMENT_BELOW and not is_photo(row.spec.task)}
         )
         if development:
             found.append(
@@ -249,7 +246,7 @@ class Summary:
         if (
             self.compared
             and not any(one.method in (ORACLE,) for one in self.bounds)
-            and not all(task.endswith(".json") or is_toy(task) for task in self.tasks)
+            and not all(is_photo(task) or is_toy(task) for task in self.tasks)
         ):
             found.append("controls were refused: nothing here shows that the scorers can tell success from failure")
         return found

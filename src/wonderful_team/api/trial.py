@@ -24,14 +24,14 @@ from wonderful_team.api.toy_trial import run_toy
 from wonderful_team.api.trial_setup import UsageCounter, fingerprint, method_options, prepared
 from wonderful_team.core.deadline import limited
 from wonderful_team.core.jsonable import to_jsonable
-from wonderful_team.core.protocols import Policy, World, privileged
+from wonderful_team.core.protocols import Policy, SubgoalTruth, World, offers, privileged
 from wonderful_team.core.values import Instruction, Observation, Trial, Usage, View
 from wonderful_team.errors import ConfigError
 from wonderful_team.evals.controls import CONTROLS, make_control
 from wonderful_team.evals.perturb import WorldInDisguise, perturbed, read_tier
 from wonderful_team.evals.photos import SET
 from wonderful_team.evals.toy import is_toy
-from wonderful_team.evals.trials import Condition, RunSettings, TrialRow, TrialSpec
+from wonderful_team.evals.trials import VALID_SUBGOAL, Condition, RunSettings, TrialRow, TrialSpec
 from wonderful_team.record.run_folders import TRIALS
 from wonderful_team.registry.files import check_names_no_code, is_file_name
 from wonderful_team.registry.role_models import REST, choice_of
@@ -75,10 +75,17 @@ def _trial(spec: TrialSpec, settings: RunSettings) -> TrialRow:
             page=page,
             instruction="" if spec.condition.method in CONTROLS else world.instruction.plain_text,
             versions=fingerprint(spec, settings.extra),
+            facts=_facts(world) if trial.outcome in ("success", "failure") else {},
         )
     finally:
         with contextlib.suppress(Exception):
             GuardedWorld(world).close()
+
+
+def _facts(world: World) -> dict[str, float]:
+    """How far a trial came, where its simulator says it; asked after the trial, as its score is."""
+    truth = privileged(world)
+    return {VALID_SUBGOAL: float(truth.subgoals_reached() > 0)} if offers(truth, SubgoalTruth) else {}
 
 
 def code_of_names(names: Iterable[str], models: Iterable[str]) -> frozenset[str]:

@@ -11,6 +11,8 @@ from typing import Any, Literal, Protocol, TypeAlias, get_args
 from wonderful_team.core.caps import Caps
 from wonderful_team.errors import ConfigError
 
+VALID_SUBGOAL = "at least one valid subgoal"
+"""Fact of a trial: after some action a goal of the task held that did not hold before (the paper's Appendix A)."""
 OUTCOMES = ("success", "failure", "error", "unscored")
 Outcome: TypeAlias = Literal["success", "failure", "error", "unscored"]
 Recorded: TypeAlias = Literal["full", "failures", "none"]

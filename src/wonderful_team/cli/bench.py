@@ -32,6 +32,8 @@ QUIET_S = 10.0
     short_help="Compare methods and models on suites, with controls.",
     epilog="\b\nwonderful-team bench vima3 --estimate\n"
     "wonderful-team bench vima3 fruit --method team,team:paper --seeds 1000:1020 --store study.db\n"
+    "wonderful-team bench ablation --method team:-each --model NAME --store ablation.db\n"
+    "wonderful-team bench pointing --set photos.json --method point,team --model NAME\n"
     "wonderful-team bench rotate --method mine.py:Mine --store study.db && wonderful-team report study.db",
 )
 @click.argument("suites", nargs=-1, metavar="SUITE|TASK|FILE.py:TASK|PHOTOS.json ...")

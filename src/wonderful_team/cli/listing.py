@@ -116,6 +116,7 @@ def _methods(out: Path | None) -> dict[str, str]:
         **{name: row.words for name, row in METHODS.items()},
         "team:-MEMBER-MEMBER": "the team without any of verification, manager, checker, mover, memory (in this order), "
         "as in team:-verification-mover; the same after team:paper",
+        "team:-each": "in studies: the team, and the team without each member in turn; also team:paper:-each",
         "FILE.py:NAME": "your own: a class with the Policy interface",
     }
 

@@ -14,7 +14,7 @@ import pytest
 import wonderful_team as wt
 from tests.evals.own_files import LENIENT, METHOD
 from wonderful_team import registry
-from wonderful_team.api.study import known_suites
+from wonderful_team.api.known_suites import known_suites
 from wonderful_team.api.trial import model_of, run_trial
 from wonderful_team.api.trial_setup import reproduce
 from wonderful_team.cli.app import run

@@ -10,23 +10,22 @@ from pathlib import Path
 from typing import Any
 
 from wonderful_team import registry
+from wonderful_team.api.known_suites import check_levels, check_scenes, known_suites, methods_of, photo_counts
 from wonderful_team.api.trial import check_isolation, check_names, code_of_names, run_trial
 from wonderful_team.core.caps import Caps
 from wonderful_team.core.renamed import renamed_arguments
 from wonderful_team.core.text import counted
-from wonderful_team.errors import ConfigError, UnknownNameError
+from wonderful_team.errors import ConfigError
 from wonderful_team.evals.controls import CONTROLS
 from wonderful_team.evals.estimate import Estimate, estimate
 from wonderful_team.evals.monitor import Report
-from wonderful_team.evals.perturb import IN_PICTURE, read_tier, read_tiers
-from wonderful_team.evals.photos import SET, is_photo, read_photos
+from wonderful_team.evals.perturb import read_tiers
 from wonderful_team.evals.plan import OFFLINE, WHOLE, StudyPlan, of_photos, read_shard, split_names
-from wonderful_team.evals.pointing_sets import count_of, set_suites
+from wonderful_team.evals.pointing_sets import set_suites
 from wonderful_team.evals.store import Store
 from wonderful_team.evals.study import StudyResult, run_study, started_by_spawn
-from wonderful_team.evals.suites import PARTITIONS, Suite, all_suites, read_seeds, resolve
+from wonderful_team.evals.suites import read_seeds, resolve
 from wonderful_team.evals.summary import Summary, summarise
-from wonderful_team.evals.toy import is_toy
 from wonderful_team.evals.trials import RECORDED, Condition, Recorded, RunSettings, TrialRow, TrialSpec
 from wonderful_team.evals.workers import run_safely
 from wonderful_team.models.cache import CacheMode
@@ -135,8 +134,8 @@ class Study:
             suites = resolve(words, list(registry.task_names()), known_suites(), is_file_name)
         else:
             suites = set_suites(words, Path(self.photo_set).absolute(), self.set_format)
-        _check_levels(suites)
-        _check_scenes(suites, tiers)
+        check_levels(suites)
+        check_scenes(suites, tiers)
         if self.detector is not None and not any(map(registry.looks_with_detector, self.methods)):
             raise ConfigError(
                 f"detector {self.detector!r}: none of the methods looks with one: {', '.join(self.methods)}"
@@ -159,7 +158,7 @@ class Study:
             self.shard,
             self._how(),
             self.reobserve,
-            {"command": self.command, **_photo_counts(suites)},
+            {"command": self.command, **photo_counts(suites)},
         )
         self.store = sharded(Path(self.store), self.shard)
 
@@ -172,7 +171,7 @@ class Study:
             raise ConfigError(f"--no-control {wrong[0]}: valid are {', '.join(ALL_CONTROLS)}, all")
         return cls(
             options["suites"],
-            split_names(options["methods"]) or _methods_of(options["suites"]),
+            split_names(options["methods"]) or methods_of(options["suites"]),
             read_choices(options["models"], OFFLINE),
             None if options["seeds"] is None else read_seeds(options["seeds"]),
             options["store"],
@@ -347,13 +346,6 @@ def _listed(words: str | Sequence[str]) -> list[str]:
     return [words] if isinstance(words, str) else list(words)
 
 
-def _methods_of(suites: Sequence[str]) -> tuple[str, ...]:
-    """Whom suites compare where no method is named."""
-    known = known_suites()
-    named = dict.fromkeys(method for name in suites if name in known for method in known[name].methods)
-    return tuple(named) or ("team",)
-
-
 def new_name_of(record: str) -> Recorded:
     """Which trials keep their run folder, "all" being the old name of "full".
 
@@ -371,48 +363,6 @@ def _is_free(text: str) -> bool:
     chosen = choice_of(text)
     names = [chosen] if isinstance(chosen, str) else list(chosen.values())
     return all(name in FREE or name.startswith("simulated:") for name in names)
-
-
-def _check_scenes(suites: Sequence[Suite], tiers: Sequence[str]) -> None:
-    """Every own world loads, and every tier can be made."""
-    registry.check_ready(task for suite in suites for task in suite.tasks)
-    kinds = dict.fromkeys(read_tier(tier)[0] for tier in tiers if tier)
-    for task in dict.fromkeys(task for suite in suites for task in suite.tasks):
-        if is_photo(task):
-            if kinds:
-                raise ConfigError(f"--perturb: {task} is photos, and no tier is made of photos")
-            continue
-        if is_toy(task):
-            if kinds:
-                raise ConfigError(f"--perturb: no tier is made of the toy table ({task})")
-            continue
-        if is_file_name(task):
-            registry.make_world(task).close()
-        missing = [kind for kind in kinds if kind in ("clutter",) and kind not in registry.own_tiers(task)]
-        if missing:
-            raise ConfigError(
-                f"--perturb {missing[0]}: {task} cannot put more things on its table; our tabletop can. "
-                f"Valid for any world: {', '.join((*IN_PICTURE, 'paraphrase'))}"
-            )
-
-
-def _check_levels(suites: Sequence[Suite]) -> None:
-    known = registry.task_partitions()
-    for task, at, level in (name.partition("@") for suite in suites for name in suite.tasks):
-        if at and task in known and level not in known[task]:
-            raise UnknownNameError(f"level of {task}", level, known[task])
-
-
-def _photo_counts(suites: Sequence[Suite]) -> dict[str, int]:
-    photos = [one.name for one in suites if of_photos(one)]
-    return {f"photos:{name}": count_of(name) if name.startswith(SET) else len(read_photos(name)) for name in photos}
-
-
-def known_suites() -> dict[str, Suite]:
-    """Every suite by name, made of the registered tasks."""
-    levels = registry.task_partitions()
-    found = {level: [f"{task}@{level}" for task, has in levels.items() if level in has] for level in PARTITIONS}
-    return all_suites(list(registry.task_names()), found)
 
 
 def sharded(store: Path, shard: tuple[int, int]) -> Path:

@@ -101,7 +101,7 @@ def _tasks(out: Path | None) -> dict[str, str]:
 
 
 def _suites(out: Path | None) -> dict[str, str]:
-    from wonderful_team.api.study import known_suites
+    from wonderful_team.api.known_suites import known_suites
 
     return {
         name: f"{counted(len(suite.tasks), 'task')}; {suite.help or suite.protocol.name}{'; ' + suite.note if suite.note else ''}"

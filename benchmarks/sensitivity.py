@@ -31,16 +31,16 @@ from wonderful_team.runtime import rollout
 from wonderful_team.simulated import PROFILES, SimulatedModel
 
 RATES: dict[str, tuple[float, ...]] = {
-    "wrong_plan": (0.0, 0.2, 0.4, 0.8),
-    "overlooks": (0.0, 0.3, 0.6, 1.0),
-    "missed": (0.0, 0.05, 0.1, 0.2),
-    "imagined": (0.0, 0.05, 0.1, 0.2),
-    "wrong_thing": (0.0, 0.05, 0.1, 0.2),
-    "wrong_choice": (0.0, 0.05, 0.1, 0.2),
-    "edge": (0.0, 0.1, 0.2, 0.3),
-    "correction": (0.0, 0.25, 0.5, 0.75),
+    "wrong_plan": (0.0, 0.2, 0.6),
+    "overlooks": (0.0, 0.3, 0.9),
+    "missed": (0.0, 0.05, 0.15),
+    "imagined": (0.0, 0.05, 0.15),
+    "wrong_thing": (0.0, 0.05, 0.15),
+    "wrong_choice": (0.0, 0.05, 0.15),
+    "edge": (0.0, 0.1, 0.3),
+    "correction": (0.0, 0.25, 0.75),
 }
-"""Rates that the paper does not measure, and the values that are tried."""
+"""Rates that the paper does not measure, and the values that are tried: none, what is assumed, three times as much."""
 Cell = tuple[str, float]
 """A rate and its value; ("", 0.0) is the profile as it is."""
 AS_IT_IS: Cell = ("", 0.0)

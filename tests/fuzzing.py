@@ -186,9 +186,15 @@ def photos(desk: AgentSession, draw: st.DrawFn) -> Argv:
     }
     spoiled = desk.file("photos.json", draw(damaged_json(json.dumps(coco))))
     store = str(desk.scratch / "photos.db")
+    questions = json.dumps({"image": desk.picture, "text": "red circle"})
+    desk.file("point_questions.jsonl", draw(damaged_text(questions, f"{questions}\n{questions}")))
+    asked = draw(st.sampled_from([
+        [spoiled], ["pointing", "--set", spoiled], ["boxcheck", "--set", spoiled, "--format", "coco"],
+        ["pointing", "--set", str(desk.scratch), "--format", draw(damaged_text("where2place", "refspatial"))],
+    ]))  # fmt: skip
     return [
         "bench",
-        spoiled,
+        *asked,
         "--store",
         store,
         "--jobs",
@@ -286,7 +292,7 @@ def worlds(desk: AgentSession, draw: st.DrawFn) -> Argv:
 def study_options(desk: AgentSession, draw: st.DrawFn) -> Argv:
     options = {
         "--seeds": ("0:2", "1000:1001"), "--perturb": ("lighting=0..3", "clutter=2"), "--shard": ("1/2",), "--isolate": ("whole,planning",),
-        "--no-control": ("oracle", "all"), "--method": ("team,team:s1",), "--model": ("offline,checker=offline", "simulated:perfect"),
+        "--no-control": ("oracle", "all"), "--method": ("team,team:s1",), "--model": ("offline,checker=offline", "simulated:perfect:wrong_plan=1:edge=0.1"),
         "--price": ("1,2",), "--thinking": ("low",), "--repeats": ("2",), "--max-usd": ("1",), "--trial-max-calls": ("1",),
         "--store": (str(desk.scratch / "s.db"),), "--ray": (), "--record": ("none",),
     }  # fmt: skip

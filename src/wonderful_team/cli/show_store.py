@@ -16,11 +16,10 @@ _MAGIC = b"SQLite format 3\x00"
 
 def is_store(name: str) -> bool:
     """Whether a name is a file of SQLite, as a store is."""
-    path = user_path(name)
     try:
-        with path.open("rb") as file:
+        with user_path(name).open("rb") as file:
             return file.read(len(_MAGIC)) == _MAGIC
-    except OSError:
+    except (OSError, ValueError):
         return False
 
 

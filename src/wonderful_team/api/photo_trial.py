@@ -18,7 +18,13 @@ from wonderful_team.core.pictures import BoxMark, Picture, Point, PointMark
 from wonderful_team.core.protocols import World
 from wonderful_team.core.values import GroundedTarget, Instruction, Target, Usage
 from wonderful_team.core.values import Observation as SeenObservation
-from wonderful_team.errors import BudgetReached, ConfigError, ModelUnavailableError, WonderfulTeamError
+from wonderful_team.errors import (
+    BudgetReached,
+    ConfigError,
+    FileNotWrittenError,
+    ModelUnavailableError,
+    WonderfulTeamError,
+)
 from wonderful_team.evals.photos import Located, read_photos, score_photo
 from wonderful_team.evals.trials import RunSettings, TrialRow, TrialSpec
 from wonderful_team.images import to_png, whole
@@ -138,16 +144,19 @@ class Looking:
         """What a picture of the hit or the miss shows: marks in pixels of the view."""
         self._shown = picture.marked(*(_in_picture(mark, picture) for mark in marks))
 
-    def _kept(self, outcome: str) -> str:
-        """Write that picture where the study keeps records of such an outcome; its path, or ""."""
+    def _with_picture(self, result: TrialRow) -> TrialRow:
+        """The trial with that picture, where the study keeps records of such an outcome; a picture that cannot be written costs no result."""
         record = self._settings.record
-        if self._shown is None or record == "none" or (record == "failures" and outcome == "success"):
-            return ""
+        if self._shown is None or record == "none" or (record == "failures" and result.outcome == "success"):
+            return result
         name = hashlib.sha256(self._spec.key.encode()).hexdigest()[:12]
         path = (self._settings.out or Path("runs")) / TRIALS / name / "final.png"
-        make_private_folder(path.parent)
-        write_private(path, to_png(drawn(self._shown)))
-        return str(path)
+        try:
+            make_private_folder(path.parent)
+            write_private(path, to_png(drawn(self._shown)))
+        except FileNotWrittenError as error:
+            return replace(result, reason=f"{result.reason}; {error}")
+        return replace(result, page=str(path))
 
     def row(self, judge: Callable[[], TrialRow]) -> TrialRow:
         """The trial; what ends a method without an answer is its failure, at the stage it names.
@@ -162,6 +171,7 @@ class Looking:
             raise
         except WonderfulTeamError as error:
             result = TrialRow("failure", error.stage or "grounding", str(error))
+        result = self._with_picture(result)
         by_role = self._count.by_role if self._client is None else self._client.budget.by_role
         usage = sum(by_role.values(), Usage())
         return replace(
@@ -173,7 +183,6 @@ class Looking:
             seconds=time.monotonic() - self._started,
             rounds=self._count.rounds,
             provenance=tuple(sorted(self._count.provenance)),
-            page=self._kept(result.outcome),
             instruction="; ".join(self._words),
             versions=fingerprint(self._spec, self._settings.extra),
         )

@@ -56,7 +56,7 @@ class Study:
 
     Args:
         suite: A suite, a task, FILE.py:TASK, PHOTOS.json, or several.
-        methods, models: A name or several ("team:-each": the team, and it without each member in turn); objects cannot be sent to worker processes. A model may be a mapping from role to name,
+        methods, models: A name or several, by default those that the suite compares, else the team (methods: "team:-each": the team, and it without each member in turn); objects cannot be sent to worker processes. A model may be a mapping from role to name,
             with "*" for the rest.
         seeds: For every task; None for the suite's own, from 1000 on.
         store: File that keeps what ended; the same study on the same file resumes.
@@ -77,7 +77,7 @@ class Study:
     """
 
     suite: str | Sequence[str]
-    methods: str | Sequence[str] = ("team",)
+    methods: str | Sequence[str] = ()
     models: str | Mapping[str, str] | Sequence[str | Mapping[str, str]] = (OFFLINE,)
     seeds: Iterable[int] | None = None
     store: str | Path = "study.db"
@@ -112,7 +112,9 @@ class Study:
     set_format: str | None = None
 
     def __post_init__(self) -> None:
-        self.methods, self.controls = registry.each_member(_listed(self.methods)), _listed(self.controls)
+        words = _listed(self.suite)
+        self.methods = registry.each_member(_listed(self.methods) or methods_of(words))
+        self.controls = _listed(self.controls)
         self.models = [self.models] if isinstance(self.models, str | Mapping) else list(self.models)
         self.record = new_name_of(self.record)
         if isinstance(self.seeds, int):
@@ -127,7 +129,6 @@ class Study:
         if unknown:
             raise ConfigError(f"control {unknown[0]!r}: valid are {', '.join(ALL_CONTROLS)}")
         tiers = read_tiers(_listed(self.perturb))
-        words = _listed(self.suite)
         if self.set_format is not None and self.photo_set is None:
             raise ConfigError(f"--format {self.set_format} says how a set of pictures is written: name it with --set")
         if self.photo_set is None:
@@ -171,7 +172,7 @@ class Study:
             raise ConfigError(f"--no-control {wrong[0]}: valid are {', '.join(ALL_CONTROLS)}, all")
         return cls(
             options["suites"],
-            split_names(options["methods"]) or methods_of(options["suites"]),
+            split_names(options["methods"]),
             read_choices(options["models"], OFFLINE),
             None if options["seeds"] is None else read_seeds(options["seeds"]),
             options["store"],

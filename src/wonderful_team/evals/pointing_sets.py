@@ -15,7 +15,7 @@ import json
 import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cache, lru_cache
 from pathlib import Path
 from typing import Any, Literal
 
@@ -273,12 +273,19 @@ def boxes_of(task: str) -> tuple[BoxScene, ...]:
             raise ConfigError(
                 f"{task}: boxcheck needs boxes, and this set has masks; valid: --format coco, or the suite pointing"
             )
-        height, width = load_picture(scene.picture).shape[:2]
+        width, height = _size_of(scene.picture)
         box = _box(
             kind, scene, scene.box, Box(0, 0, width, height), np.random.default_rng([number, BOX_KINDS.index(kind), 2])
         )
         found += [] if box is None else [BoxScene(scene, box)]
     return tuple(found)
+
+
+@cache
+def _size_of(picture: Path) -> tuple[int, int]:
+    """Width and height, as the picture is seen; each is read once for all kinds of boxes."""
+    height, width = load_picture(picture).shape[:2]
+    return width, height
 
 
 def _box(kind: str, scene: PointingScene, right: Box, whole: Box, rng: np.random.Generator) -> Box | None:

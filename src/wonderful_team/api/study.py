@@ -56,8 +56,9 @@ class Study:
 
     Args:
         suite: A suite, a task, FILE.py:TASK, PHOTOS.json, or several.
-        methods, models: A name or several, by default those that the suite compares, else the team (methods: "team:-each": the team, and it without each member in turn); objects cannot be sent to worker processes. A model may be a mapping from role to name,
-            with "*" for the rest.
+        methods, models: A name or several; objects cannot be sent to worker processes. Methods are by default those that the suite
+            compares, else the team; "team:-each" is the team, and it without each member in turn. A model may be a mapping from
+            role to name, with "*" for the rest.
         seeds: For every task; None for the suite's own, from 1000 on.
         store: File that keeps what ended; the same study on the same file resumes.
         repeats, replans, reobserve, shard: As `bench` has them.

@@ -94,7 +94,7 @@ class Method:
     def __post_init__(self) -> None:
         self._config = team_config(self.method, self.prompts, self.strict, self.thorough)
         self._check_detector()
-        roles = registry.roles_of(self.method) or (registry.DEFAULT_ROLE,)
+        roles = registry.roles_of(self.method)
         for chosen in (self.model, self.thinking, self.price):
             registry.check_roles(self.method, chosen if isinstance(chosen, Mapping) else ())
         options = model_options(self.thinking, self.price, self.local_only, roles, self.timeout)

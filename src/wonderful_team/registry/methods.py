@@ -78,7 +78,7 @@ class MethodRow:
         words: A line of help.
         make: Its factory.
         team: What its name says about the team; None for a rival.
-        roles: A rival's own roles.
+        roles: A rival's own roles; () where it does not say.
         privileged: It is told of a simulator's truth.
         detects: It looks with a detector (`--detector`).
         plans: It can be run in a world; what only says where things are answers the suites `pointing` and `boxcheck`, and photos.
@@ -259,11 +259,11 @@ def known_row(name: str) -> MethodRow:
 
 
 def roles_of(method: str) -> tuple[str, ...]:
-    """Whom a method asks as: the roles that can have a model of their own. One of the user's own may ask as any."""
+    """Whom a method asks as: the roles that can have a model of their own. One that does not say, as the user's own, may ask as any."""
     row = method_row(method)
-    if row is None:
-        return all_roles()
-    return role_names() if row.team is not None else tuple(role.name for role in row.roles)
+    if row is not None and row.team is not None:
+        return role_names()
+    return tuple(role.name for role in row.roles) if row is not None and row.roles else all_roles()
 
 
 def all_roles() -> tuple[str, ...]:

@@ -1,6 +1,6 @@
 """What each assumed error rate of a simulated model does to success: one rate at a time, the others as they are.
 
-    python -m benchmarks.sensitivity                                    # simulated:paper-gpt-4o, at most 15 minutes of processor time
+    python -m benchmarks.sensitivity                                    # simulated:paper-gpt-4o, at most 15 minutes of processor time: five seeds
     python -m benchmarks.sensitivity --rates overlooks --seeds 2
     python -m benchmarks.sensitivity --profile paper-claude-3-opus --method team:paper --cpu-minutes 60 --out sensitivity.png
 

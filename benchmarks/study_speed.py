@@ -63,7 +63,7 @@ def main() -> None:
             seeds=range(options.first, options.first + options.seeds),
             store=Path(name) / "study.db",
             controls=(),
-            pages="none",
+            record="none",
             jobs=options.jobs,
         )
         started, before_s = time.perf_counter(), cpu_s()

@@ -46,7 +46,7 @@ class AgentSession:
         self.trial = self._trial()
         np.save(folder / "depth.npy", np.full((240, 320), 0.8, np.float32))
         self.store = folder / "study.db"
-        wt.Study(TASK, seeds=[0], store=self.store, controls=(), jobs=1, out=self.runs, pages="none").run()
+        wt.Study(TASK, seeds=[0], store=self.store, controls=(), jobs=1, out=self.runs, record="none").run()
         self.kept = self.good("desk.png")
         self.scratch = folder
 
@@ -140,7 +140,20 @@ def stores(desk: AgentSession, draw: st.DrawFn) -> Argv:
     else:
         _spoil_table(store, draw)
     report = ["report", store, "--out", str(desk.scratch / "report.html")]
-    bench = ["bench", TASK, "--seeds", "0:1", "--store", store, "--jobs", "1", "--no-control", "all", "--pages", "none"]
+    bench = [
+        "bench",
+        TASK,
+        "--seeds",
+        "0:1",
+        "--store",
+        store,
+        "--jobs",
+        "1",
+        "--no-control",
+        "all",
+        "--record",
+        "none",
+    ]
     return draw(st.sampled_from([report, bench, [*bench, "--estimate"]]))
 
 
@@ -173,16 +186,22 @@ def photos(desk: AgentSession, draw: st.DrawFn) -> Argv:
     }
     spoiled = desk.file("photos.json", draw(damaged_json(json.dumps(coco))))
     store = str(desk.scratch / "photos.db")
+    questions = json.dumps({"image": desk.picture, "text": "red circle"})
+    desk.file("point_questions.jsonl", draw(damaged_text(questions, f"{questions}\n{questions}")))
+    asked = draw(st.sampled_from([
+        [spoiled], ["pointing", "--set", spoiled], ["boxcheck", "--set", spoiled, "--format", "coco"],
+        ["pointing", "--set", str(desk.scratch), "--format", draw(damaged_text("where2place", "refspatial"))],
+    ]))  # fmt: skip
     return [
         "bench",
-        spoiled,
+        *asked,
         "--store",
         store,
         "--jobs",
         "1",
         "--no-control",
         "all",
-        "--pages",
+        "--record",
         "none",
         "--max-seconds",
         "2",
@@ -273,9 +292,9 @@ def worlds(desk: AgentSession, draw: st.DrawFn) -> Argv:
 def study_options(desk: AgentSession, draw: st.DrawFn) -> Argv:
     options = {
         "--seeds": ("0:2", "1000:1001"), "--perturb": ("lighting=0..3", "clutter=2"), "--shard": ("1/2",), "--isolate": ("whole,planning",),
-        "--no-control": ("oracle", "all"), "--method": ("team,team:s1",), "--model": ("offline,checker=offline", "simulated:perfect"),
+        "--no-control": ("oracle", "all"), "--method": ("team,team:s1",), "--model": ("offline,checker=offline", "simulated:perfect:wrong_plan=1:edge=0.1"),
         "--price": ("1,2",), "--thinking": ("low",), "--repeats": ("2",), "--max-usd": ("1",), "--trial-max-calls": ("1",),
-        "--store": (str(desk.scratch / "s.db"),), "--ray": (), "--pages": ("none",),
+        "--store": (str(desk.scratch / "s.db"),), "--ray": (), "--record": ("none",),
     }  # fmt: skip
     suite = draw(st.sampled_from(["rotate", draw(damaged_text("vima17/L1", "rotate@L2", "fruit", "photos.json"))]))
     argv = [

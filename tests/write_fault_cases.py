@@ -98,7 +98,7 @@ def prepare(place: Path) -> Setting:
     study = ["bench", f"{own}:Desk", "--method", f"{own}:Fixed", "--no-control", "all", "--seeds", "0:1"]
     for argv in (
         ["run", f"{own}:Desk", "--method", f"{own}:Fixed", "--out", str(another())],
-        [*study, "--jobs", "1", "--store", str(made / "s.db"), "--pages", "none"],
+        [*study, "--jobs", "1", "--store", str(made / "s.db"), "--record", "none"],
         ["plan", DESK, WORDS, "--model", f"{own}:Stub", "--out", str(made)],
     ):
         code, _, err = called(argv, Faults([]))
@@ -203,7 +203,7 @@ class Bench:
 
     def study(self, setting: Setting, place: Path) -> list[str]:
         argv = ["bench", f"{setting.own}:Desk", "--method", f"{setting.own}:Fixed", "--no-control", "all"]
-        argv += ["--seeds", "0:2", "--jobs", "1", "--pages", "all"]
+        argv += ["--seeds", "0:2", "--jobs", "1", "--record", "full"]
         return [*argv, "--store", str(place / "s.db"), "--out", str(place / "runs")]
 
     def command(self, setting: Setting, place: Path, faults: Faults) -> tuple[int, str, str]:

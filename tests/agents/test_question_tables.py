@@ -12,12 +12,12 @@ from wonderful_team.agents import ROLES, build_request
 from wonderful_team.agents.rendering import words
 from wonderful_team.agents.role import Ask, role
 from wonderful_team.api.method import POINTING_ROLES
-from wonderful_team.api.trial import GROUNDING_ROLES
 from wonderful_team.contracts import QUESTIONS, Question, WriteFunction
 from wonderful_team.core.values import Words
 from wonderful_team.errors import ConfigError
 from wonderful_team.offline.answers import ANSWERS, SAMPLED
 from wonderful_team.planning import ABLATIONS, Members
+from wonderful_team.registry import grounding_roles
 
 
 def test_every_question_has_an_answer_in_every_table() -> None:
@@ -34,7 +34,7 @@ def test_the_stub_answers_every_question_in_its_form(question: Question) -> None
 
 
 def test_what_studies_and_models_ask_of_roles_follows_from_the_roles() -> None:
-    assert GROUNDING_ROLES == ("manager", "checker", "mover")
+    assert grounding_roles("team") == ("manager", "checker", "mover")
     assert set(POINTING_ROLES) == {"supervisor", "manager"}
     assert {member.name for member in fields(Members)} <= set(ROLES)
     assert ABLATIONS["s5"].words == "without Verification, Checker and Mover"

@@ -320,7 +320,7 @@ def test_runs_stores_and_kept_answers_are_their_owners_alone(session, photo, tmp
         assert run(command(photo, WIRE.spec(server), folder)) == 0
     run(["run", "tabletop/visual_manipulation", "--out", str(folder), "--video", str(folder / "a.webp")])
     bench = ["bench", "tabletop/visual_manipulation", "--seeds", "0:1", "--store", str(folder / "studies" / "s.db")]
-    run([*bench, "--no-control", "all", "--jobs", "1", "--pages", "none"])
+    run([*bench, "--no-control", "all", "--jobs", "1", "--record", "none"])
     run(["report", str(folder / "studies" / "s.db"), "--out", str(folder / "report" / "r.html")])
     made = [path for path in given.rglob("*") if not path.is_symlink()]
     assert {path.name for path in made} >= {"kept.sqlite", "record.json", "page.html", "s.db", "r.html", "a.webp"}

@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 from wonderful_team import registry
-from wonderful_team.api.study import known_suites
+from wonderful_team.api.known_suites import known_suites
 from wonderful_team.cli.app import run
 from wonderful_team.evals.paper_tables import PAPER_TABLES, filled
 from wonderful_team.registry.worlds import task_names

@@ -54,6 +54,6 @@ def test_a_study_knows_its_trials_by_it(tmp_path: Path) -> None:
     assert reproduce(spec, {"thorough": True}).endswith("--thorough")
     assert "--thorough" not in reproduce(spec, {})
     command = ["bench", "rotate", "--seeds", "1000:1001", "--jobs", "1", "--no-control", "all", "--thorough"]
-    assert run([*command, "--pages", "all", "--out", str(tmp_path), "--store", str(tmp_path / "study.db")]) == 0
+    assert run([*command, "--record", "full", "--out", str(tmp_path), "--store", str(tmp_path / "study.db")]) == 0
     (record,) = (tmp_path / "trials").rglob("record.json")
     assert json.loads(record.read_text(encoding="utf-8"))["configuration"]["thorough"] is True

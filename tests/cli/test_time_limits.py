@@ -291,7 +291,7 @@ def test_the_limit_of_a_study_cuts_trials_in_flight_and_nothing_is_lost(
 ) -> None:
     store = tmp_path / "s.db"
     study = ["bench", f"{own}:Fine", "--method", f"{own}:Sleeping", "--no-control", "all", "--seeds", "0:2"]
-    study += ["--store", str(store), "--jobs", jobs, "--pages", "none"]
+    study += ["--store", str(store), "--jobs", jobs, "--record", "none"]
     assert run([*study, "--max-seconds", LIMIT]) == 5
     out, _ = capsys.readouterr()
     assert "stopped: the study's cap of 2 seconds is reached" in out

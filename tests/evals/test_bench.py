@@ -14,7 +14,7 @@ import pytest
 import wonderful_team as wt
 from tests.evals.own_files import LENIENT, METHOD
 from wonderful_team import registry
-from wonderful_team.api.study import known_suites
+from wonderful_team.api.known_suites import known_suites
 from wonderful_team.api.trial import model_of, run_trial
 from wonderful_team.api.trial_setup import reproduce
 from wonderful_team.cli.app import run
@@ -33,7 +33,7 @@ def _bench(*words: str, store: Path) -> int:
 def test_a_method_of_fifteen_lines_against_the_controls(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (tmp_path / "mine.py").write_text(METHOD, encoding="utf-8")
     name = f"{tmp_path / 'mine.py'}:Pusher"
-    words = ("rotate", "--method", name, "--seeds", "1000:1002", "--no-control", "offline", "--pages", "all")
+    words = ("rotate", "--method", name, "--seeds", "1000:1002", "--no-control", "offline", "--record", "full")
     assert _bench(*words, store=tmp_path / "s.db") == 0
     told = json.loads(capsys.readouterr().out)["result"]
     rates = {one["method"]: (one["successes"], one["scored"]) for one in told["conditions"]}
@@ -53,7 +53,7 @@ def test_a_method_of_fifteen_lines_against_the_controls(tmp_path: Path, capsys: 
 
 
 def test_offline_runs_through_the_study_like_any_model(tmp_path: Path) -> None:
-    study = wt.Study("rotate", seeds=[1000], store=tmp_path / "s.db", controls=("offline",), jobs=1, pages="none")
+    study = wt.Study("rotate", seeds=[1000], store=tmp_path / "s.db", controls=("offline",), jobs=1, record="none")
     ended = study.run()
     assert ended.status.done == 1
     summary = study.summary()
@@ -234,13 +234,14 @@ def test_wrong_use_is_told_before_anything_runs(tmp_path: Path, words: tuple[str
 def test_isolation_gives_the_other_roles_to_truth(monkeypatch: pytest.MonkeyPatch) -> None:
     truth = object()
     monkeypatch.setattr(registry, "make_model", lambda name, **more: truth)
-    planning = model_of("mine", "planning", object())  # type: ignore[arg-type]
+    team = registry.grounding_roles("team")
+    planning = model_of("mine", "planning", object(), team)  # type: ignore[arg-type]
     assert planning["*"] == "mine"
     assert {role for role, model in planning.items() if model is truth} == {"manager", "checker", "mover"}
-    grounding = model_of("mine", "grounding", object())  # type: ignore[arg-type]
+    grounding = model_of("mine", "grounding", object(), team)  # type: ignore[arg-type]
     assert grounding["*"] is truth
     assert {role for role, model in grounding.items() if model == "mine"} == {"manager", "checker", "mover"}
-    assert model_of("mine", "", object()) == "mine"  # type: ignore[arg-type]
+    assert model_of("mine", "", object(), team) == "mine"  # type: ignore[arg-type]
 
 
 def test_generalisation_levels_are_suites(tmp_path: Path) -> None:
@@ -259,12 +260,12 @@ def test_generalisation_levels_are_suites(tmp_path: Path) -> None:
         ),
         (
             Condition("team", "big, checker=small", "planning", "clutter=2"),
-            "wonderful-team bench tabletop/rotate --seeds 5 --no-control all --pages all --isolate planning --perturb clutter=2 "
+            "wonderful-team bench tabletop/rotate --seeds 5 --no-control all --record full --isolate planning --perturb clutter=2 "
             "--replans 0 --method team --model big,checker=small --thinking low",
         ),
         (
             Condition("oracle", "-", perturb="camera=1"),
-            "wonderful-team bench tabletop/rotate --seeds 5 --no-control all --pages all --perturb camera=1 --replans 0 "
+            "wonderful-team bench tabletop/rotate --seeds 5 --no-control all --record full --perturb camera=1 --replans 0 "
             "--method oracle",
         ),
     ],
@@ -301,7 +302,7 @@ def test_models_by_role_answer_for_their_roles_and_stand_in_the_label(
 ) -> None:
     (tmp_path / "mine.py").write_text(BY_ROLE, encoding="utf-8")
     file = tmp_path / "mine.py"
-    words = ("rotate", "--seeds", "1000", "--no-control", "all", "--pages", "none", "--thinking", "checker=low")
+    words = ("rotate", "--seeds", "1000", "--no-control", "all", "--record", "none", "--thinking", "checker=low")
     models = f"{file}:Big,checker={file}:Small"
     assert _bench(*words, "--model", models, "--concurrency", "2", store=tmp_path / "s.db") == 0
     told = json.loads(capsys.readouterr().out)["result"]["conditions"]

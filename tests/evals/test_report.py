@@ -243,6 +243,8 @@ def test_the_papers_figures_carry_n_and_source() -> None:
     ablated = paper_figure("tabletop/rotate", "team:s1")
     assert ablated is not None
     assert ablated.percent == 60.0
+    assert paper_figure("tabletop/rotate", "team:-verification") == ablated
+    assert paper_figure("tabletop/rotate", "team:-mover") is None
     rival = paper_figure("tabletop/novel_adj", "nlap:privileged")
     assert rival is not None
     assert (rival.percent, rival.n) == (43.0, None)

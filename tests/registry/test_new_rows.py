@@ -179,7 +179,7 @@ def test_an_arm_in_a_simulator_runs_and_is_scored(
 def test_a_study_runs_new_methods_in_new_worlds_between_its_controls(rows: None, tmp_path: Path) -> None:
     study = wt.Study(
         "armtable/lift", methods=("raising",), controls=("oracle", "no-op"), seeds=(1000,), store=tmp_path / "s.db",
-        jobs=1, pages="none",
+        jobs=1, record="none",
     )  # fmt: skip
     assert study.run().status.outcomes == {"success": 2, "failure": 1}
 

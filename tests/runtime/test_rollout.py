@@ -287,6 +287,19 @@ def test_wrong_use_is_refused():
     assert "returned is a str; valid: Act, Done, GaveUp" in trial.reason
 
 
+def test_what_was_left_undone_without_an_action_is_a_failure_of_the_plan():
+    class Unmet:
+        """A scorer that names no stage."""
+
+        def score(self) -> Score:
+            return Score(False, None, "the red square is not up")
+
+    lazy = rollout(MovesPolicy([]), SquaresWorld(), scorer=Unmet())
+    assert (lazy.outcome, lazy.stage) == ("failure", "plan")
+    busy = rollout(MovesPolicy([[(RED, UP)]]), SquaresWorld(), scorer=Unmet())
+    assert (busy.outcome, busy.stage) == ("failure", "execution")
+
+
 def test_done_at_once_moves_nothing():
     world = SquaresWorld()
     trial = rollout(MovesPolicy([]), world, scorer=SquaresTruth(world, {"red": RED}))

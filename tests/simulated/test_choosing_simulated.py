@@ -94,13 +94,16 @@ def test_a_measured_profile_becomes_an_error_model() -> None:
     assert made.errs
 
 
+TEAM = ("manager", "checker", "mover")
+
+
 def test_isolation_gives_truth_the_other_part(world: Any) -> None:
-    planning = model_of("offline", "planning", world)
+    planning = model_of("offline", "planning", world, TEAM)
     assert planning["*"] == "offline"
     assert {planning[role].name for role in ("manager", "checker", "mover")} == {"simulated:perfect"}
-    grounding = model_of("offline", "grounding", world)
+    grounding = model_of("offline", "grounding", world, TEAM)
     assert grounding["*"].name == "simulated:perfect"
     assert {grounding[role] for role in ("manager", "checker", "mover")} == {"offline"}
-    assert model_of("offline", "", world) == "offline"
+    assert model_of("offline", "", world, TEAM) == "offline"
     with pytest.raises(ConfigError, match="valid are planning"):
         check_isolation("everything")

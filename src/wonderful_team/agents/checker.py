@@ -106,7 +106,7 @@ def _render_judge_boxes(question: JudgeBoxes) -> list[Part]:
 def _render_judge_revision(question: JudgeRevision) -> list[Part]:
     return [
         *example_parts(question.examples),
-        *picture_parts(question.before, "before the revision"),
+        *([] if question.before is None else picture_parts(question.before, "before the revision")),
         *picture_parts(question.after, "after the revision"),
         *words(f"Target {target_words(question.target)}"),
         *_tolerance_parts(question.after),

@@ -157,5 +157,5 @@ def _check_thinking(kind: str, name: str, seeds: Sequence[int], findings: Findin
 
 
 def _run(task: str, condition: Condition, seeds: Sequence[int]) -> list[TrialRow]:
-    settings: Any = RunSettings(pages="none")
+    settings: Any = RunSettings(record="none")
     return [run_safely(run_trial, TrialSpec(task, seed, condition), settings) for seed in seeds]

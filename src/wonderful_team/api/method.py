@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any, Self
 
 from wonderful_team import registry
-from wonderful_team.agents.prompts import ROLES, role_names
+from wonderful_team.agents.prompts import ROLES
 from wonderful_team.core.caps import Caps
 from wonderful_team.core.protocols import Detector, Model, Policy, Subscriber, World
 from wonderful_team.core.renamed import renamed_attribute
@@ -32,7 +32,7 @@ class Method:
 
     Args:
         model: A name (`offline`, FILE.py:NAME), an object with `answer(request)`, or a mapping from role to either;
-            "*" is for the roles not named.
+            "*" is for the roles not named. Rivals have roles of their own, such as the `selector` of `pivot`.
         method: One that `list methods` shows (team, team:paper, team:s1 to team:s8, …), or FILE.py:NAME.
         thinking: off, low, medium or high, for all roles or by role; None leaves each model's own default.
         price: "IN,OUT" or (IN, OUT) in USD per million tokens, for all roles or by role, where no price is known.
@@ -94,8 +94,11 @@ class Method:
     def __post_init__(self) -> None:
         self._config = team_config(self.method, self.prompts, self.strict, self.thorough)
         self._check_detector()
-        options = model_options(self.thinking, self.price, self.local_only, role_names(), self.timeout)
-        made = registry.make_models(self.model, role_names(), options, self.world)
+        roles = registry.roles_of(self.method)
+        for chosen in (self.model, self.thinking, self.price):
+            registry.check_roles(self.method, chosen if isinstance(chosen, Mapping) else ())
+        options = model_options(self.thinking, self.price, self.local_only, roles, self.timeout)
+        made = registry.make_models(self.model, roles, options, self.world)
         if self._config is not None and any(getattr(made[role], "weak_pointing", False) for role in POINTING_ROLES):
             self._config = replace(self._config, axes=True)
         self._models, self._store = cached_models(made, self.cache, self.cache_file, repeat=self.repeat)

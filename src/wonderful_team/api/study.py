@@ -7,25 +7,26 @@ import tempfile
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any
 
 from wonderful_team import registry
+from wonderful_team.api.known_suites import check_levels, check_scenes, known_suites, methods_of, photo_counts
 from wonderful_team.api.trial import check_isolation, check_names, code_of_names, run_trial
 from wonderful_team.core.caps import Caps
 from wonderful_team.core.renamed import renamed_arguments
-from wonderful_team.errors import ConfigError, UnknownNameError
+from wonderful_team.core.text import counted
+from wonderful_team.errors import ConfigError
 from wonderful_team.evals.controls import CONTROLS
 from wonderful_team.evals.estimate import Estimate, estimate
 from wonderful_team.evals.monitor import Report
-from wonderful_team.evals.perturb import IN_PICTURE, read_tier, read_tiers
-from wonderful_team.evals.photos import read_photos
+from wonderful_team.evals.perturb import read_tiers
 from wonderful_team.evals.plan import OFFLINE, WHOLE, StudyPlan, of_photos, read_shard, split_names
+from wonderful_team.evals.pointing_sets import set_suites
 from wonderful_team.evals.store import Store
 from wonderful_team.evals.study import StudyResult, run_study, started_by_spawn
-from wonderful_team.evals.suites import PARTITIONS, Suite, all_suites, read_seeds, resolve
+from wonderful_team.evals.suites import read_seeds, resolve
 from wonderful_team.evals.summary import Summary, summarise
-from wonderful_team.evals.toy import is_toy
-from wonderful_team.evals.trials import Condition, RunSettings, TrialRow, TrialSpec
+from wonderful_team.evals.trials import RECORDED, Condition, Recorded, RunSettings, TrialRow, TrialSpec
 from wonderful_team.evals.workers import run_safely
 from wonderful_team.models.cache import CacheMode
 from wonderful_team.models.providers import PriceChoice
@@ -41,39 +42,43 @@ FREE = ("-", OFFLINE)
 
 _OF_MODELS = ("allow_unpriced", "local_only", "timeout", "cache", "cache_file", "detector", "thorough")
 _SAME_AS_OPTIONS = (
-    *("repeats", "replans", "reobserve", "isolate", "perturb", "concurrency", "pages", "out", "prompts"),
+    *("repeats", "replans", "reobserve", "isolate", "perturb", "concurrency", "record", "out", "prompts"),
     *("jobs", "at_once", "ray", "retry_errors"),
     *_OF_MODELS,
 )
 """Options of `bench` that a study takes as they are."""
 
 
-@renamed_arguments(looks="reobserve")
+@renamed_arguments(looks="reobserve", pages="record")
 @dataclass
 class Study:
     """A comparison.
 
     Args:
         suite: A suite, a task, FILE.py:TASK, PHOTOS.json, or several.
-        methods, models: A name or several; objects cannot be sent to worker processes. A model may be a mapping from role to name,
-            with "*" for the rest.
+        methods, models: A name or several; objects cannot be sent to worker processes. Methods are by default those that the suite
+            compares, else the team; "team:-each" is the team, and it without each member in turn. A model may be a mapping from
+            role to name, with "*" for the rest.
         seeds: For every task; None for the suite's own, from 1000 on.
         store: File that keeps what ended; the same study on the same file resumes.
         repeats, replans, reobserve, shard: As `bench` has them.
         isolate: whole, planning, grounding: one or several. perturb: KIND=LEVEL: one or several; "" is the scene as it is.
         thinking, price, allow_unpriced, local_only, timeout, cache, cache_file, prompts, thorough: As `Method` takes them.
         detector: Its name, for methods that look with one.
+        photo_set, set_format: With the suites pointing and boxcheck: pictures of your own instead of the toy table, and how they are written
+            (where2place, refspatial, coco; None: as their files show).
         controls: Those that run beside the methods; () refuses them all.
         caps: Of the whole study. trial_caps: of each trial.
         concurrency: Most model calls at once, over all workers.
-        pages: Which trials get a page of their own.
+        record: Which trials keep their run folder with record, pictures and page: full, failures (those that did not succeed) or
+            none; what ended stands in the store all the same. `pages` with "all" is its old name.
 
     Raises:
         ConfigError: A name or a value that is not valid; before anything runs.
     """
 
     suite: str | Sequence[str]
-    methods: str | Sequence[str] = ("team",)
+    methods: str | Sequence[str] = ()
     models: str | Mapping[str, str] | Sequence[str | Mapping[str, str]] = (OFFLINE,)
     seeds: Iterable[int] | None = None
     store: str | Path = "study.db"
@@ -87,7 +92,7 @@ class Study:
     caps: Caps = Caps()
     trial_caps: Caps = Caps()
     concurrency: int | None = None
-    pages: Literal["all", "failures", "none"] = "failures"
+    record: Recorded = "failures"
     out: str | Path | None = None
     prompts: str | Path | None = None
     thinking: str | Mapping[str, str] | None = None
@@ -104,10 +109,15 @@ class Study:
     retry_errors: bool = False
     command: str = ""
     thorough: bool = False
+    photo_set: str | Path | None = None
+    set_format: str | None = None
 
     def __post_init__(self) -> None:
-        self.methods, self.controls = _listed(self.methods), _listed(self.controls)
+        words = _listed(self.suite)
+        self.methods = registry.each_member(_listed(self.methods) or methods_of(words))
+        self.controls = _listed(self.controls)
         self.models = [self.models] if isinstance(self.models, str | Mapping) else list(self.models)
+        self.record = new_name_of(self.record)
         if isinstance(self.seeds, int):
             raise ConfigError(
                 f"seeds {self.seeds}: valid is a sequence, as in range(1000, 1020), or None for the suite's own"
@@ -120,10 +130,14 @@ class Study:
         if unknown:
             raise ConfigError(f"control {unknown[0]!r}: valid are {', '.join(ALL_CONTROLS)}")
         tiers = read_tiers(_listed(self.perturb))
-        words = _listed(self.suite)
-        suites = resolve(words, list(registry.task_names()), known_suites(), is_file_name)
-        _check_levels(suites)
-        _check_scenes(suites, tiers)
+        if self.set_format is not None and self.photo_set is None:
+            raise ConfigError(f"--format {self.set_format} says how a set of pictures is written: name it with --set")
+        if self.photo_set is None:
+            suites = resolve(words, list(registry.task_names()), known_suites(), is_file_name)
+        else:
+            suites = set_suites(words, Path(self.photo_set).absolute(), self.set_format)
+        check_levels(suites)
+        check_scenes(suites, tiers)
         if self.detector is not None and not any(map(registry.looks_with_detector, self.methods)):
             raise ConfigError(
                 f"detector {self.detector!r}: none of the methods looks with one: {', '.join(self.methods)}"
@@ -146,7 +160,7 @@ class Study:
             self.shard,
             self._how(),
             self.reobserve,
-            {"command": self.command, **_photo_counts(suites)},
+            {"command": self.command, **photo_counts(suites)},
         )
         self.store = sharded(Path(self.store), self.shard)
 
@@ -159,7 +173,7 @@ class Study:
             raise ConfigError(f"--no-control {wrong[0]}: valid are {', '.join(ALL_CONTROLS)}, all")
         return cls(
             options["suites"],
-            split_names(options["methods"]) or ("team",),
+            split_names(options["methods"]),
             read_choices(options["models"], OFFLINE),
             None if options["seeds"] is None else read_seeds(options["seeds"]),
             options["store"],
@@ -170,6 +184,8 @@ class Study:
             thinking=read_roles(options["thinking"], "--thinking", "LEVEL"),
             price=read_roles(options["price"], "--price", "IN,OUT"),
             command=options.get("command", ""),
+            photo_set=options.get("photo_set"),
+            set_format=options.get("set_format"),
             **{name: options[name] for name in _SAME_AS_OPTIONS},
         )
 
@@ -184,7 +200,7 @@ class Study:
         tasks = [task for suite in self.plan.suites for task in suite.tasks]
         named = code_of_names((*tasks, *self.plan.methods), self.plan.models)
         return RunSettings(
-            self.trial_caps, self.concurrency or 8, self.pages, out, prompts, extra=self._asked(), named_code=named
+            self.trial_caps, self.concurrency or 8, self.record, out, prompts, extra=self._asked(), named_code=named
         )
 
     def _asked(self) -> dict[str, Any]:
@@ -291,6 +307,14 @@ class Study:
             found.append(f"{one.label:<{width}}  {cell.rate}{rest}{badges}")
         return [*found, *summary.headline(), *(f"warning: {text}" for text in summary.warnings())]
 
+    def kept_line(self) -> str:
+        """How many trials keep their run folder, and how to see those that do not."""
+        with Store(self.store, must_exist=True) as store:
+            ended = [row for row in store.rows(self.plan.name) if row.result is not None]
+        kept = sum(bool(row.result.page) for row in ended if row.result is not None)
+        more = "" if kept == len(ended) else f"; how to run the others again: wonderful-team show {self.store}"
+        return f"records: {kept} of {counted(len(ended), 'trial')} keep a run folder (--record {self.record}){more}"
+
     def report(self, path: str | Path, baseline: str | None = None) -> Path:
         """Write the page; its CSV and LaTeX tables lie beside it."""
         from wonderful_team.evals.report import write_all
@@ -324,51 +348,23 @@ def _listed(words: str | Sequence[str]) -> list[str]:
     return [words] if isinstance(words, str) else list(words)
 
 
+def new_name_of(record: str) -> Recorded:
+    """Which trials keep their run folder, "all" being the old name of "full".
+
+    Raises:
+        ConfigError: Another word.
+    """
+    word = "full" if record == "all" else record
+    for one in RECORDED:
+        if one == word:
+            return one
+    raise ConfigError(f"record {record!r}: valid are {', '.join(RECORDED)}")
+
+
 def _is_free(text: str) -> bool:
     chosen = choice_of(text)
     names = [chosen] if isinstance(chosen, str) else list(chosen.values())
     return all(name in FREE or name.startswith("simulated:") for name in names)
-
-
-def _check_scenes(suites: Sequence[Suite], tiers: Sequence[str]) -> None:
-    """Every own world loads, and every tier can be made."""
-    registry.check_ready(task for suite in suites for task in suite.tasks)
-    kinds = dict.fromkeys(read_tier(tier)[0] for tier in tiers if tier)
-    for task in dict.fromkeys(task for suite in suites for task in suite.tasks):
-        if task.endswith(".json"):
-            if kinds:
-                raise ConfigError(f"--perturb: {task} is photos, and no tier is made of photos")
-            continue
-        if is_toy(task):
-            if kinds:
-                raise ConfigError(f"--perturb: no tier is made of the toy table ({task})")
-            continue
-        if is_file_name(task):
-            registry.make_world(task).close()
-        missing = [kind for kind in kinds if kind in ("clutter",) and kind not in registry.own_tiers(task)]
-        if missing:
-            raise ConfigError(
-                f"--perturb {missing[0]}: {task} cannot put more things on its table; our tabletop can. "
-                f"Valid for any world: {', '.join((*IN_PICTURE, 'paraphrase'))}"
-            )
-
-
-def _check_levels(suites: Sequence[Suite]) -> None:
-    known = registry.task_partitions()
-    for task, at, level in (name.partition("@") for suite in suites for name in suite.tasks):
-        if at and task in known and level not in known[task]:
-            raise UnknownNameError(f"level of {task}", level, known[task])
-
-
-def _photo_counts(suites: Sequence[Suite]) -> dict[str, int]:
-    return {f"photos:{one.name}": len(read_photos(one.name)) for one in suites if of_photos(one)}
-
-
-def known_suites() -> dict[str, Suite]:
-    """Every suite by name, made of the registered tasks."""
-    levels = registry.task_partitions()
-    found = {level: [f"{task}@{level}" for task, has in levels.items() if level in has] for level in PARTITIONS}
-    return all_suites(list(registry.task_names()), found)
 
 
 def sharded(store: Path, shard: tuple[int, int]) -> Path:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from wonderful_team.api.photo_trial import Looking
-from wonderful_team.core.pictures import Point
+from wonderful_team.api.annotation_trial import run_annotation
+from wonderful_team.api.photo_trial import Looking, middle_of, point_marks
+from wonderful_team.core.pictures import BoxMark, Point
 from wonderful_team.core.values import GroundedTarget
 from wonderful_team.errors import ConfigError
-from wonderful_team.evals.toy import BOXCHECK, score_point, score_verdict
+from wonderful_team.evals.toy import ANNOTATION, BOXCHECK, score_point, score_verdict
 from wonderful_team.evals.trials import RunSettings, TrialRow, TrialSpec
+from wonderful_team.images import whole
 from wonderful_team.lab.toy import BOX_KINDS, RADIUS_PX, RIGHT, BoxKind, ToyTable, checker_request
 
 
@@ -17,6 +19,8 @@ def run_toy(spec: TrialSpec, settings: RunSettings) -> TrialRow:
     Raises:
         ConfigError: A method that answers no such question, or a task that there is not.
     """
+    if spec.task.startswith(ANNOTATION):
+        return run_annotation(spec, settings)
     table = ToyTable(spec.seed)
     with Looking(spec, settings, [table.target.words], table) as looking:
         if spec.task.startswith(BOXCHECK):
@@ -28,6 +32,9 @@ def run_toy(spec: TrialSpec, settings: RunSettings) -> TrialRow:
 def _verdict(looking: Looking, table: ToyTable, kind: BoxKind) -> str:
     """What is said of a box of that kind."""
     box = table.box(kind)
+    looking.show(
+        whole(table.view, "toy table"), BoxMark(table.target.box, "after", "true"), BoxMark(box, "target", "judged")
+    )
     if looking.config is not None:
         return str(looking.wait_for(looking.client.ask(checker_request(table, box))).value.decision)
     judge = looking.offered("judge(observation, words, box)", "accept, revise or reject, as point and point:axes say")
@@ -38,10 +45,12 @@ def _pointed(looking: Looking, table: ToyTable) -> TrialRow:
     """How far off the circle's middle is said to be."""
     if looking.config is not None:
         (item,) = looking.by_team(table.observe())
-        return score_point(_middle(item), table.target.centre, RADIUS_PX, _rounds(item))
-    (place,) = looking.by_own(table.observe())
-    point = place.point or (None if place.box is None else place.box.centre)
-    return score_point(point, table.target.centre, RADIUS_PX)
+        point, rounds = middle_of(item), _rounds(item)
+    else:
+        (place,) = looking.by_own(table.observe())
+        point, rounds = place.point or (None if place.box is None else place.box.centre), []
+    looking.show(whole(table.view, "toy table"), *point_marks(point, table.target.centre, RADIUS_PX))
+    return score_point(point, table.target.centre, RADIUS_PX, rounds)
 
 
 def _kind(task: str) -> BoxKind:
@@ -49,13 +58,6 @@ def _kind(task: str) -> BoxKind:
     if kind not in BOX_KINDS:
         raise ConfigError(f"task {task!r}: valid are {', '.join(BOXCHECK + one for one in BOX_KINDS)}")
     return kind
-
-
-def _middle(item: GroundedTarget | None) -> Point | None:
-    """Where the team would act."""
-    if item is None or item.status != "found":
-        return None
-    return next(iter(item.points.values()), None) or (None if item.box is None else item.box.centre)
 
 
 def _rounds(item: GroundedTarget | None) -> list[Point]:

@@ -16,28 +16,27 @@ from typing import Any
 import numpy as np
 
 from wonderful_team import registry
-from wonderful_team.agents import ROLES
 from wonderful_team.api.method import Method
 from wonderful_team.api.photo_trial import run_photo
 from wonderful_team.api.rollout import rollout
+from wonderful_team.api.set_trial import run_set
 from wonderful_team.api.toy_trial import run_toy
 from wonderful_team.api.trial_setup import UsageCounter, fingerprint, method_options, prepared
 from wonderful_team.core.deadline import limited
 from wonderful_team.core.jsonable import to_jsonable
-from wonderful_team.core.protocols import Policy, World, privileged
+from wonderful_team.core.protocols import Policy, SubgoalTruth, World, offers, privileged
 from wonderful_team.core.values import Instruction, Observation, Trial, Usage, View
 from wonderful_team.errors import ConfigError
 from wonderful_team.evals.controls import CONTROLS, make_control
 from wonderful_team.evals.perturb import WorldInDisguise, perturbed, read_tier
+from wonderful_team.evals.photos import SET
 from wonderful_team.evals.toy import is_toy
-from wonderful_team.evals.trials import Condition, RunSettings, TrialRow, TrialSpec
+from wonderful_team.evals.trials import VALID_SUBGOAL, Condition, RunSettings, TrialRow, TrialSpec
+from wonderful_team.record.run_folders import TRIALS
 from wonderful_team.registry.files import check_names_no_code, is_file_name
 from wonderful_team.registry.role_models import REST, choice_of
 from wonderful_team.runtime import rollout as roll_out
 from wonderful_team.runtime.user_code import GuardedWorld
-
-SUCCESS_EVERY = 10
-"""With pages of failures, successes of these seeds (1000, 1010, ...) keep theirs too: a reader wants to see both."""
 
 
 def run_trial(spec: TrialSpec, settings: RunSettings) -> TrialRow:
@@ -48,6 +47,8 @@ def run_trial(spec: TrialSpec, settings: RunSettings) -> TrialRow:
 
 
 def _trial(spec: TrialSpec, settings: RunSettings) -> TrialRow:
+    if spec.task.startswith(SET):
+        return run_set(spec, settings)
     if spec.task.endswith(".json"):
         return run_photo(spec, settings)
     if is_toy(spec.task):
@@ -74,10 +75,17 @@ def _trial(spec: TrialSpec, settings: RunSettings) -> TrialRow:
             page=page,
             instruction="" if spec.condition.method in CONTROLS else world.instruction.plain_text,
             versions=fingerprint(spec, settings.extra),
+            facts=_facts(world) if trial.outcome in ("success", "failure") else {},
         )
     finally:
         with contextlib.suppress(Exception):
             GuardedWorld(world).close()
+
+
+def _facts(world: World) -> dict[str, float]:
+    """How far a trial came, where its simulator says it; asked after the trial, as its score is."""
+    truth = privileged(world)
+    return {VALID_SUBGOAL: float(truth.subgoals_reached() > 0)} if offers(truth, SubgoalTruth) else {}
 
 
 def code_of_names(names: Iterable[str], models: Iterable[str]) -> frozenset[str]:
@@ -132,7 +140,7 @@ def _run(spec: TrialSpec, settings: RunSettings, world: World, count: UsageCount
         trial = roll_out(control, blind, scorer=truth, seed=spec.seed, scene=spec.scene, max_age_s=None)
         return trial, ""
     method = prepared(spec, settings, models_of(condition, world), world)
-    if settings.pages == "none":
+    if settings.record == "none":
         policy: Policy = method.policy(count)
         trial = roll_out(
             policy,
@@ -146,7 +154,7 @@ def _run(spec: TrialSpec, settings: RunSettings, world: World, count: UsageCount
         )
         return trial, ""
     # A folder of its own: trials that run at the same time must not share the pointer to the newest run.
-    out = (settings.out or Path("runs")) / "trials" / hashlib.sha256(spec.key.encode()).hexdigest()[:12]
+    out = (settings.out or Path("runs")) / TRIALS / hashlib.sha256(spec.key.encode()).hexdigest()[:12]
     recorded = rollout(
         method,
         world,
@@ -157,7 +165,7 @@ def _run(spec: TrialSpec, settings: RunSettings, world: World, count: UsageCount
         out=out,
         subscribers=(count,),
     )
-    if settings.pages == "failures" and recorded.outcome == "success" and spec.seed % SUCCESS_EVERY:
+    if settings.record == "failures" and recorded.outcome == "success":
         shutil.rmtree(out, ignore_errors=True)
         return recorded, ""
     return recorded, str(recorded.page)
@@ -165,20 +173,22 @@ def _run(spec: TrialSpec, settings: RunSettings, world: World, count: UsageCount
 
 def models_of(condition: Condition, world: World) -> Any:
     """One model, or models by role, as a condition names them; truth in the place of what is isolated away."""
-    chosen = choice_of(condition.model)
-    if isinstance(chosen, str) or not condition.isolate:
-        return model_of(chosen, condition.isolate, world) if isinstance(chosen, str) else chosen
+    chosen, grounding = choice_of(condition.model), registry.grounding_roles(condition.method)
+    if isinstance(chosen, str):
+        return model_of(chosen, condition.isolate, world, grounding)
+    if not condition.isolate:
+        return chosen
     looked_at = condition.isolate == "grounding"
-    own = {role: name for role, name in chosen.items() if role != REST and (role in GROUNDING_ROLES) == looked_at}
-    return {**model_of(chosen[REST], condition.isolate, world), **own}
+    own = {role: name for role, name in chosen.items() if role != REST and (role in grounding) == looked_at}
+    return {**model_of(chosen[REST], condition.isolate, world, grounding), **own}
 
 
-GROUNDING_ROLES = tuple(name for name, role in ROLES.items() if role.grounds)
 TRUTH_MODEL = "simulated:perfect"
 
 
-def model_of(model: str, isolate: str, world: World) -> Any:
-    """The model of a condition; `isolate` lets truth answer for the roles that are not looked at.
+def model_of(model: str, isolate: str, world: World, grounding: Sequence[str]) -> Any:
+    """The model of a condition; `isolate` lets truth answer for the roles that are not looked at: `grounding` are the method's that find
+    targets, the others plan.
 
     Raises:
         ConfigError: Truth cannot answer for this world.
@@ -187,15 +197,16 @@ def model_of(model: str, isolate: str, world: World) -> Any:
         return model
     truth = registry.make_model(TRUTH_MODEL, world=world)
     if isolate == "planning":
-        return {**dict.fromkeys(GROUNDING_ROLES, truth), "*": model}
-    return {**dict.fromkeys(GROUNDING_ROLES, model), "*": truth}
+        return {**dict.fromkeys(grounding, truth), "*": model}
+    return {**dict.fromkeys(grounding, model), "*": truth}
 
 
 def check_isolation(isolate: str, methods: Sequence[str] = ()) -> None:
     """Whether this part of these methods can be isolated.
 
     Raises:
-        ConfigError: Another word, truth would have to ground where a detector does, or a rival: its roles are not the team's.
+        ConfigError: Another word, truth would have to ground where a detector does, or a method that does not ask as one role
+            where things are and as another what to do.
     """
     rows = {name: row for name in methods if (row := registry.method_row(name)) is not None}
     looking = [name for name, row in rows.items() if row.detects]
@@ -205,9 +216,19 @@ def check_isolation(isolate: str, methods: Sequence[str] = ()) -> None:
         )
     if isolate not in ("planning", "grounding"):
         raise ConfigError(f"--isolate {isolate!r}: valid are planning (truth grounds), grounding (truth plans)")
-    for name, row in rows.items():
-        if row.team is None:
-            raise ConfigError(f"--isolate {isolate!r} is for the team's members; method {name!r} has none of them")
+    for name in rows:
+        if not _has_parts(name):
+            roles = ", ".join(registry.roles_of(name)) or "none"
+            valid = ", ".join(one for one in registry.METHODS if _has_parts(one) and not one.startswith("team:"))
+            raise ConfigError(
+                f"--isolate {isolate}: method {name!r} does not ask as one role where things are and as another what to do "
+                f"(its roles: {roles}), so no part of it can be told the truth alone; valid: {valid}, and the team without members"
+            )
+
+
+def _has_parts(method: str) -> bool:
+    grounding, roles = registry.grounding_roles(method), registry.roles_of(method)
+    return bool(grounding) and set(grounding) != set(roles)
 
 
 def check_names(

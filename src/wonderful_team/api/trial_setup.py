@@ -11,7 +11,6 @@ from typing import Any
 
 from wonderful_team import registry
 from wonderful_team._version import __version__
-from wonderful_team.agents.prompts import role_names
 from wonderful_team.api.method import Method
 from wonderful_team.core.protocols import Event, Model, World
 from wonderful_team.core.text import user_path
@@ -69,10 +68,11 @@ def prepared(spec: TrialSpec, settings: RunSettings, model: Any, world: World | 
     """The method of a trial with its model, capped, and limited together with all other workers."""
     caps, asked = settings.caps, method_options(settings.extra, spec.condition.method)
     if settings.limiter is not None:
+        roles = (*registry.roles_of(spec.condition.method), REST)
         options = model_options(
-            asked.get("thinking"), asked.get("price"), bool(asked.get("local_only")), role_names(), asked.get("timeout")
+            asked.get("thinking"), asked.get("price"), bool(asked.get("local_only")), roles, asked.get("timeout")
         )
-        made = registry.make_models(model, role_names(), options, world)
+        made = registry.make_models(model, roles, options, world)
         behind = {id(one): RateLimitedModel(one, settings.limiter) for one in made.values()}
         model = {role: behind[id(one)] for role, one in made.items()}
     return Method(
@@ -107,7 +107,7 @@ def reproduce(spec: TrialSpec, asked: Mapping[str, Any] | None = None) -> str:
     levels = {REST: levels} if isinstance(levels, str) else levels
     thinking = [word for role, level in levels.items() for word in ("--thinking", _of_role(role, level))]
     if condition.method in CONTROLS or condition.isolate or condition.perturb:
-        words = ["bench", spec.task, "--seeds", str(spec.seed), "--no-control", "all", "--pages", "all"]
+        words = ["bench", spec.task, "--seeds", str(spec.seed), "--no-control", "all", "--record", "full"]
         words += ["--isolate", condition.isolate] if condition.isolate else []
         words += ["--perturb", condition.perturb] if condition.perturb else []
         models = [] if condition.method in CONTROLS else ["--model", ",".join(by_role), *thinking]

@@ -32,6 +32,8 @@ QUIET_S = 10.0
     short_help="Compare methods and models on suites, with controls.",
     epilog="\b\nwonderful-team bench vima3 --estimate\n"
     "wonderful-team bench vima3 fruit --method team,team:paper --seeds 1000:1020 --store study.db\n"
+    "wonderful-team bench ablation --method team:-each --model NAME --store ablation.db\n"
+    "wonderful-team bench pointing --set photos.json --method point,team --model NAME\n"
     "wonderful-team bench rotate --method mine.py:Mine --store study.db && wonderful-team report study.db",
 )
 @click.argument("suites", nargs=-1, metavar="SUITE|TASK|FILE.py:TASK|PHOTOS.json ...")
@@ -84,6 +86,19 @@ QUIET_S = 10.0
 @click.option(
     "--no-control", "refused", multiple=True, metavar="NAME|all", help="Leave a control out; may be repeated."
 )
+@click.option(
+    "--set",
+    "photo_set",
+    type=PATH,
+    metavar="PATH",
+    help="With pointing and boxcheck: your own pictures instead of the toy table.",
+)
+@click.option(
+    "--format",
+    "set_format",
+    metavar="FORMAT",
+    help="How they are written: where2place, refspatial or coco. [default: as the files show]",
+)
 @click.option("--estimate", is_flag=True, help="Say what it would take, from a few pilot trials, and run no more.")
 @click.option("--pilot", type=click.IntRange(1), help="With --estimate: so many trials per condition, also paid ones.")
 @click.option("--store", type=PATH, default=Path("study.db"), show_default=True, help="Where trials are kept.")
@@ -93,13 +108,14 @@ QUIET_S = 10.0
 @click.option("--ray", metavar="ADDRESS", help='Run on a Ray cluster; "local" starts one here.')
 @click.option("--retry-errors", is_flag=True, help="Run trials again that ended as errors.")
 @click.option(
-    "--pages",
-    type=click.Choice(["all", "failures", "none"]),
+    "--record",
+    type=click.Choice(["full", "failures", "none"]),
     default="failures",
     show_default=True,
-    help="Trials that keep a page; failures: those, and the successes of every tenth seed (1000, 1010, ...).",
+    help="Trials that keep their run folder (record, pictures, page): all, those that did not succeed, or none.",
 )
-@click.option("--out", type=PATH, metavar="DIR", help="Where the pages of trials go. [default: runs]")
+@click.option("--pages", type=click.Choice(["all", "failures", "none"]), hidden=True)
+@click.option("--out", type=PATH, metavar="DIR", help="Where the run folders of trials go. [default: runs]")
 @click.option("--prompts", type=PATH, metavar="DIR", help="Your own words for the roles.")
 @click.option("--thorough", is_flag=True, help=THOROUGH)
 @click.option("--concurrency", type=click.IntRange(1), help="Model calls at once, over all workers.")
@@ -131,14 +147,23 @@ def _bench(options: dict[str, Any]) -> int:
     from wonderful_team.api.study import Study
 
     words = shlex.join(["wonderful-team", *(click.get_current_context().obj or ())])
-    study = Study.from_options(**options, command=words)
+    study = Study.from_options(**by_new_names(options), command=words)
     if options["estimate"]:
         return tell_estimate("bench", study, options)
     ended, code = run_study(study, options)
-    lines = [*study.lines(), *stopped_line(ended), f"report: wonderful-team report {study.store}"]
+    lines = [*study.lines(), *stopped_line(ended), study.kept_line(), f"report: wonderful-team report {study.store}"]
     if options["open_page"]:
         click.launch(study.report(Path(study.store).with_suffix(".html")).resolve().as_uri())
     return finish("bench", text="\n".join(lines), result=study.to_json(ended), as_json=options["as_json"], code=code)
+
+
+def by_new_names(options: dict[str, Any]) -> dict[str, Any]:
+    """The options with --pages, an old name, as --record."""
+    pages = options.get("pages")
+    if pages is None:
+        return options
+    click.echo("warning: --pages is called --record now (all: full); the old name goes with the next release", err=True)
+    return {**options, "record": pages}
 
 
 def tell_estimate(command: str, study: Study, options: dict[str, Any]) -> int:

@@ -47,6 +47,8 @@ def command(kind: str, out: Path | None, html: Path | None, open_page: bool, as_
     width = max((len(name) for name in found), default=0)
     text = "\n".join(f"{name:<{width}}  {words}".rstrip() for name, words in found.items()) or f"no {kind}"
     last = "" if html is None else f"page: {_write_table(html, out, open_page)}"
+    if kind == "runs" and (told := _trials_words(out)):
+        text += f"\n{told}"
     result = {kind: found} if html is None else {kind: found, "page": str(html)}
     return finish("list", text=text, result=result, as_json=as_json, code=0, last_line=last)
 
@@ -62,6 +64,17 @@ def _write_table(path: Path, out: Path | None, open_page: bool) -> str:
     if open_page:
         click.launch(path.resolve().as_uri())
     return shown_path(path)
+
+
+def _trials_words(out: Path | None) -> str:
+    """What is kept of studies beside the runs."""
+    from wonderful_team.record.run_folders import TRIALS, runs_folder, trials_kept
+
+    kept = trials_kept(out)
+    if not kept and not (runs_folder(out) / TRIALS).is_dir():
+        return ""
+    where = runs_folder(out) / TRIALS
+    return f"{counted(kept, 'trial')} of studies with a record in {where}; of the others: wonderful-team show STORE.db"
 
 
 def _models(out: Path | None) -> dict[str, str]:
@@ -88,7 +101,7 @@ def _tasks(out: Path | None) -> dict[str, str]:
 
 
 def _suites(out: Path | None) -> dict[str, str]:
-    from wonderful_team.api.study import known_suites
+    from wonderful_team.api.known_suites import known_suites
 
     return {
         name: f"{counted(len(suite.tasks), 'task')}; {suite.help or suite.protocol.name}{'; ' + suite.note if suite.note else ''}"
@@ -103,6 +116,7 @@ def _methods(out: Path | None) -> dict[str, str]:
         **{name: row.words for name, row in METHODS.items()},
         "team:-MEMBER-MEMBER": "the team without any of verification, manager, checker, mover, memory (in this order), "
         "as in team:-verification-mover; the same after team:paper",
+        "team:-each": "in studies: the team, and the team without each member in turn; also team:paper:-each",
         "FILE.py:NAME": "your own: a class with the Policy interface",
     }
 

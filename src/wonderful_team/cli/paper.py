@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from wonderful_team.evals.paper_tables import PaperTable
     from wonderful_team.evals.summary import Summary
 
-OWN = ("suites", "methods", "store", "open_page")
+OWN = ("suites", "methods", "store", "open_page", "photo_set", "set_format")
 """Options of `bench` that a table decides by itself."""
 SHARED = [option for option in bench.command.params if option.name not in OWN]
 
@@ -69,7 +69,7 @@ def _run(names: list[str], folder: Path, open_page: bool, options: dict[str, Any
         table = PAPER_TABLES[name]
         summary, report = None, None
         if table.suites and not stopped:
-            study = Study.from_options(**_options(table, options), store=store, command=words)
+            study = Study.from_options(**bench.by_new_names(_options(table, options)), store=store, command=words)
             if options["estimate"]:
                 code = bench.tell_estimate("paper", study, options)
                 continue

@@ -13,6 +13,7 @@ import click
 from wonderful_team.cli.options import PATH, read_models
 from wonderful_team.cli.output import finish
 from wonderful_team.cli.run_summary import shown_path
+from wonderful_team.cli.show_store import is_store, show_store
 from wonderful_team.core.text import counted, ending_words, recorded_names, spoken, visible
 from wonderful_team.errors import UnknownNameError, reading
 
@@ -44,7 +45,7 @@ def command(
     as_json: bool,
     out: Path | None,
 ) -> int:
-    """Tell the story of a RUN (a folder, its name, part of it, or "latest") and write its page anew.
+    """Tell the story of a RUN (a folder, its name, part of it, or "latest") and write its page anew. A store of `bench`: a line for each trial.
 
     Or run it again (--replay, --from), or compare it with another (--diff).
     """
@@ -58,6 +59,10 @@ def command(
         raise click.UsageError("--from STAGE and --model M go together")
     if tolerant and not replay:
         raise click.UsageError("--tolerant goes with --replay")
+    if is_store(run):
+        if chosen or open_page:
+            raise click.UsageError(f"{run} is a store of trials: it is shown without other options but --json")
+        return show_store(run, as_json)
     folder = find_run(run, out)
     if replay:
         return _replay(folder, tolerant, as_json)

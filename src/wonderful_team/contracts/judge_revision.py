@@ -25,10 +25,14 @@ class RevisionVerdict(AnswerModel):
 
 @dataclass(frozen=True, eq=False)
 class JudgeRevision(Question):
-    """Asked of the Checker. Both crops show the same part of the view, each with its own box."""
+    """Asked of the Checker. Both crops show the same part of the view, each with its own box.
+
+    Attributes:
+        before: None where only the box after the revision is shown, to measure what the comparison is worth.
+    """
 
     target: Target
-    before: Picture
+    before: Picture | None
     after: Picture
     examples: tuple[ShownSlot, ...] = ()
 

@@ -28,7 +28,7 @@ class ReadTurn(Question):
     Attributes:
         target: What is to be turned.
         strip: One picture: how the thing lies in the end, as a BoxMark labelled "goal" (its frame shows that part of the
-            goal's view), and beside it the thing cut out and turned, as Tiles.
+            goal's view), and beside it the thing cut out and turned, as Tiles; without Tiles, as it lies now.
         turns: Turn of each tile, in order [degrees, clockwise].
         shows: Where the pictures come from.
         fine: Second round: the turns lie close round the first choice.
@@ -49,6 +49,6 @@ class ReadTurn(Question):
         return TurnChoice
 
     def validate(self, answer: Any) -> tuple[Any, tuple[str, ...]]:
-        if answer.number is not None:
-            self.tiles.at(answer.number)
+        if answer.number is not None and not 1 <= answer.number <= len(self.turns):
+            raise ValueError(f"number {answer.number}: valid are 1 to {len(self.turns)}")
         return answer, ()

@@ -153,6 +153,14 @@ class SceneTruth(Privileged, Protocol):
         ...
 
 
+class SubgoalTruth(Protocol):
+    """Truth that also says how far a trial came, whether or not it succeeded."""
+
+    def subgoals_reached(self) -> int:
+        """How many goals held after some action that did not hold at the start."""
+        ...
+
+
 @dataclass(frozen=True, eq=False)
 class Situation:
     """What a method is told each time it is asked what to do.

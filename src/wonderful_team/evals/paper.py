@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from wonderful_team.core.intervals import wilson_interval
+from wonderful_team.evals.ablation import SETTINGS, left_out
 from wonderful_team.evals.trials import Condition
 
 COLUMNS = {
@@ -81,9 +82,10 @@ def paper_beside(task: str, condition: Condition) -> PaperFigure | None:
 
 def _column(method: str) -> str | None:
     words = method.split(":")
-    if words[0] == "team":
-        setting = words[-1]
-        return setting if setting.startswith("s") and setting[1:].isdigit() else "ours"
+    read = left_out(method)
+    if read is not None:
+        off = read[1]
+        return next((name for name, members in SETTINGS.items() if members == off), None) if off else "ours"
     if words[0] == "nlap":
         # What the paper reports had true coordinates; rows in which the model finds them stand in another table.
         if "privileged" not in words:

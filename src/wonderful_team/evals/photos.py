@@ -18,8 +18,15 @@ from wonderful_team.core.pictures import Point
 from wonderful_team.errors import ConfigError, reading
 from wonderful_team.evals.trials import TrialRow
 
+SET = "set/"
+"""How tasks begin that ask about pictures of the user's own: set/pointing/FORMAT:PATH, set/boxcheck/KIND/FORMAT:PATH."""
 ENOUGH_OVERLAP = 0.5
 """Intersection over union from which a box counts as found (the usual COCO threshold AP50)."""
+
+
+def is_photo(task: str) -> bool:
+    """Whether a task is photos with boxes, or a set of pictures: its scenes have numbers instead of seeds, and nothing acts."""
+    return task.endswith(".json") or task.startswith(SET)
 
 
 class _Image(BaseModel):

@@ -10,6 +10,7 @@ from typing import Any
 
 from wonderful_team.errors import ConfigError
 from wonderful_team.evals.names import CONTROLS, NO_MODEL
+from wonderful_team.evals.photos import is_photo
 from wonderful_team.evals.suites import Suite, default_seeds
 from wonderful_team.evals.toy import is_toy
 from wonderful_team.evals.trials import Condition, TrialSpec
@@ -79,7 +80,7 @@ class StudyPlan:
             asked += [self._condition(*names, perturb, replans) for names in self._named()]
         for perturb in self.perturb:
             asked += [Condition(name, NO_MODEL, "", perturb, 0) for name in bounds]
-            if OFFLINE in self.controls:
+            if OFFLINE in self.controls and not suite.methods:
                 asked.append(Condition("team", OFFLINE, "", perturb, replans, self.how, self.reobserve))
         return tuple(dict.fromkeys(asked))
 
@@ -146,7 +147,7 @@ class StudyPlan:
 
 def of_photos(suite: Suite) -> bool:
     """Whether a suite is photos with boxes: scenes without a simulator."""
-    return suite.name.endswith(".json")
+    return is_photo(suite.name)
 
 
 def of_pictures(suite: Suite) -> bool:

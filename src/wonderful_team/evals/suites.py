@@ -8,7 +8,7 @@ from pathlib import Path
 
 from wonderful_team.core.text import counted
 from wonderful_team.errors import ConfigError, UnknownNameError
-from wonderful_team.evals.toy import BOX_KINDS, BOXCHECK, POINTING
+from wonderful_team.evals.toy import ANNOTATIONS, BOX_KINDS, BOXCHECK, POINTING, is_toy
 from wonderful_team.evals.trials import DEVELOPMENT_BELOW
 
 VIMA_TASKS = (
@@ -24,6 +24,11 @@ IMPLICIT_GOALS = {
     "prices": ("fruit_price_ranking", "rank fruits by price tags and discounts"),
 }
 """The paper's implicit goals: by suite, the folder of its variations and what they want."""
+ABLATED = (
+    "visual_manipulation", "scene_understanding", "rotate", "novel_adj", "novel_noun", "sweep_without_exceeding", "same_shape",
+    "manipulate_old_neighbor", "pick_in_order_then_restore",
+)  # fmt: skip
+"""The tasks of the paper's ablations: 1, 2, 3, 6, 7, 12, 15, 16 and 17."""
 
 
 @dataclass(frozen=True)
@@ -47,13 +52,18 @@ SPATIAL = Protocol("spatial planning: 5 runs a task, closed loop, up to 3 replan
 
 @dataclass(frozen=True)
 class Suite:
-    """Tasks with the protocol they are run by; `note` says what is missing of a suite that is not whole."""
+    """Tasks with the protocol they are run by; `note` says what is missing of a suite that is not whole.
+
+    Attributes:
+        methods: Whom it compares unless others are named.
+    """
 
     name: str
     tasks: tuple[str, ...]
     protocol: Protocol
     help: str = ""
     note: str = ""
+    methods: tuple[str, ...] = ()
 
 
 def all_suites(known_tasks: Sequence[str], partitions: Mapping[str, Sequence[str]] | None = None) -> dict[str, Suite]:
@@ -72,6 +82,8 @@ def all_suites(known_tasks: Sequence[str], partitions: Mapping[str, Sequence[str
         suites["vima17"] = Suite("vima17", tuple(vima), OPEN_LOOP, words, note)
         first = tuple(task for task in vima if task.rpartition("/")[2] in VIMA_TASKS[:3])
         suites["vima3"] = Suite("vima3", first, OPEN_LOOP, "its three tasks of simple object manipulation")
+        ablated = tuple(task for task in vima if task.rpartition("/")[2] in ABLATED)
+        suites["ablation"] = Suite("ablation", ablated, OPEN_LOOP, "the nine tasks of the paper's ablations")
         for level in PARTITIONS:
             tasks = tuple(task for task in (partitions or {}).get(level, ()) if task.startswith("tabletop/"))
             if tasks:
@@ -90,6 +102,10 @@ def all_suites(known_tasks: Sequence[str], partitions: Mapping[str, Sequence[str
     suites["pointing"] = Suite(
         "pointing", (POINTING,), Protocol("toy table: one question a picture (the paper states no number; 100 here)", 100, 0),
         "point at a circle on the toy table: the paper's Appendix F.1",
+    )  # fmt: skip
+    suites["annotations"] = Suite(
+        "annotations", ANNOTATIONS, Protocol("toy table: each question with an annotation and without, 40 tables each", 40, 0),
+        "what labelled axes, crops, strips of turned cut-outs and a picture of before each buy", methods=("annotated", "bare"),
     )  # fmt: skip
     suites["boxcheck"] = Suite(
         "boxcheck", tuple(f"{BOXCHECK}{kind}" for kind in BOX_KINDS), Protocol("toy table: 25 boxes of each of 4 kinds", 25, 0),
@@ -136,6 +152,9 @@ def _one(name: str, known: Sequence[str], suites: Mapping[str, Suite], is_own: C
         return Suite(name, (name,), Protocol("photos: each once", 1, 0), "grounding on photos, no simulator")
     if is_own(name):
         return Suite(name, (name,), OPEN_LOOP, "own task")
+    for suite in suites.values():
+        if is_toy(name) and name in suite.tasks:
+            return Suite(name, (name,), suite.protocol, suite.help)
     for task in (name, f"tabletop/{name}"):
         if task.partition("@")[0] in known:
             implicit = task.split("/")[1] in (folder for folder, _ in IMPLICIT_GOALS.values())

@@ -11,6 +11,7 @@ from wonderful_team.core.intervals import Rate
 from wonderful_team.core.text import counted
 from wonderful_team.evals.controls import CONTROLS, ORACLE, control_faults
 from wonderful_team.evals.pairing import Pair, pair
+from wonderful_team.evals.photos import is_photo
 from wonderful_team.evals.plan import OFFLINE
 from wonderful_team.evals.toy import is_toy
 from wonderful_team.evals.trials import DEVELOPMENT_BELOW, Condition, Row, TrialRow
@@ -80,7 +81,7 @@ class Cell:
         """What a reader must know of where the answers came from."""
         seen = {word for result in self.results for word in result.provenance}
         # Models by role stand as "M, ROLE=N".
-        models = [part.rpartition("=")[2] for part in self.condition.model.split(", ")]
+        models = [_model_of(part) for part in self.condition.model.split(", ")]
         names = {*NO_VLM, "cached", "replayed"} & seen
         names |= {"offline"} if OFFLINE in models and any(result.calls for result in self.results) else set()
         names |= (
@@ -100,6 +101,12 @@ class Cell:
             if whole and len(found) > 1
             else (str(found[0]) if whole else f"{len(found)} of {found[0]}-{found[-1]}")
         )
+
+
+def _model_of(part: str) -> str:
+    """The model of "M" or "ROLE=M"; a model's name may hold "=" after its first ":"."""
+    role, separator, name = part.partition("=")
+    return name if separator and ":" not in role else part
 
 
 def cell(condition: Condition, mine: Sequence[Row]) -> Cell:
@@ -145,9 +152,10 @@ class Summary:
             found.setdefault(row.spec.condition, []).append(row)
         return found
 
-    def compare(self, first: Condition, second: Condition) -> Pair:
-        """Two conditions on the scenes that both have scored."""
-        return pair(first, second, [*self.by_condition.get(first, []), *self.by_condition.get(second, [])])
+    def compare(self, first: Condition, second: Condition, task: str | None = None) -> Pair:
+        """Two conditions on the scenes that both have scored, of one task or of all."""
+        rows = [*self.by_condition.get(first, []), *self.by_condition.get(second, [])]
+        return pair(first, second, rows if task is None else [row for row in rows if row.spec.task == task])
 
     @property
     def main(self) -> tuple[Condition, ...]:
@@ -227,11 +235,7 @@ class Summary:
                 found.append(f"{condition.label}: not ended yet: {counted(whole.missing, 'trial')}")
         found += _origins([self.cell(one) for one in self.compared])
         development = sorted(
-            {
-                row.spec.seed
-                for row in self.rows
-                if row.spec.seed < DEVELOPMENT_BELOW and not row.spec.task.endswith(".json")
-            }
+            {row.spec.seed for row in self.rows if row.spec.seed < DEVELOPMENT_BELOW and not is_photo(row.spec.task)}
         )
         if development:
             found.append(
@@ -242,7 +246,7 @@ class Summary:
         if (
             self.compared
             and not any(one.method in (ORACLE,) for one in self.bounds)
-            and not all(task.endswith(".json") or is_toy(task) for task in self.tasks)
+            and not all(is_photo(task) or is_toy(task) for task in self.tasks)
         ):
             found.append("controls were refused: nothing here shows that the scorers can tell success from failure")
         return found

@@ -10,6 +10,9 @@ from wonderful_team.evals.trials import TrialRow
 
 POINTING = "toy/pointing"
 BOXCHECK = "toy/boxcheck/"
+ANNOTATION = "toy/annotations/"
+ANNOTATIONS = tuple(f"{ANNOTATION}{name}" for name in ("axes", "crop", "crop_verdict", "strips", "before_after"))
+"""Questions that are asked with an annotation and without."""
 BOX_KINDS = ("perfect", "slightly_off", "around", "wrong_object")
 WITHIN = (1, 3, 4)
 """Distances that the paper counts points within [radii of the target]."""
@@ -18,7 +21,7 @@ WORDS = ("accept", "revise", "reject")
 
 def is_toy(task: str) -> bool:
     """Whether a task is a question about the toy table."""
-    return task == POINTING or task.startswith(BOXCHECK)
+    return task == POINTING or task.startswith((BOXCHECK, ANNOTATION))
 
 
 def score_point(point: Point | None, centre: Point, radius_px: float, rounds: Sequence[Point] = ()) -> TrialRow:
@@ -42,3 +45,21 @@ def score_verdict(said: str, right: str) -> TrialRow:
     if said == right:
         return TrialRow("success", None, f"{said}, as is right", facts=facts)
     return TrialRow("failure", "grounding", f"{said}; right: {right}", facts=facts)
+
+
+def score_turn(said_deg: float | None, right_deg: float) -> TrialRow:
+    """Success when the right angle of the list was chosen."""
+    if said_deg is None:
+        return TrialRow("failure", "grounding", f"no angle was said; right: {right_deg:g} degrees")
+    off = abs(math.remainder(said_deg - right_deg, 360.0))
+    facts = {"error [degrees]": off}
+    if off < 1e-6:
+        return TrialRow("success", None, f"{said_deg:g} degrees, as is right", facts=facts)
+    return TrialRow("failure", "grounding", f"{said_deg:g} degrees; right: {right_deg:g}", facts=facts)
+
+
+def score_word(said: str, right: str) -> TrialRow:
+    """Success when the right word was said."""
+    if said == right:
+        return TrialRow("success", None, f"{said}, as is right")
+    return TrialRow("failure", "grounding", f"{said}; right: {right}")

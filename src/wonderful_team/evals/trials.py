@@ -6,13 +6,18 @@ import json
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, fields
 from pathlib import Path
-from typing import Any, Literal, Protocol, TypeAlias
+from typing import Any, Literal, Protocol, TypeAlias, get_args
 
 from wonderful_team.core.caps import Caps
 from wonderful_team.errors import ConfigError
 
+VALID_SUBGOAL = "at least one valid subgoal"
+"""Fact of a trial: after some action a goal of the task held that did not hold before (the paper's Appendix A)."""
 OUTCOMES = ("success", "failure", "error", "unscored")
 Outcome: TypeAlias = Literal["success", "failure", "error", "unscored"]
+Recorded: TypeAlias = Literal["full", "failures", "none"]
+RECORDED: tuple[Recorded, ...] = get_args(Recorded)
+"""Which trials of a study keep their run folder."""
 DEVELOPMENT_BELOW = 1000
 """Seeds below this one are for development and docs; suites start here (INTERFACE)."""
 
@@ -142,7 +147,7 @@ class RunSettings:
     Attributes:
         caps: Of one trial.
         concurrency: Most model calls at once within one trial.
-        pages: Which trials get a run folder with a page: all | failures | none.
+        record: Which trials keep their run folder: full (every one) | failures (those that did not succeed) | none.
         out: Where run folders go.
         prompts: Folder with own words for the team's roles.
         limiter: Shared by all workers.
@@ -153,7 +158,7 @@ class RunSettings:
 
     caps: Caps = Caps()
     concurrency: int = 8
-    pages: Literal["all", "failures", "none"] = "none"
+    record: Recorded = "none"
     out: Path | None = None
     prompts: Path | None = None
     limiter: Limiter | None = None
@@ -161,8 +166,8 @@ class RunSettings:
     named_code: frozenset[str] | None = None
 
     def __post_init__(self) -> None:
-        if self.pages not in ("all", "failures", "none"):
-            raise ConfigError(f"pages {self.pages!r}: valid are all, failures, none")
+        if self.record not in RECORDED:
+            raise ConfigError(f"record {self.record!r}: valid are {', '.join(RECORDED)}")
 
 
 TrialRunner: TypeAlias = Callable[[TrialSpec, RunSettings], TrialRow]

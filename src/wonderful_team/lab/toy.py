@@ -208,7 +208,12 @@ def _inside(box: Box) -> Box:
 
 def checker_request(table: ToyTable, box: Box) -> Request:
     """A box on a toy table, judged as the team has it judged: by the Checker, on a crop."""
-    shown = crop(table.view, box, "crop")
-    marked = shown.marked(Axes(whole(table.view, "main view").frame), BoxMark(shown.frame.box_to_picture(box)))
-    question = JudgeBox(Target("T1", "object", table.target.words, use=("pick",)), marked)
+    return judged_request(table.view, table.target.words, box)
+
+
+def judged_request(view: View, words: str, box: Box) -> Request:
+    """A box in any view, judged by the Checker on a crop."""
+    shown = crop(view, box, "crop")
+    marked = shown.marked(Axes(whole(view, "main view").frame), BoxMark(shown.frame.box_to_picture(box)))
+    question = JudgeBox(Target("T1", "object", words, use=("pick",)), marked)
     return build_request(question, id="0/ground/T1/JudgeBox/1", stage="ground")

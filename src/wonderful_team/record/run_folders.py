@@ -15,6 +15,8 @@ from wonderful_team.redaction import redact
 
 OUT_VARIABLE = "WONDERFUL_TEAM_RUNS"
 LATEST = "latest"
+TRIALS = "trials"
+"""Folder of the run folders of a study's trials, within that of runs."""
 RECORD_NAME = "record.json"
 
 
@@ -68,7 +70,10 @@ def find_run(name: str, out: str | Path | None = None) -> Path:
     if len(fitting) > 1:
         raise ConfigError(f"run {name!r} fits several: {', '.join(fitting[:5])}")
     if not fitting:
-        raise UnknownNameError("run", name, names[:12], where=f" in {str(root)!r}")
+        where = f" in {str(root)!r}"
+        if TRIALS in Path(name).parts:
+            where += " (a trial's record may not have been kept: `show STORE.db` tells how to get it)"
+        raise UnknownNameError("run", name, names[:12], where=where)
     return root / fitting[0]
 
 
@@ -79,6 +84,12 @@ def all_runs(out: str | Path | None = None) -> list[Path]:
         return []
     found = [folder for folder in root.iterdir() if not folder.is_symlink() and (folder / RECORD_NAME).is_file()]
     return sorted(found, key=lambda folder: folder.name, reverse=True)
+
+
+def trials_kept(out: str | Path | None = None) -> int:
+    """How many trials of studies keep a record there."""
+    root = runs_folder(out) / TRIALS
+    return sum(1 for _ in root.glob(f"*/*/{RECORD_NAME}")) - sum(1 for _ in root.glob(f"*/{LATEST}/{RECORD_NAME}"))
 
 
 def _slug(words: str) -> str:

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, fields, replace
 from typing import cast
 
+from wonderful_team.agents.prompts import ROLES, role_names
 from wonderful_team.agents.role import Role
 from wonderful_team.core.caps import Caps
 from wonderful_team.core.protocols import Detector, Model, Policy, Subscriber, World
@@ -15,8 +16,8 @@ from wonderful_team.errors import ConfigError, MethodCodeError, UnknownNameError
 from wonderful_team.models.budget import Budget
 from wonderful_team.models.client import DEADLINE_S, ModelClient
 from wonderful_team.planning import ABLATIONS, TeamConfig, TeamPolicy, members_of
-from wonderful_team.planning.baselines import direct, nlap, pivot, point
-from wonderful_team.planning.config import Grounding, Mode
+from wonderful_team.planning.baselines import direct, nlap, pivot, point, shown
+from wonderful_team.planning.config import Grounding, Members, Mode
 from wonderful_team.registry.detectors import make_detector
 from wonderful_team.registry.files import is_file_name, make_from_file
 from wonderful_team.registry.models import DEFAULT_ROLE
@@ -77,7 +78,7 @@ class MethodRow:
         words: A line of help.
         make: Its factory.
         team: What its name says about the team; None for a rival.
-        roles: A rival's own roles.
+        roles: A rival's own roles; () where it does not say.
         privileged: It is told of a simulator's truth.
         detects: It looks with a detector (`--detector`).
         plans: It can be run in a world; what only says where things are answers the suites `pointing` and `boxcheck`, and photos.
@@ -183,6 +184,15 @@ METHODS: dict[str, MethodRow] = {
         roles=(point.POINTER,),
         plans=False,
     ),
+    **{
+        name: MethodRow(
+            f"for the suite annotations: one question a picture, {how} what the team draws or cuts out",
+            lambda setup, annotated=annotated: shown.ShownWith(setup.client(), annotated=annotated),  # type: ignore[misc]
+            roles=(shown.VIEWER,),
+            plans=False,
+        )
+        for name, how, annotated in (("annotated", "with", True), ("bare", "without", False))
+    },
     "pivot": MethodRow(
         "points found among numbered marks in 3 iterations and 3 parallel runs (PIVOT, arXiv 2402.07872)",
         lambda setup: pivot.Pivot(setup.client()),
@@ -212,6 +222,30 @@ def method_row(name: str) -> MethodRow | None:
     return replace(row, words=f"{base} {members.words}", team=replace(row.team, ablation=f"-{off}"))
 
 
+EACH = ":-each"
+"""After the name of a whole team: that team, and it without each member in turn."""
+
+
+def each_member(names: Sequence[str]) -> list[str]:
+    """Names of methods, with "team:-each" and "team:paper:-each" written out; each method once where it comes so."""
+    found: list[str] = []
+    for name in names:
+        base = name.removesuffix(EACH)
+        row = METHODS.get(base)
+        if (
+            base == name
+            or row is None
+            or row.team is None
+            or row.team.ablation != "full"
+            or row.team.grounding != "team"
+        ):
+            found.append(name)
+            continue
+        written = [base, *(f"{base}:-{member.name}" for member in fields(Members))]
+        found += [one for one in written if one not in (*found, *names)]
+    return found
+
+
 def known_row(name: str) -> MethodRow:
     """The same.
 
@@ -220,8 +254,41 @@ def known_row(name: str) -> MethodRow:
     """
     row = method_row(name)
     if row is None:
-        raise UnknownNameError("method", name, [*METHODS, "team:-MEMBER-MEMBER", "FILE.py:NAME"])
+        raise UnknownNameError("method", name, [*METHODS, "team:-MEMBER-MEMBER", "team:-each", "FILE.py:NAME"])
     return row
+
+
+def roles_of(method: str) -> tuple[str, ...]:
+    """Whom a method asks as: the roles that can have a model of their own. One that does not say, as the user's own, may ask as any."""
+    row = method_row(method)
+    if row is not None and row.team is not None:
+        return role_names()
+    return tuple(role.name for role in row.roles) if row is not None and row.roles else all_roles()
+
+
+def all_roles() -> tuple[str, ...]:
+    """Every role of the team, then those of rivals."""
+    rivals = (role.name for row in METHODS.values() for role in row.roles)
+    return tuple(dict.fromkeys((*role_names(), *rivals)))
+
+
+def grounding_roles(method: str) -> tuple[str, ...]:
+    """Those of a method's roles that find targets in pictures; the others plan."""
+    row = method_row(method)
+    roles = ROLES.values() if row is None or row.team is not None else row.roles
+    return tuple(role.name for role in roles if role.grounds)
+
+
+def check_roles(method: str, named: Iterable[str]) -> None:
+    """Whether a method has these roles.
+
+    Raises:
+        UnknownNameError: It has not; lists those that it has.
+    """
+    known = roles_of(method)
+    for role in named:
+        if role not in (*known, DEFAULT_ROLE):
+            raise UnknownNameError(f"role of method {method!r}", role, known)
 
 
 def looks_with_detector(name: str) -> bool:

@@ -30,6 +30,7 @@ MODEL_FORMS: dict[str, str] = {
     "VENDOR:NAME@URL": "the same interface at another address",
     "http://HOST:8000/v1[#NAME]": "any OpenAI-compatible server; without #NAME it is asked which model it has",
     "simulated:PROFILE": "a simulator's truth with stated errors: coarse, hasty, paper-gpt-4o (or -gpt-4-turbo, -claude-3-opus), or what probe --full measured",
+    "simulated:PROFILE:RATE=VALUE": "the same with rates of your own, as in simulated:perfect:wrong_plan=0.5:overlooks=0.1 (docs/profiles.md)",
     "FILE.py:NAME": "your own: anything with answer(request)",
 }
 DEFAULT_ROLE = "*"

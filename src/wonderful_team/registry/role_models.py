@@ -8,7 +8,6 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from wonderful_team import registry
-from wonderful_team.agents.prompts import role_names
 from wonderful_team.errors import ConfigError, UnknownNameError
 
 REST = registry.DEFAULT_ROLE
@@ -24,7 +23,7 @@ def text_of(model: str | Mapping[str, str], roles: Sequence[str] | None = None) 
     """
     if isinstance(model, str):
         return model
-    known = role_names() if roles is None else roles
+    known = registry.all_roles() if roles is None else roles
     for role in model:
         if role not in (*known, REST):
             raise UnknownNameError("role", role, known)
@@ -49,7 +48,7 @@ def read_choices(words: Sequence[str], default: str) -> tuple[str, ...]:
         UnknownNameError: A role that does not exist.
         ConfigError: One role has two models, or a word is empty.
     """
-    roles = role_names()
+    roles = registry.all_roles()
     everywhere: dict[str, str] = {}
     groups: list[tuple[list[str], dict[str, str]]] = []
     for word in words:

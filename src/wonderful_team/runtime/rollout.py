@@ -245,6 +245,8 @@ def _scored(progress: RolloutLog, ending: RolloutEnd, scorer: Privileged | None)
             return progress.finish(RolloutEnd("success", None, score.reason or ending.reason))
         case False:
             said = "; ".join(text for text in (ending.reason, score.reason) if text)
-            return progress.finish(RolloutEnd("failure", ending.stage or score.stage or "execution", said))
+            # Nothing failed in being carried out where nothing was: that there was something to do was not seen.
+            otherwise = "execution" if progress.runs else "plan"
+            return progress.finish(RolloutEnd("failure", ending.stage or score.stage or otherwise, said))
     said = score.reason or "the scorer could not judge"
     return progress.finish(RolloutEnd(ending.outcome or "unscored", ending.stage, said))

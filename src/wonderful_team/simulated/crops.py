@@ -109,14 +109,19 @@ def answer_judge_boxes(context: Context, question: JudgeBoxes) -> BoxVerdicts:
 
 
 def answer_judge_revision(context: Context, question: JudgeRevision) -> RevisionVerdict:
-    """Keep the one nearer to the truth."""
-    before, after = box_of(question.before), box_of(question.after)
+    """Keep the one nearer to the truth. Where the one before is not shown, nothing can be compared: what touches the target is taken."""
+    before = None if question.before is None else box_of(question.before)
+    after = box_of(question.after)
     found = find(context, question.target, question.after, question.examples, after)
-    if found is None or before is None or after is None:
+    if found is None or after is None or (before is None and question.before is not None):
         return RevisionVerdict(reasoning="the target does not show in this picture", decision="keep_before")
     seen, place = found
     if fits(after, place, seen, Tolerance.on(question.after)):
         return RevisionVerdict(reasoning="the box after is tight", decision="take_after_stop")
+    if before is None:
+        if after.intersection(place.box) is not None:
+            return RevisionVerdict(reasoning="it is on the target and not tight", decision="take_after_go_on")
+        return RevisionVerdict(reasoning="it is not on the target", decision="keep_before")
     if _off(after, place.box) < _off(before, place.box):
         return RevisionVerdict(reasoning="the box after is nearer", decision="take_after_go_on")
     return RevisionVerdict(reasoning="the box after is no nearer", decision="keep_before")

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 
 from wonderful_team.errors import ConfigError, UnknownNameError
 from wonderful_team.models.error_profile import QUANTILES, BoxState, Confusion, Count, Distribution, ErrorProfile
@@ -25,13 +27,76 @@ PROFILES: dict[str, Profile] = {
 """Made up for trying how the team copes with errors of a known size; those called paper-... are fitted to what the paper measured."""
 
 
+SHARES = (
+    "missed",
+    "imagined",
+    "wrong_thing",
+    "wrong_choice",
+    "wrong_plan",
+    "overlooks",
+    "accepts_wrong",
+    "refuses_right",
+)
+"""Rates that a name may set, from 0 to 1."""
+SIZES = ("spread", "edge", "correction")
+"""Sizes of errors that a name may set, 0 or more; `spread` in both directions."""
+SETTABLE = (*SHARES, *SIZES, "shifts_boxes", "seed")
+
+
 def profile_named(name: str) -> Profile:
-    """An error model by name: one of PROFILES, or one that `probe --full --save NAME` measured.
+    """An error model by name: one of PROFILES, one that `probe --full --save NAME` measured, or either with rates of its own,
+    as in "perfect:wrong_plan=0.5:overlooks=0.1".
 
     Raises:
-        UnknownNameError: No such profile.
-        ConfigError: That profile holds no error model.
+        UnknownNameError: No such profile, or no such rate.
+        ConfigError: That profile holds no error model, or a value out of range.
     """
+    base, *settings = name.split(":")
+    profile = _profile_named(base)
+    if not settings:
+        return profile
+    values = _read_settings(settings, name)
+    return replace(_with_rates(profile, values), name=name)
+
+
+def _read_settings(settings: Sequence[str], name: str) -> dict[str, float]:
+    values: dict[str, float] = {}
+    for setting in settings:
+        key, separator, text = setting.partition("=")
+        if key not in SETTABLE:
+            raise UnknownNameError("rate of a simulated profile", key, SETTABLE)
+        if key in values:
+            raise ConfigError(f"simulated profile {name!r}: {key} is set twice")
+        limit = "from 0 to 1" if key in SHARES else "0 or 1" if key == "shifts_boxes" else "0 or more"
+        if key == "seed":
+            limit = "a whole number from 0 on"
+        try:
+            value = float(text)
+        except ValueError:
+            value = math.nan
+        whole = key in ("shifts_boxes", "seed")
+        fits = 0.0 <= value < math.inf and not (key in (*SHARES, "shifts_boxes") and value > 1.0)
+        if not separator or not fits or (whole and value != int(value)):
+            raise ConfigError(f"simulated profile {name!r}: {key} {text or '(nothing)'}; valid: {limit}, as in {key}=1")
+        values[key] = value
+    return values
+
+
+def _with_rates(profile: Profile, values: Mapping[str, float]) -> Profile:
+    judged = {key: values[key] for key in ("accepts_wrong", "refuses_right") if key in values}
+    fields: dict[str, object] = {key: value for key, value in values.items() if key not in judged}
+    made: Mapping[str, Callable[[float], object]] = {
+        "spread": lambda value: (value, value), "shifts_boxes": bool, "seed": int,
+    }  # fmt: skip
+    fields |= {key: make(values[key]) for key, make in made.items() if key in values}
+    if "spread" in values:
+        fields |= {"radial": (), "bias": (0.0, 0.0)}
+    if judged:
+        fields["judgement"] = Judgement.erring(judged.get("accepts_wrong", 0.0), judged.get("refuses_right", 0.0))
+    return replace(profile, **fields)  # type: ignore[arg-type]
+
+
+def _profile_named(name: str) -> Profile:
     if name in PROFILES:
         return PROFILES[name]
     saved = profile_names()

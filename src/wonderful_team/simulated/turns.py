@@ -11,13 +11,17 @@ from wonderful_team.contracts import ReadTurn, TurnChoice
 from wonderful_team.core.geometry import Box, Frame
 from wonderful_team.core.pictures import Picture
 from wonderful_team.simulated.context import Context
+from wonderful_team.simulated.seeing import Seen
 
 
 def answer_read_turn(context: Context, question: ReadTurn) -> TurnChoice:
     """The nearest turn, where the strip shows a true goal and the target is one that the right plan moves; else none."""
-    if context.see(shown_part(question.strip)) is None:
+    goal = context.see(shown_part(question.strip))
+    if goal is None:
         return TurnChoice(reasoning="the goal shows nothing that was ever there", number=None)
     turn = context.turn_of(question.target)
+    if turn is None:
+        turn = _between(context, question.target.words, goal)
     if turn is None:
         return TurnChoice(reasoning="nothing asks for it to be moved", number=None)
 
@@ -26,6 +30,15 @@ def answer_read_turn(context: Context, question: ReadTurn) -> TurnChoice:
 
     best = min(range(1, len(question.turns) + 1), key=off)
     return TurnChoice(reasoning="the nearest to what is asked for", number=best)
+
+
+def _between(context: Context, words: str, goal: Seen) -> float | None:
+    """How far the thing of these words is turned between now and the goal [degrees clockwise], where no plan says it."""
+    now = {thing.words: thing for thing in context.truth.things().values()}
+    then = {thing.words: thing for thing in goal.sight.things.values()}
+    if words not in now or words not in then:
+        return None
+    return math.degrees(now[words].yaw_rad - then[words].yaw_rad)
 
 
 def shown_part(picture: Picture) -> Picture:

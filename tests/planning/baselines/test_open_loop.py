@@ -128,9 +128,9 @@ def test_the_command_line_runs_lists_and_shows_them(tmp_path: Path, capsys: pyte
 
 def test_a_study_estimates_and_runs_a_rival_and_isolates_none_of_its_parts(tmp_path: Path) -> None:
     asked: dict[str, Any] = {"methods": ("direct",), "models": ("simulated:perfect",), "controls": (), "jobs": 1}
-    study = wt.Study("tabletop/rotate", seeds=(1000,), store=tmp_path / "s.db", pages="none", **asked)
+    study = wt.Study("tabletop/rotate", seeds=(1000,), store=tmp_path / "s.db", record="none", **asked)
     assert study.run().status.outcomes == {"success": 1}
     line = study.estimate().lines[0]
     assert (line.calls, line.measured) == (1, 1)
-    with pytest.raises(ConfigError, match="is for the team's members; method 'direct' has none"):
+    with pytest.raises(ConfigError, match="'direct' does not ask as one role .* valid: .*pivot"):
         wt.Study("tabletop/rotate", isolate="grounding", **asked)

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections import Counter
+from collections.abc import Mapping, Sequence
 from itertools import zip_longest
 from pathlib import Path
 from typing import Any
@@ -12,10 +13,12 @@ from markupsafe import Markup
 
 from wonderful_team.core.text import counted
 from wonderful_team.errors import MissingExtraError
+from wonderful_team.evals.ablation import Ablation, ablations, ends_of
+from wonderful_team.evals.again import command_again
 from wonderful_team.evals.pairing import Pair
 from wonderful_team.evals.paper import published
-from wonderful_team.evals.report import tables
-from wonderful_team.evals.report.plots import cost_plot, rate_plot, task_plot
+from wonderful_team.evals.report import ablation, tables
+from wonderful_team.evals.report.plots import cost_plot, ends_plot, rate_plot, task_plot
 from wonderful_team.evals.summary import Summary
 from wonderful_team.evals.trials import Condition, Row
 from wonderful_team.images.thumbnail import run_thumbnail
@@ -36,11 +39,16 @@ def page_content(summary: Summary, warnings: Sequence[str], baseline: str | None
         "compared": [tables.cell_words(summary.cell(one)) for one in summary.main],
         "bounds": [tables.cell_words(summary.cell(one)) for one in summary.main_bounds],
         "plots": _plots(summary),
+        "ends_plot": _ends_plot(summary.main, {one: ends_of(summary, one) for one in summary.main}),
+        "effect_head": ablation.EFFECT_HEAD,
+        "moved_head": ablation.MOVED_HEAD,
+        "ablations": [_ablation(one) for one in ablations(summary)],
         "task_head": head,
         "task_lines": lines,
         "paper": published(),
         "with_paper": any(name.startswith("paper (") for name in head),
         "pair_head": tables.PAIR_HEAD,
+        "pair_task_head": tables.PAIR_TASK_HEAD[2:],
         "pairs": [_pair(one, summary, page) for one in summary.pairs(baseline)],
         "stages": _stage_table(summary),
         "failures": [_failures(one, summary, page) for one in summary.compared],
@@ -79,6 +87,29 @@ def _plots(summary: Summary) -> dict[str, Any]:
         return {"missing": str(error)}
 
 
+def _ends_plot(conditions: Sequence[Condition], ends: Mapping[Condition, Counter[str]]) -> Markup | str:
+    try:
+        return Markup(ends_plot(conditions, ends))  # noqa: S704  matplotlib escapes labels
+    except MissingExtraError:
+        return ""
+
+
+def _ablation(found: Ablation) -> dict[str, Any]:
+    """What each member adds, and where failures move."""
+    end_head, end_lines = ablation.end_lines(found)
+    task_head, task_lines = ablation.task_effects(found)
+    return {
+        "label": found.base.label,
+        "effects": ablation.effect_lines(found),
+        "plot": _ends_plot(found.conditions, found.ends),
+        "end_head": end_head,
+        "end_lines": end_lines,
+        "moved": ablation.moved_lines(found),
+        "task_head": task_head,
+        "task_lines": task_lines,
+    }
+
+
 def _stage_table(summary: Summary) -> dict[str, Any]:
     """How often each compared condition failed at each stage."""
     counts = {one: summary.stages(one) for one in summary.compared}
@@ -113,14 +144,24 @@ def _pair(one: Pair, summary: Summary, page: Path) -> dict[str, Any]:
         }
         for (task, seed, repeat), won in one.discordant
     ]
-    return {"pair": one, "words": tables.pair_words(one), "discordant": listed}
+    return {
+        "pair": one,
+        "words": tables.pair_words(one),
+        "tasks": [line[2:] for line in tables.pair_tasks(summary, one)],
+        "discordant": listed,
+    }
 
 
 def _failures(one: Condition, summary: Summary, page: Path) -> dict[str, Any]:
     stages = []
     for stage, count in summary.stages(one).most_common():
         examples = [
-            {"scene": row.spec.scene, "reason": row.result.reason, "page": link(row.result.page, page)}
+            {
+                "scene": row.spec.scene,
+                "reason": row.result.reason,
+                "page": link(row.result.page, page),
+                "again": _again(row),
+            }
             for row in summary.rows
             if row.spec.condition == one
             and row.result is not None
@@ -134,6 +175,11 @@ def _failures(one: Condition, summary: Summary, page: Path) -> dict[str, Any]:
         if row.spec.condition == one and row.result is not None and row.result.outcome == "error"
     ]
     return {"label": one.label, "stages": stages, "errors": errors[:EXAMPLES], "error_count": len(errors)}
+
+
+def _again(row: Row) -> str:
+    """How to get a record that was not kept; "" where it was."""
+    return "" if row.result is not None and row.result.page else command_again(row.spec)
 
 
 def _gallery(summary: Summary, page: Path) -> list[dict[str, Any]]:

@@ -14,8 +14,9 @@ from markupsafe import Markup
 from wonderful_team.core.filesystem import make_private_folder, write_redacted
 from wonderful_team.core.text import counted, visible
 from wonderful_team.errors import ConfigError
+from wonderful_team.evals.ablation import ablations
 from wonderful_team.evals.names import short_names
-from wonderful_team.evals.report import tables
+from wonderful_team.evals.report import ablation, tables
 from wonderful_team.evals.report.content import link, page_content
 from wonderful_team.evals.report.latex import latex_tables
 from wonderful_team.evals.store import Store
@@ -74,11 +75,24 @@ def write_all(
     warnings = (*conflicts, *summary.warnings())
     files = {"CSV": table, "Markdown": markdown, **{f"LaTeX {file.stem}": file for file in tex}}
     content = page_content(summary, warnings, baseline, page)
+    files |= _write_ablations(summary, page)
     content["files"] = {name: link(str(file), page) for name, file in files.items()}
     content["stores"] = [(str(one), _hash(Path(one))) for one in stores]
     content["command"] = command
     write_redacted(page, visible(_render(content), layout=True), errors="xmlcharrefreplace")
     return Written(page, table, markdown, tex, summary, warnings)
+
+
+def _write_ablations(summary: Summary, page: Path) -> dict[str, Path]:
+    """CSV of what members add and of how trials ended, where members were left out."""
+    found = ablations(summary)
+    if not found:
+        return {}
+    texts = {"effects": ablation.effects_csv(found), "ends": ablation.ends_csv(summary, found)}
+    files = {f"CSV {name}": page.with_name(f"{page.stem}-{name}.csv") for name in texts}
+    for file, text in zip(files.values(), texts.values(), strict=True):
+        write_redacted(file, text)
+    return files
 
 
 def read_stores(stores: Sequence[str | Path]) -> tuple[list[Row], list[dict[str, Any]], list[str]]:

@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import io
 import warnings
+from collections import Counter
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from wonderful_team.core.intervals import wilson_interval
 from wonderful_team.errors import MissingExtraError
+from wonderful_team.evals.ablation import NOT_SCORED, ends_seen
 from wonderful_team.evals.names import short_names
 from wonderful_team.evals.paper import paper_beside
 from wonderful_team.evals.summary import Summary
@@ -16,6 +19,11 @@ from wonderful_team.evals.trials import Condition
 _MARKS = "osD^vP*X<>"
 MOST_PER_TASK = 5
 """Conditions side by side that a plot per task can still show."""
+LEAST_LABELLED = 3.0
+"""Least share of a bar that has room for its number [%]."""
+_END_COLOURS = {
+    "success": "#9cc7a3", "planning": "#e6a04d", "grounding": "#6f9fd0", "execution": "#b08fc7", "crash": "#c0504d", NOT_SCORED: "#d5d8dc",
+}  # fmt: skip
 _BLUE, _GREY = "#2b5c8a", "#8a8f98"
 
 
@@ -88,6 +96,31 @@ def task_plot(summary: Summary) -> str:
     axes.set_xlim(-3, 103)
     axes.set_xlabel("success [%], 95 % Wilson interval; no bar where the paper does not state n")
     axes.legend(fontsize=8, loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=2, frameon=False)
+    return _svg(figure)
+
+
+def ends_plot(conditions: Sequence[Condition], ends: Mapping[Condition, Counter[str]]) -> str:
+    """How the trials of each condition ended, as bars of shares; "" where none has."""
+    ended = [one for one in conditions if sum(ends[one].values())]
+    if not ended:
+        return ""
+    figure, axes = _figure(8.6, 1.0 + 0.42 * len(ended))
+    names = [short_names(one.method if len({c.model for c in ended}) == 1 else one.label) for one in ended]
+    lefts = [0.0] * len(ended)
+    for number, end in enumerate(ends_seen(list(ends.values()))):
+        shares = [100 * ends[one][end] / sum(ends[one].values()) for one in ended]
+        colour = _END_COLOURS.get(end, f"C{number % 10}")
+        axes.barh(range(len(ended)), shares, left=lefts, color=colour, label=end, height=0.7)
+        for place, (left, share) in enumerate(zip(lefts, shares, strict=True)):
+            if share >= LEAST_LABELLED:
+                axes.text(left + share / 2, place, f"{ends[ended[place]][end]}", ha="center", va="center", fontsize=8)
+        lefts = [left + share for left, share in zip(lefts, shares, strict=True)]
+    axes.set_yticks(range(len(ended)), [f"{n} ({sum(ends[o].values())})" for n, o in zip(names, ended, strict=True)])
+    axes.set_ylim(len(ended) - 0.5, -0.5)
+    axes.set_xlim(0, 100)
+    axes.grid(visible=False, axis="y")
+    axes.set_xlabel("trials that ended so [%]; numbers are trials")
+    axes.legend(fontsize=8, loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=6, frameon=False)
     return _svg(figure)
 
 

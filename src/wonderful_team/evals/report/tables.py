@@ -11,8 +11,11 @@ from typing import Any
 
 from wonderful_team.core.text import visible
 from wonderful_team.errors import MissingExtraError
+from wonderful_team.evals.ablation import ablations
 from wonderful_team.evals.pairing import Pair
 from wonderful_team.evals.paper import paper_beside
+from wonderful_team.evals.report import ablation
+from wonderful_team.evals.report.paired import paired_figures
 from wonderful_team.evals.schema import CONDITION
 from wonderful_team.evals.summary import Cell, Summary
 from wonderful_team.evals.trials import Condition, Row
@@ -141,12 +144,20 @@ PAIR_HEAD = ("first", "second", "first less second", "95 %", "exact p", "pairs",
 
 def pair_words(one: Pair) -> tuple[str, ...]:
     """The line of a comparison, in the order of PAIR_HEAD."""
-    counts = (str(one.n), str(one.only_first), str(one.only_second))
-    if one.difference is None or one.interval is None or one.p is None:
-        return (one.first.label, one.second.label, "no data", "no data", "no data", *counts)
-    low, high = one.interval
-    gap = f"{100 * one.difference:+.1f}"
-    return (one.first.label, one.second.label, gap, f"{100 * low:+.1f} to {100 * high:+.1f}", f"{one.p:.3g}", *counts)
+    return (one.first.label, one.second.label, *paired_figures(one))
+
+
+FEW_PAIRS = 3
+"""So many comparisons are written out task by task in text."""
+PAIR_TASK_HEAD = ("first", "second", "task", *PAIR_HEAD[2:])
+
+
+def pair_tasks(summary: Summary, one: Pair) -> list[tuple[str, ...]]:
+    """A comparison task by task, in the order of PAIR_TASK_HEAD; none where there is one task."""
+    if len(summary.tasks) < 2:
+        return []
+    by_task = ((task, summary.compare(one.first, one.second, task)) for task in summary.tasks)
+    return [(one.first.label, one.second.label, task, *paired_figures(found)) for task, found in by_task if found.n]
 
 
 VARIANT_HEAD = ("", "success", "95 %", "n", "errors", "less the whole", "95 %", "exact p", "pairs")
@@ -224,6 +235,14 @@ def to_markdown(summary: Summary, baseline: str | None = None) -> str:
     pairs = [pair_words(one) for one in summary.pairs(baseline)]
     if pairs:
         parts.append(markdown_table(PAIR_HEAD, pairs))
+    by_task = [line for one in summary.pairs(baseline)[:FEW_PAIRS] for line in pair_tasks(summary, one)]
+    if by_task and len(pairs) <= FEW_PAIRS:
+        parts.append(markdown_table(PAIR_TASK_HEAD, by_task))
+    for found in ablations(summary):
+        parts.append(f"What each member is worth: {found.base.label}")
+        parts.append(markdown_table(ablation.EFFECT_HEAD, ablation.effect_lines(found)))
+        parts.append(markdown_table(*ablation.end_lines(found)))
+        parts.append(markdown_table(ablation.MOVED_HEAD, ablation.moved_lines(found)))
     for whole, members in summary.variants():
         lines = [variant_words(summary.cell(one), against) for one, against in members]
         parts.append(markdown_table((whole.label, *VARIANT_HEAD[1:]), lines))

@@ -132,10 +132,15 @@ def _problem(fit: BoxFit, box: Box) -> str:
 
 
 def answer_judge_revision(question: JudgeRevision) -> RevisionVerdict:
-    """Compare both boxes with the outline measured in their crops."""
-    before_box, after_box = marked_box(question.before), marked_box(question.after)
-    before = measure(question.target, question.before, before_box, question.examples)
+    """Compare both boxes with the outline measured in their crops; without the one before, judge the one after."""
+    after_box = marked_box(question.after)
     after = measure(question.target, question.after, after_box, question.examples)
+    if question.before is None:
+        if after.verdict == "tight":
+            return RevisionVerdict(reasoning=after.why, decision="take_after_stop")
+        return RevisionVerdict(reasoning=after.why, decision="take_after_go_on" if after.iou > 0 else "keep_before")
+    before_box = marked_box(question.before)
+    before = measure(question.target, question.before, before_box, question.examples)
     says = f"before: {before.why}; after: {after.why}"
     if after.verdict == "tight" and after.iou >= before.iou:
         return RevisionVerdict(reasoning=says, decision="take_after_stop")

@@ -8,7 +8,8 @@ import numpy as np
 from wonderful_team.contracts import ReadTurn, TurnChoice
 from wonderful_team.core.geometry import Box
 from wonderful_team.core.geometry.arrays import Array
-from wonderful_team.core.pictures import BoxMark
+from wonderful_team.core.pictures import BoxMark, Tiles
+from wonderful_team.errors import UnsupportedQuestion
 from wonderful_team.images.turned import FIT_PX, SHIFT_SHARE, misfit
 
 UNLIKE = 60.0
@@ -20,6 +21,10 @@ def answer_read_turn(question: ReadTurn) -> TurnChoice:
     goal = next((mark.box for mark in question.strip.marks if isinstance(mark, BoxMark)), None)
     if goal is None:
         return TurnChoice(reasoning="no goal is marked", number=None)
+    if not any(isinstance(mark, Tiles) for mark in question.strip.marks):
+        raise UnsupportedQuestion(
+            "offline", "ReadTurn", "it reads a turn from turned cut-outs alone, and none are shown"
+        )
     inner = 1 - 2 * SHIFT_SHARE
     around = _patch(question.strip.rgb, goal, FIT_PX)
     patches = [_patch(question.strip.rgb, tile.scaled(inner), round(FIT_PX * inner)) for tile in question.tiles.boxes]

@@ -15,6 +15,7 @@ there, a point at which it can be held. No boxes: what code computes from a thin
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
@@ -32,7 +33,7 @@ from wonderful_team.agents.rendering import (
     words,
 )
 from wonderful_team.agents.role import Ask, role
-from wonderful_team.agents.scene import SceneShown
+from wonderful_team.agents.scene import SceneShown, show_views
 from wonderful_team.contracts import (
     ListedObject,
     ListedPlan,
@@ -43,10 +44,12 @@ from wonderful_team.contracts import (
     SlotWords,
 )
 from wonderful_team.core.pictures import Picture, Point
-from wonderful_team.core.values import Part, Plan, View
+from wonderful_team.core.values import Observation, Part, Plan, View
 from wonderful_team.images import whole
 from wonderful_team.models.client import ModelClient
 from wonderful_team.planning.baselines.open_loop import OpenLoop, pointed
+
+_WORD, _ARTICLES = re.compile(r"\w+"), frozenset({"the", "a", "an"})
 
 
 @dataclass(frozen=True)
@@ -266,6 +269,19 @@ class Nlap(OpenLoop):
         subgoals = [goal.to_subgoal() for goal in drafted.subgoals]
         return self.with_actions(scene, start, subgoals, grounded, drafted.to_steps())
 
+    async def locate(self, observation: Observation, asked: Sequence[str]) -> list[Point | None]:
+        """Where things are, without a plan: the position of the listed object whose name says most of the words asked for, in
+        pixels of the main view; None where none says any, or two say as many.
+        """
+        view = show_views(observation)[0]
+        if self._tell is not None:
+            named = [(name, view.frame.point_to_picture(point)) for name, point in self._tell(view, ()).objects]
+        else:
+            found: ObjectList = (await self.ask(ListObjects(view, ()), EXTRACTOR, "ground")).value
+            named = [(item.name, item.point.as_tuple) for item in found.objects]
+        places = (_named(said, named) for said in asked)
+        return [None if place is None else view.frame.point_to_view(place) for place in places]
+
     async def _list(self, scene: SceneShown, view: Picture) -> tuple[tuple[ListedObject, ...], tuple[SlotWords, ...]]:
         """What the model sees, in words."""
         found: ObjectList = (await self.ask(ListObjects(view, scene.slots), EXTRACTOR, "ground")).value
@@ -283,6 +299,15 @@ class Nlap(OpenLoop):
             said = [name if point is None else _line(_listed(name, at(point))) for name, point in lines]
             slots.append(SlotWords(slot, "; ".join(said) or "nothing"))
         return objects, tuple(slots)
+
+
+def _named(said: str, listed: Sequence[tuple[str, Point]]) -> Point | None:
+    """Where the object is that these words name."""
+    asked = set(_WORD.findall(said.lower())) - _ARTICLES
+    shares = [(len(asked & set(_WORD.findall(name.lower()))), point) for name, point in listed]
+    most = max((count for count, _ in shares), default=0)
+    fitting = [point for count, point in shares if count == most]
+    return fitting[0] if most and len(fitting) == 1 else None
 
 
 def _listed(name: str, point: Point) -> ListedObject:

@@ -50,6 +50,18 @@ def score_of(rules: Rules, history: Sequence[Happened], things: Mapping[str, Thi
     return Score(False, _stage(rules, upto, things), reason)
 
 
+def reached_of(rules: Rules, history: Sequence[Happened]) -> int:
+    """How many goals held after some action that did not at the start, and how many things were gathered that were not."""
+    start, *after = history[: rules.horizon + 1]
+    goals = {goal for entry in after for goal in entry.progress.met} - start.progress.met
+    gathered = [
+        frozenset().union(*(entry.progress.counted[place] for entry in after)) - before
+        for place, before in enumerate(start.progress.counted)
+        if after
+    ]
+    return len(goals) + sum(map(len, gathered))
+
+
 def _stage(rules: Rules, history: Sequence[Happened], things: Mapping[str, Thing]) -> str | None:
     """A point on no object: grounding; on a wrong one: wrong object; right ones but wrongly used: plan; else execution."""
     pairs = list(zip(history, history[1:], strict=False))

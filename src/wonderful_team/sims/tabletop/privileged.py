@@ -16,7 +16,7 @@ from wonderful_team.core.values import GroundTruthView, Observation, TrueThing
 from wonderful_team.errors import UnknownNameError
 from wonderful_team.sims.tabletop import oracle as _oracle
 from wonderful_team.sims.tabletop import oracle_push
-from wonderful_team.sims.tabletop.judging import score_of
+from wonderful_team.sims.tabletop.judging import reached_of, score_of
 from wonderful_team.sims.tabletop.observation_log import ObservationLog, true_things
 from wonderful_team.sims.tabletop.table import Table
 
@@ -50,6 +50,10 @@ class TabletopTruth:
     def score(self) -> Score:
         """Success, or failure with its stage, judged from the true poses after every action."""
         return score_of(self._table.rules, self._table.history, self._table.things)
+
+    def subgoals_reached(self) -> int:
+        """How many goals were met, and things gathered, after some action within the horizon and not before the first."""
+        return reached_of(self._table.rules, self._table.history)
 
     @property
     def failed(self) -> bool:

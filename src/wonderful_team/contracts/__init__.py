@@ -2,11 +2,13 @@
 
 from wonderful_team.contracts.choose_mark import ChooseMark, MarkChoice
 from wonderful_team.contracts.choose_point import ChoosePoint, PointChoice
+from wonderful_team.contracts.describe_pictures import DescribePictures, PictureWords
 from wonderful_team.contracts.draft_plan import DraftPlan
 from wonderful_team.contracts.extract_targets import ExtractTargets, SubgoalTargets, TargetList
 from wonderful_team.contracts.give_box import BoxAnswer, GiveBox
 from wonderful_team.contracts.judge_box import BoxVerdict, JudgeBox, WrongPoint
 from wonderful_team.contracts.judge_boxes import BoxVerdicts, JudgeBoxes, TargetVerdict
+from wonderful_team.contracts.judge_from_boxes import FoundBox, JudgeFromBoxes, TaskVerdict
 from wonderful_team.contracts.judge_outcome import JudgeOutcome, Outcome, VerdictDraft
 from wonderful_team.contracts.judge_revision import JudgeRevision, RevisionVerdict
 from wonderful_team.contracts.list_objects import ListObjects, NamedPoint, ObjectList, SlotDescription
@@ -45,6 +47,15 @@ from wonderful_team.contracts.shown import (
 )
 from wonderful_team.contracts.steps import PlaceDraft, StepList, step_list_type
 from wonderful_team.contracts.write_function import FunctionCode, WriteFunction
+from wonderful_team.contracts.write_program import (
+    Program,
+    ProgramFunction,
+    ProgramMove,
+    ProgramRound,
+    Reference,
+    WriteProgram,
+    program_for,
+)
 from wonderful_team.contracts.write_steps import WriteSteps
 
 QUESTIONS: tuple[type[Question], ...] = (
@@ -74,6 +85,9 @@ QUESTIONS: tuple[type[Question], ...] = (
     SelectMarks,
     ListObjects,
     PlanFromList,
+    DescribePictures,
+    WriteProgram,
+    JudgeFromBoxes,
 )
 
 __all__ = [
@@ -88,17 +102,20 @@ __all__ = [
     "ChoosePoint",
     "ClarificationDraft",
     "CritiqueDraft",
+    "DescribePictures",
     "DirectPlan",
     "DraftPlan",
     "EDGES",
     "Edge",
     "EdgePresence",
     "ExtractTargets",
+    "FoundBox",
     "FunctionCode",
     "GROUNDING_KINDS",
     "GiveBox",
     "JudgeBox",
     "JudgeBoxes",
+    "JudgeFromBoxes",
     "JudgeOutcome",
     "JudgeRevision",
     "ListObjects",
@@ -114,6 +131,7 @@ __all__ = [
     "ObjectList",
     "Outcome",
     "PathReview",
+    "PictureWords",
     "PlaceDraft",
     "PlanDirectly",
     "PlanDraft",
@@ -126,10 +144,15 @@ __all__ = [
     "Points",
     "Presence",
     "PresenceAnswer",
+    "Program",
+    "ProgramFunction",
+    "ProgramMove",
+    "ProgramRound",
     "QUESTIONS",
     "Question",
     "ReadScene",
     "ReadTurn",
+    "Reference",
     "Remember",
     "Replan",
     "ReviewPath",
@@ -153,15 +176,18 @@ __all__ = [
     "TargetDraft",
     "TargetList",
     "TargetVerdict",
+    "TaskVerdict",
     "Tolerance",
     "TurnChoice",
     "VerdictDraft",
     "WalkedReview",
     "WriteFunction",
+    "WriteProgram",
     "WriteSteps",
     "WrongPoint",
     "direct_plan_type",
     "in_parts",
     "listed_plan",
+    "program_for",
     "step_list_type",
 ]

@@ -15,7 +15,7 @@ from wonderful_team.errors import ConfigError, MethodCodeError, UnknownNameError
 from wonderful_team.models.budget import Budget
 from wonderful_team.models.client import DEADLINE_S, ModelClient
 from wonderful_team.planning import ABLATIONS, TeamConfig, TeamPolicy, members_of
-from wonderful_team.planning.baselines import direct, nlap, pivot, point
+from wonderful_team.planning.baselines import direct, nlap, pivot, point, tg
 from wonderful_team.planning.config import Grounding, Mode
 from wonderful_team.registry.detectors import make_detector
 from wonderful_team.registry.files import is_file_name, make_from_file
@@ -187,6 +187,12 @@ METHODS: dict[str, MethodRow] = {
         "points found among numbered marks in 3 iterations and 3 parallel runs (PIVOT, arXiv 2402.07872)",
         lambda setup: pivot.Pivot(setup.client()),
         roles=(pivot.PLANNER, pivot.SELECTOR),
+    ),
+    "tg": MethodRow(
+        "a model without pictures asks a detector by name and writes programs (Trajectory Generators, arXiv 2310.11604)",
+        lambda setup: tg.TrajectoryGenerator(setup.client(), setup.detector()),
+        roles=(tg.DESCRIBER, tg.PROGRAMMER),
+        detects=True,
     ),
     **{
         (full := name + ("" if thoughts else ":no-cot")): _nlap(full, words, pictures, privileged, thoughts)

@@ -1,0 +1,288 @@
+"""What rivals that look with a detector share: looks by name, a model's program over host functions, and the tool's path as steps.
+
+Nothing of a program runs in this process, and nothing it asks for moves anything: its motions become steps of a plan, which passes
+the same gate as every other plan.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import math
+from collections.abc import Awaitable, Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any, Literal, TypeAlias
+
+from wonderful_team.agents.scene import SceneShown
+from wonderful_team.core.actions import (
+    At,
+    CloseStep,
+    MoveStep,
+    OpenStep,
+    PickPlaceStep,
+    PushStep,
+    RotateGripperStep,
+    Step,
+)
+from wonderful_team.core.pictures import Picture, Point
+from wonderful_team.core.protocols import Detector
+from wonderful_team.core.steps import Height
+from wonderful_team.core.values import Detection, GroundedTarget, PointRole, Provenance, Subgoal, Target
+from wonderful_team.core.values.plan_size import size_problem
+from wonderful_team.detectors import found_words, look, name_of
+from wonderful_team.errors import NotUnderstoodError, PlanError
+from wonderful_team.models.client import ModelClient
+from wonderful_team.planning.baselines.open_loop import pointed
+from wonderful_team.sandbox import HostCall, ProgramRun, run_program
+
+
+@dataclass
+class Looks:
+    """A detector's looks at one view, each name once; told to subscribers.
+
+    Attributes:
+        found: By name, in the order in which they were asked for.
+    """
+
+    detector: Detector
+    client: ModelClient
+    scene: SceneShown
+    attempt: int
+    found: dict[str, tuple[Detection, ...]] = field(default_factory=dict)
+
+    async def at(self, name: str) -> tuple[Detection, ...]:
+        """What is found of a name, the surest first; boxes in pixels of the view.
+
+        Raises:
+            NotUnderstoodError: The detector refuses these words.
+        """
+        if name not in self.found:
+            self.found[name] = await look(self.detector, self.scene.view, [name], self.client.budget, self.client.tell)
+            said = f"{name_of(self.detector)}: {found_words(self.found[name], [name])}"
+            self.client.tell("stage", "detected", {"text": said, "attempt": self.attempt})
+        return self.found[name]
+
+    def named(self, point: Point) -> str:
+        """What was found round a point of the view: the smallest box; "" where there is none."""
+        inside = [one for several in self.found.values() for one in several if one.box.contains(point)]
+        return min(inside, key=lambda one: one.box.area).words if inside else ""
+
+
+@dataclass(frozen=True)
+class HostFunction:
+    """A function that a model's program may call.
+
+    Attributes:
+        parameters: As in a `def`.
+        words: What it does, for the program's author.
+        answer: Gives a plain JSON value, or raises a ValueError whose text the program gets; None for what is only kept.
+    """
+
+    parameters: str
+    words: str
+    answer: Callable[..., Awaitable[Any]] | None = None
+
+
+async def run_with(code: str, functions: Mapping[str, HostFunction]) -> ProgramRun:
+    """Run a program in the sandbox, its calls answered as they come.
+
+    Raises:
+        SandboxError: Anything that went wrong with it; the text is for its author.
+    """
+    parameters = {name: one.parameters for name, one in functions.items()}
+    unanswered = frozenset(name for name, one in functions.items() if one.answer is None)
+    answers: list[Mapping[str, Any]] = []
+    while True:
+        run = await asyncio.to_thread(run_program, code, parameters, tuple(answers), unanswered=unanswered)
+        if not run.waits:
+            return run
+        answers.append(await _answered(functions, run.calls[-1]))
+
+
+async def _answered(functions: Mapping[str, HostFunction], call: HostCall) -> Mapping[str, Any]:
+    answer = functions[call.function].answer
+    assert answer is not None, "only a call that needs an answer is waited for"
+    try:
+        return {"value": await answer(*call.arguments)}
+    except (ValueError, NotUnderstoodError) as error:
+        return {"error": str(error)}
+
+
+@dataclass(frozen=True)
+class Waypoint:
+    """Where the tool goes.
+
+    Attributes:
+        point: In pixels of the view.
+        height: at: down to what lies there; above, clear: over it.
+        clockwise_deg: How far the tool is turned from its pose at the start.
+    """
+
+    point: Point
+    height: Height
+    clockwise_deg: float = 0.0
+
+
+ToolMotion: TypeAlias = Waypoint | Literal["open", "close"]
+SAME_PX = 2.0
+"""Nearer than this two points are the same place [px of the view]."""
+
+
+@dataclass
+class ToolPath:
+    """A path of the tool, written as steps that this robot can run.
+
+    Attributes:
+        kinds: What the robot can do. One that picks and places does so from where the gripper closes to where it opens; one
+            that pushes does so along every stretch on the surface; an arm goes through all points.
+        named: What is at a point of the view, "" where nobody knows.
+        how: Where the points come from, for their story.
+    """
+
+    shown: Picture
+    kinds: Sequence[str]
+    named: Callable[[Point], str]
+    how: str
+    provenance: Provenance
+    subgoals: list[Subgoal] = field(default_factory=list)
+    grounded: dict[str, GroundedTarget] = field(default_factory=dict)
+    steps: list[Step] = field(default_factory=list)
+    _lies: list[tuple[Point, str]] = field(default_factory=list)
+
+    def write(self, motions: Sequence[ToolMotion]) -> None:
+        """Add the steps of these motions.
+
+        Raises:
+            PlanError: They do nothing that this robot can do, end with something held, or are too many.
+        """
+        if "pick_place" in self.kinds or "push" in self.kinds:
+            self._primitives(motions)
+        else:
+            self._arm(motions)
+        problem = size_problem(subgoals=len(self.subgoals), targets=len(self.grounded), actions=len(self.steps))
+        if problem:
+            raise PlanError(f"the plan has {problem}")
+
+    def _primitives(self, motions: Sequence[ToolMotion]) -> None:
+        at: Waypoint | None = None
+        held: Waypoint | None = None
+        for motion in motions:
+            if isinstance(motion, Waypoint):
+                low = at is not None and at.height == motion.height == "at"
+                if low and held is None and "push" in self.kinds and at is not None and _apart(at, motion):
+                    self._push(at.point, motion.point)
+                at = motion
+            elif motion == "close":
+                # A gripper that closes in the air holds nothing.
+                held = held or (at if at is not None and at.height == "at" else None)
+            elif held is not None and at is not None:
+                if "pick_place" in self.kinds:
+                    self._carry(held, at)
+                held = None
+        if held is not None:
+            raise PlanError("the gripper closes on something and never opens again")
+        if motions and not self.steps:
+            does = (
+                "close the gripper on a thing, and open it elsewhere"
+                if "pick_place" in self.kinds
+                else "touch the surface"
+            )
+            raise PlanError(f"the motions never {does}, which is all that this robot can do ({', '.join(self.kinds)})")
+
+    def _carry(self, held: Waypoint, end: Waypoint) -> None:
+        turn = _turn_deg(end.clockwise_deg - held.clockwise_deg)
+        thing = self._thing(held.point, "pick")
+        place = self._target(end.point, "place")
+        said = f"the {self._words(thing)} lies at the {self._words(place)}" + (
+            f", turned {turn:g} degrees" if turn else ""
+        )
+        goal = self._goal(said, thing, place)
+        self.steps.append(PickPlaceStep(goal, thing, At(place), turn))
+        self._lies.append((end.point, thing))
+
+    def _push(self, start: Point, end: Point) -> None:
+        one, other = self._target(start, "push_start"), self._target(end, "push_end")
+        goal = self._goal(f"the tool has pushed from the {self._words(one)} to the {self._words(other)}", one, other)
+        self.steps.append(PushStep(goal, At(one), At(other)))
+
+    def _arm(self, motions: Sequence[ToolMotion]) -> None:
+        goal, turned = self._goal("the tool has followed its path"), 0.0
+        for number, motion in enumerate(motions):
+            if motion == "close":
+                self.steps.append(CloseStep(goal))
+            elif motion == "open":
+                self.steps.append(OpenStep(goal))
+            else:
+                turn = _turn_deg(motion.clockwise_deg - turned)
+                if turn:
+                    self.steps.append(RotateGripperStep(goal, turn))
+                turned = motion.clockwise_deg
+                grips = motion.height == "at" and motions[number + 1 : number + 2] == ["close"]
+                target = self._thing(motion.point, "grasp") if grips else self._target(motion.point, "place")
+                self.steps.append(MoveStep(goal, At(target), motion.height))
+
+    def _thing(self, point: Point, role: PointRole) -> str:
+        """The target at a point: one that was put there before, else a new one."""
+        for place, name in reversed(self._lies):
+            if math.dist(place, point) <= SAME_PX:
+                return name
+        return self._target(point, role)
+
+    def _target(self, point: Point, role: PointRole) -> str:
+        """A target of its own for every point: several things put at one place are not shared out."""
+        name, words = f"T{len(self.grounded) + 1}", self.named(point)
+        kind: Literal["object", "area"] = "object" if words else "area"
+        target = Target(name, kind, words or f"spot at ({point[0]:.0f}, {point[1]:.0f}) px", use=(role,))
+        shown = self.shown.frame.point_to_picture(point)
+        self.grounded[name] = pointed(target, {role: shown}, self.shown, self.how, self.provenance)
+        return name
+
+    def _words(self, name: str) -> str:
+        return self.grounded[name].target.words
+
+    def _goal(self, text: str, *targets: str) -> str:
+        before = (self.subgoals[-1].id,) if self.subgoals else ()
+        self.subgoals.append(Subgoal(f"G{len(self.subgoals) + 1}", text, before, targets))
+        return self.subgoals[-1].id
+
+
+def _apart(one: Waypoint, other: Waypoint) -> bool:
+    return math.dist(one.point, other.point) > SAME_PX
+
+
+def _turn_deg(degrees: float) -> float:
+    """The same turn, more than -180 and at most 180."""
+    turn = -((-degrees + 180.0) % 360.0 - 180.0)
+    return round(turn, 3) + 0.0
+
+
+def finite(value: Any, what: str) -> float:
+    """A number that a program gave.
+
+    Raises:
+        ValueError: It gave something else.
+    """
+    if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
+        raise ValueError(f"{what} must be a number, it is {_short(value)}")
+    return float(value)
+
+
+def point_in(value: Any, picture: Picture, what: str) -> Point:
+    """A point that a program gave in pixels of a picture, in pixels of its view.
+
+    Raises:
+        ValueError: It is none, or lies outside the picture.
+    """
+    if not isinstance(value, list) or len(value) != 2:  # noqa: PLR2004  x and y
+        raise ValueError(f"{what} must be (x, y), it is {_short(value)}")
+    x, y = (finite(part, f"{axis} of {what}") for axis, part in zip("xy", value, strict=True))
+    width, height = picture.size_px
+    if not (0 <= x <= width and 0 <= y <= height):
+        raise ValueError(
+            f"{what} is ({x:.0f}, {y:.0f}), outside of the view, which spans x 0 to {width} and y 0 to {height}"
+        )
+    return picture.frame.point_to_view((x, y))
+
+
+def _short(value: Any) -> str:
+    text = repr(value)
+    return text if len(text) <= 60 else f"{text[:60]}..."  # noqa: PLR2004  enough to be recognised

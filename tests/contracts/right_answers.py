@@ -163,6 +163,9 @@ RIGHT["PlanFromList"] = {
     ],
     "steps": RIGHT["PlanDirectly"]["steps"],
 }
+RIGHT["DescribePictures"] = {"pictures": [{"picture": "base_obj", "words": "a tray"}]}
+RIGHT["WriteProgram"] = {"reasoning": "", "code": "open_gripper()"}
+RIGHT["JudgeFromBoxes"] = {"reasoning": "", "completed": False, "summary": "The mug lies on the floor."}
 
 LEAVE_OUT = object()
 """Given as a new value: the field is left out."""

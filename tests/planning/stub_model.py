@@ -107,6 +107,10 @@ def stub_script() -> dict[str, Any]:
         },
         "PlanFromList": _listed_plan,
         "SelectMarks": lambda _: {"reasoning": "", "numbers": [1]},
+        "DescribePictures": lambda request: {
+            "pictures": [{"picture": slot.name, "words": "a thing"} for slot in request.question.slots],
+        },
+        "WriteProgram": lambda _: {"reasoning": "", "code": "task_completed()"},
     }
     return dict(answers)
 

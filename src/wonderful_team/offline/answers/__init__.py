@@ -8,12 +8,14 @@ from typing import Any
 from wonderful_team.contracts import (
     ChooseMark,
     ChoosePoint,
+    DescribePictures,
     DirectPlan,
     DraftPlan,
     ExtractTargets,
     GiveBox,
     JudgeBox,
     JudgeBoxes,
+    JudgeFromBoxes,
     JudgeOutcome,
     JudgeRevision,
     ListedPlan,
@@ -34,11 +36,12 @@ from wonderful_team.contracts import (
     RevisePlan,
     SelectMarks,
     ShownTask,
+    WriteProgram,
     WriteSteps,
     direct_plan_type,
     in_parts,
 )
-from wonderful_team.offline.answers import listing
+from wonderful_team.offline.answers import listing, programs
 from wonderful_team.offline.answers.crops import (
     answer_choose_point,
     answer_judge_box,
@@ -110,6 +113,9 @@ ANSWERS: dict[type[Question], Callable[..., Any]] = {
     SelectMarks: answer_select_marks,
     ListObjects: listing.answer_list_objects,
     PlanFromList: answer_plan_from_list,
+    DescribePictures: programs.answer_describe_pictures,
+    WriteProgram: programs.answer_write_program,
+    JudgeFromBoxes: programs.answer_judge_from_boxes,
 }
 """One function per kind of question; those that take independent samples also take the sample's number."""
 

@@ -36,7 +36,7 @@ def test_a_program_that_swallows_the_stop_is_answered_all_the_same() -> None:
     [
         ("go(float('nan'))", "not plain finite numbers"),
         ("go(10 ** 5000)", "ValueError"),
-        ("x = [1]\nfor i in range(60):\n    x = [x, x]\ngo(x)", "MemoryError|TimeoutError"),
+        ("x = [1]\nfor i in range(60):\n    x = [x, x]\ngo(x)", "MemoryError|TimeoutError|stopped from outside"),
         ("x = []\nfor i in range(3000):\n    x = [x]\ngo(x)", "RecursionError"),
         ("for i in range(200):\n    go(i)", "at most 100 functions|more than 100 functions"),
         ("print('a' * 100000)", "MemoryError"),
@@ -50,7 +50,7 @@ def test_a_program_that_swallows_the_stop_is_answered_all_the_same() -> None:
 )
 def test_harm_and_nonsense_end_as_errors_for_the_author(code: str, said: str) -> None:
     with pytest.raises(SandboxError, match=said):
-        run_program(code, FUNCTIONS, [{"value": None}], unanswered=GO, timeout_s=1.0)
+        run_program(code, FUNCTIONS, [{"value": None}], unanswered=GO)
 
 
 def test_what_is_printed_is_cut_and_never_taken_for_an_answer() -> None:

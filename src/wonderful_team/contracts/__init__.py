@@ -1,6 +1,7 @@
 """The closed set of questions that a model can be asked: one file each, input and answer types together."""
 
 from wonderful_team.contracts.choose_mark import ChooseMark, MarkChoice
+from wonderful_team.contracts.choose_motion import ChooseMotion, MotionMarks
 from wonderful_team.contracts.choose_point import ChoosePoint, PointChoice
 from wonderful_team.contracts.describe_pictures import DescribePictures, PictureWords
 from wonderful_team.contracts.draft_plan import DraftPlan
@@ -12,6 +13,7 @@ from wonderful_team.contracts.judge_from_boxes import FoundBox, JudgeFromBoxes, 
 from wonderful_team.contracts.judge_outcome import JudgeOutcome, Outcome, VerdictDraft
 from wonderful_team.contracts.judge_revision import JudgeRevision, RevisionVerdict
 from wonderful_team.contracts.list_objects import ListObjects, NamedPoint, ObjectList, SlotDescription
+from wonderful_team.contracts.list_subtasks import ListSubtasks, SubtaskDraft, SubtaskList
 from wonderful_team.contracts.locate_points import LocatePoints, Points
 from wonderful_team.contracts.move_box import BoxMove, MoveBox
 from wonderful_team.contracts.plan_directly import DirectPlan, PlanDirectly, PointedTarget, direct_plan_type, in_parts
@@ -88,6 +90,8 @@ QUESTIONS: tuple[type[Question], ...] = (
     DescribePictures,
     WriteProgram,
     JudgeFromBoxes,
+    ListSubtasks,
+    ChooseMotion,
 )
 
 __all__ = [
@@ -99,6 +103,7 @@ __all__ = [
     "BoxVerdict",
     "BoxVerdicts",
     "ChooseMark",
+    "ChooseMotion",
     "ChoosePoint",
     "ClarificationDraft",
     "CritiqueDraft",
@@ -119,12 +124,14 @@ __all__ = [
     "JudgeOutcome",
     "JudgeRevision",
     "ListObjects",
+    "ListSubtasks",
     "ListedObject",
     "ListedPlan",
     "LocatePoints",
     "MarkChoice",
     "MarkSelection",
     "MemoryEntry",
+    "MotionMarks",
     "MoveBox",
     "MoveDraft",
     "NamedPoint",
@@ -173,6 +180,8 @@ __all__ = [
     "SubgoalCheck",
     "SubgoalDraft",
     "SubgoalTargets",
+    "SubtaskDraft",
+    "SubtaskList",
     "TargetDraft",
     "TargetList",
     "TargetVerdict",

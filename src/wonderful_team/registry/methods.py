@@ -15,7 +15,7 @@ from wonderful_team.errors import ConfigError, MethodCodeError, UnknownNameError
 from wonderful_team.models.budget import Budget
 from wonderful_team.models.client import DEADLINE_S, ModelClient
 from wonderful_team.planning import ABLATIONS, TeamConfig, TeamPolicy, members_of
-from wonderful_team.planning.baselines import direct, nlap, pivot, point, tg
+from wonderful_team.planning.baselines import direct, moka, nlap, pivot, point, tg
 from wonderful_team.planning.config import Grounding, Mode
 from wonderful_team.registry.detectors import make_detector
 from wonderful_team.registry.files import is_file_name, make_from_file
@@ -192,6 +192,12 @@ METHODS: dict[str, MethodRow] = {
         "a model without pictures asks a detector by name and writes programs (Trajectory Generators, arXiv 2310.11604)",
         lambda setup: tg.TrajectoryGenerator(setup.client(), setup.detector()),
         roles=(tg.DESCRIBER, tg.PROGRAMMER),
+        detects=True,
+    ),
+    "moka": MethodRow(
+        "things by name through a detector, motions by marks on the picture (MOKA, arXiv 2403.03174)",
+        lambda setup: moka.Moka(setup.client(), setup.detector()),
+        roles=(moka.DECOMPOSER, moka.MARKER),
         detects=True,
     ),
     **{

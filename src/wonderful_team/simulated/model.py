@@ -7,6 +7,7 @@ from typing import Any
 
 from wonderful_team.contracts import (
     ChooseMark,
+    ChooseMotion,
     ChoosePoint,
     DescribePictures,
     DirectPlan,
@@ -19,6 +20,7 @@ from wonderful_team.contracts import (
     JudgeOutcome,
     JudgeRevision,
     ListObjects,
+    ListSubtasks,
     LocatePoints,
     MoveBox,
     PlanDirectly,
@@ -42,7 +44,7 @@ from wonderful_team.core.caps import Estimate
 from wonderful_team.core.protocols import SceneTruth
 from wonderful_team.core.values import Answer, Instruction, Request, Usage
 from wonderful_team.errors import UnsupportedQuestion
-from wonderful_team.simulated import crops, drafting, grounding, listing, outcome, programs, turns
+from wonderful_team.simulated import crops, drafting, grounding, listing, marks, outcome, programs, turns
 from wonderful_team.simulated.context import Context
 from wonderful_team.simulated.error_sampler import ErrorSampler
 from wonderful_team.simulated.profile import Profile
@@ -85,6 +87,8 @@ ANSWERS: dict[type[Question], Callable[[Context, Any], Any]] = {
     DescribePictures: programs.answer_describe_pictures,
     WriteProgram: programs.answer_write_program,
     JudgeFromBoxes: programs.answer_judge_from_boxes,
+    ListSubtasks: marks.answer_list_subtasks,
+    ChooseMotion: marks.answer_choose_motion,
 }
 """One function per kind of question."""
 

@@ -7,6 +7,7 @@ from typing import Any
 
 from wonderful_team.contracts import (
     ChooseMark,
+    ChooseMotion,
     ChoosePoint,
     DescribePictures,
     DirectPlan,
@@ -20,6 +21,7 @@ from wonderful_team.contracts import (
     JudgeRevision,
     ListedPlan,
     ListObjects,
+    ListSubtasks,
     LocatePoints,
     MoveBox,
     PlanDirectly,
@@ -41,7 +43,7 @@ from wonderful_team.contracts import (
     direct_plan_type,
     in_parts,
 )
-from wonderful_team.offline.answers import listing, programs
+from wonderful_team.offline.answers import listing, marks, programs
 from wonderful_team.offline.answers.crops import (
     answer_choose_point,
     answer_judge_box,
@@ -116,6 +118,8 @@ ANSWERS: dict[type[Question], Callable[..., Any]] = {
     DescribePictures: programs.answer_describe_pictures,
     WriteProgram: programs.answer_write_program,
     JudgeFromBoxes: programs.answer_judge_from_boxes,
+    ListSubtasks: lambda question: marks.answer_list_subtasks(question, lambda part: ANSWERS[type(part)](part)),
+    ChooseMotion: marks.answer_choose_motion,
 }
 """One function per kind of question; those that take independent samples also take the sample's number."""
 

@@ -147,40 +147,42 @@ class ToolPath:
     grounded: dict[str, GroundedTarget] = field(default_factory=dict)
     steps: list[Step] = field(default_factory=list)
     _lies: list[tuple[Point, str]] = field(default_factory=list)
+    _turned_deg: float = 0.0
 
-    def write(self, motions: Sequence[ToolMotion]) -> None:
-        """Add the steps of these motions.
+    def write(self, motions: Sequence[ToolMotion], said: str = "") -> None:
+        """Add the steps of these motions; `said` is what they are for, where that is known.
 
         Raises:
             PlanError: They do nothing that this robot can do, end with something held, or are too many.
         """
         if "pick_place" in self.kinds or "push" in self.kinds:
-            self._primitives(motions)
+            self._primitives(motions, said)
         else:
-            self._arm(motions)
+            self._arm(motions, said)
         problem = size_problem(subgoals=len(self.subgoals), targets=len(self.grounded), actions=len(self.steps))
         if problem:
             raise PlanError(f"the plan has {problem}")
 
-    def _primitives(self, motions: Sequence[ToolMotion]) -> None:
+    def _primitives(self, motions: Sequence[ToolMotion], said: str) -> None:
+        before = len(self.steps)
         at: Waypoint | None = None
         held: Waypoint | None = None
         for motion in motions:
             if isinstance(motion, Waypoint):
                 low = at is not None and at.height == motion.height == "at"
                 if low and held is None and "push" in self.kinds and at is not None and _apart(at, motion):
-                    self._push(at.point, motion.point)
+                    self._push(at.point, motion.point, said)
                 at = motion
             elif motion == "close":
-                # A gripper that closes in the air holds nothing.
-                held = held or (at if at is not None and at.height == "at" else None)
+                # A gripper that closes in the air holds nothing, and one that only pushes never does.
+                grips = "pick_place" in self.kinds and at is not None and at.height == "at"
+                held = held or (at if grips else None)
             elif held is not None and at is not None:
-                if "pick_place" in self.kinds:
-                    self._carry(held, at)
+                self._carry(held, at, said)
                 held = None
         if held is not None:
             raise PlanError("the gripper closes on something and never opens again")
-        if motions and not self.steps:
+        if motions and len(self.steps) == before:
             does = (
                 "close the gripper on a thing, and open it elsewhere"
                 if "pick_place" in self.kinds
@@ -188,24 +190,25 @@ class ToolPath:
             )
             raise PlanError(f"the motions never {does}, which is all that this robot can do ({', '.join(self.kinds)})")
 
-    def _carry(self, held: Waypoint, end: Waypoint) -> None:
+    def _carry(self, held: Waypoint, end: Waypoint, said: str) -> None:
         turn = _turn_deg(end.clockwise_deg - held.clockwise_deg)
         thing = self._thing(held.point, "pick")
         place = self._target(end.point, "place")
-        said = f"the {self._words(thing)} lies at the {self._words(place)}" + (
+        said = said or f"the {self._words(thing)} lies at the {self._words(place)}" + (
             f", turned {turn:g} degrees" if turn else ""
         )
         goal = self._goal(said, thing, place)
         self.steps.append(PickPlaceStep(goal, thing, At(place), turn))
         self._lies.append((end.point, thing))
 
-    def _push(self, start: Point, end: Point) -> None:
+    def _push(self, start: Point, end: Point, said: str) -> None:
         one, other = self._target(start, "push_start"), self._target(end, "push_end")
-        goal = self._goal(f"the tool has pushed from the {self._words(one)} to the {self._words(other)}", one, other)
+        said = said or f"the tool has pushed from the {self._words(one)} to the {self._words(other)}"
+        goal = self._goal(said, one, other)
         self.steps.append(PushStep(goal, At(one), At(other)))
 
-    def _arm(self, motions: Sequence[ToolMotion]) -> None:
-        goal, turned = self._goal("the tool has followed its path"), 0.0
+    def _arm(self, motions: Sequence[ToolMotion], said: str) -> None:
+        goal, turned = self._goal(said or "the tool has followed its path"), self._turned_deg
         for number, motion in enumerate(motions):
             if motion == "close":
                 self.steps.append(CloseStep(goal))
@@ -215,7 +218,7 @@ class ToolPath:
                 turn = _turn_deg(motion.clockwise_deg - turned)
                 if turn:
                     self.steps.append(RotateGripperStep(goal, turn))
-                turned = motion.clockwise_deg
+                self._turned_deg = turned = motion.clockwise_deg
                 grips = motion.height == "at" and motions[number + 1 : number + 2] == ["close"]
                 target = self._thing(motion.point, "grasp") if grips else self._target(motion.point, "place")
                 self.steps.append(MoveStep(goal, At(target), motion.height))

@@ -10,6 +10,7 @@ from wonderful_team.agents import ROLES
 from wonderful_team.contracts import (
     EDGES,
     ChooseMark,
+    ChooseMotion,
     ChoosePoint,
     DescribePictures,
     DraftPlan,
@@ -23,6 +24,7 @@ from wonderful_team.contracts import (
     JudgeRevision,
     ListedObject,
     ListObjects,
+    ListSubtasks,
     LocatePoints,
     MoveBox,
     PlanDirectly,
@@ -50,7 +52,7 @@ from wonderful_team.contracts import (
 )
 from wonderful_team.core.actions import Beside, MoveStep, OriginOf, PickPlaceStep
 from wonderful_team.core.geometry import Box, Frame
-from wonderful_team.core.pictures import Axes, BoxMark, Candidates, Mark, PathMark, Picture, PointMark, Tiles
+from wonderful_team.core.pictures import Axes, BoxMark, Candidates, Grid, Mark, PathMark, Picture, PointMark, Tiles
 from wonderful_team.core.values import Critique, Subgoal, Target, Verdict
 from wonderful_team.registry.methods import METHODS
 
@@ -221,6 +223,17 @@ SAMPLES: tuple[Question, ...] = (
         (64, 32),
         (FoundBox("striped mug", 12, 31, 9, 7, 45),),
         (FoundBox("striped mug", 50, 20, 10, 8, 135),),
+    ),
+    ListSubtasks(TASK, ("pick_place", "push"), ("step 1: too far left",)),
+    ChooseMotion(
+        "put the mug onto the tray",
+        "striped mug",
+        "wooden tray",
+        "from left to right",
+        picture(
+            "marked view", Candidates(((5.0, 5.0), (20.0, 10.0)), "P"), Candidates(((40.0, 20.0),), "Q"), Grid(5, 5)
+        ),
+        ("pick_place", "push"),
     ),
 )
 

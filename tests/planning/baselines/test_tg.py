@@ -176,7 +176,9 @@ def test_offline_refuses_by_name_what_needs_eyes(tmp_path: Path) -> None:
     words = "put the red circle to the left of the blue square"
     made = decided("tg", replace(photo(tmp_path), instruction=Instruction(words)))
     assert isinstance(made, GaveUp)
-    assert "writes programs for things that are put into or onto others, put back, or turned; not for this" in made.reason
+    assert (
+        "writes programs for things that are put into or onto others, put back, or turned; not for this" in made.reason
+    )
 
 
 def test_what_the_detector_does_not_find_ends_it_at_grounding(tmp_path: Path) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from pydantic import Field
@@ -80,11 +80,13 @@ class Reference:
         query: Words for a detector, or a picture of the instruction in braces; "" for a spot.
         near: The thing meant of several is nearest to this; the surest without it [px].
         spot: A place that is no thing's [px].
+        shown_in: A picture of the instruction of a whole scene: the place where it shows the thing that is moved.
     """
 
     query: str = ""
     near: Point | None = None
     spot: Point | None = None
+    shown_in: str = ""
 
 
 @dataclass(frozen=True)
@@ -128,28 +130,34 @@ def nearest(found, x, y):
 """.strip()
 
 
-def _written(moves: Sequence[ProgramMove], look: str, first: str, motion: object) -> str:
-    lines, names, now = [first, _NEAREST], dict[Reference, str](), dict[str, str]()
+def _written(
+    moves: Sequence[ProgramMove], look: str, first: str, motion: Callable[[str, str, str, ProgramMove], list[str]]
+) -> str:
+    lines, names, now = [first], dict[tuple[Reference, str], str](), dict[str, str]()
+    if any(one is not None and one.near is not None for move in moves for one in (move.thing, move.place)):
+        lines.append(_NEAREST)
 
-    def named(one: Reference) -> str:
-        if one not in names:
-            names[one] = f"t{len(names) + 1}"
+    def named(one: Reference, thing: str = "") -> str:
+        key = (one, thing if one.shown_in else "")
+        if key not in names:
+            names[key] = f"t{len(names) + 1}"
             found = look.format(repr(one.query))
             if one.spot is not None:
                 value = f"({one.spot[0]:.0f}, {one.spot[1]:.0f})"
             else:
+                found = f"retrieve(segment({one.shown_in!r}), {thing}_box)" if one.shown_in else found
                 best = f"{found}[0]" if one.near is None else f"nearest({found}, {one.near[0]:.0f}, {one.near[1]:.0f})"
-                lines.append(f"{names[one]}_box = {best}")
-                value = f"({names[one]}_box['x'], {names[one]}_box['y'])"
-            lines.append(f"{names[one]} = {value}")
-        return names[one]
+                lines.append(f"{names[key]}_box = {best}")
+                value = f"({names[key]}_box['x'], {names[key]}_box['y'])"
+            lines.append(f"{names[key]} = {value}")
+        return names[key]
 
     for move in moves:
         thing = named(move.thing)
-        place = thing if move.place is None else named(move.place)
+        place = thing if move.place is None else named(move.place, thing)
         start = now.get(thing, thing)
         end = start if move.place is None else place if move.origin else now.get(place, place)
-        lines += motion(thing, start, end, move)  # type: ignore[operator]
+        lines += motion(thing, start, end, move)
         now[thing] = end
     return "\n".join(lines)
 

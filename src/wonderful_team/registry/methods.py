@@ -15,9 +15,9 @@ from wonderful_team.errors import ConfigError, MethodCodeError, UnknownNameError
 from wonderful_team.models.budget import Budget
 from wonderful_team.models.client import DEADLINE_S, ModelClient
 from wonderful_team.planning import ABLATIONS, TeamConfig, TeamPolicy, members_of
-from wonderful_team.planning.baselines import direct, moka, nlap, pivot, point, tg
+from wonderful_team.planning.baselines import direct, instruct2act, moka, nlap, pivot, point, tg
 from wonderful_team.planning.config import Grounding, Mode
-from wonderful_team.registry.detectors import make_detector
+from wonderful_team.registry.detectors import make_classifier, make_detector
 from wonderful_team.registry.files import is_file_name, make_from_file
 from wonderful_team.registry.models import DEFAULT_ROLE
 from wonderful_team.registry.told import teller
@@ -198,6 +198,12 @@ METHODS: dict[str, MethodRow] = {
         "things by name through a detector, motions by marks on the picture (MOKA, arXiv 2403.03174)",
         lambda setup: moka.Moka(setup.client(), setup.detector()),
         roles=(moka.DECOMPOSER, moka.MARKER),
+        detects=True,
+    ),
+    "instruct2act": MethodRow(
+        "one program over a segmenter and a classifier, written without a picture (Instruct2Act, arXiv 2305.11176)",
+        lambda setup: instruct2act.Instruct2Act(setup.client(), setup.detector(), make_classifier()),
+        roles=(instruct2act.CODER,),
         detects=True,
     ),
     **{

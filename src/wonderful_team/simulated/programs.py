@@ -7,6 +7,7 @@ what a detector tells the program, of several the one nearest to the truth. What
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 
 from wonderful_team.contracts import (
     DescribePictures,
@@ -52,7 +53,8 @@ def answer_write_program(context: Context, question: WriteProgram) -> Program:
     seen = main_of(context, question.picture, question.size_px)
     plan, _ = context.plans(seen)
     told = {one.slot for one in question.slot_words}
-    moves = [_move(step, plan, seen, told if question.has("execute_trajectory") else None) for step in plan.steps]
+    shown = None if question.has("execute_trajectory") else context.shown(context.things(seen))
+    moves = [_move(step, plan, seen, told, shown) for step in plan.steps]
     return program_for(question, moves, f"{len(moves)} moves lead from this table to what is asked.")
 
 
@@ -68,12 +70,20 @@ def check_found(question: WriteProgram) -> None:
         raise NotFoundError(f"the last program failed: {said.removeprefix('error: ').splitlines()[0]}")
 
 
-def _move(step: dict[str, object], plan: Written, seen: Seen, told: set[str] | None) -> ProgramMove:
-    def reference(name: object, told_of: set[str] | None = told) -> Reference:
+def _move(
+    step: dict[str, object], plan: Written, seen: Seen, told: set[str], shown: Mapping[str, str] | None
+) -> ProgramMove:
+    """One step as a move; `shown` names the picture of the instruction that shows a thing, for programs that can look by it."""
+
+    def reference(name: object) -> Reference:
         meaning = plan.meanings[str(name)]
-        if told_of is not None and set(meaning.slots) - told_of:
-            raise NotUnderstoodError(f"nobody says what {', '.join(sorted(set(meaning.slots) - told_of))} shows")
-        return _reference(meaning, seen)
+        if shown is None and set(meaning.slots) - told:
+            raise NotUnderstoodError(f"nobody says what {', '.join(sorted(set(meaning.slots) - told))} shows")
+        if shown is not None and meaning.thing is not None and meaning.thing in shown:
+            return Reference(f"{{{shown[meaning.thing]}}}")
+        if shown is not None and meaning.thing is None and meaning.slots:
+            return Reference(shown_in=meaning.slots[0])
+        return _reference(meaning, seen, nearest=shown is None)
 
     pushed = step["kind"] == "push"
     place = step["end"] if pushed else step["place"]
@@ -86,10 +96,11 @@ def _move(step: dict[str, object], plan: Written, seen: Seen, told: set[str] | N
     )
 
 
-def _reference(meaning: Meaning, seen: Seen) -> Reference:
+def _reference(meaning: Meaning, seen: Seen, nearest: bool) -> Reference:
     if meaning.thing is not None:
         thing = seen.thing(meaning.thing)
-        return Reference(meaning.thing if thing is None else thing.words, near=seen.position(meaning.thing))
+        near = seen.position(meaning.thing) if nearest else None
+        return Reference(meaning.thing if thing is None else thing.words, near=near)
     place = place_of(meaning, seen)
     if place is None:
         raise NotUnderstoodError("a place lies outside of the view")

@@ -42,7 +42,7 @@ from wonderful_team.detectors import identity_of
 from wonderful_team.errors import CodeCrashError, ModelOutputError, NotFoundError, NotUnderstoodError
 from wonderful_team.models.client import ModelClient
 from wonderful_team.planning.baselines.open_loop import OpenLoop
-from wonderful_team.planning.baselines.programs import Looks, ToolMotion, ToolPath, Waypoint
+from wonderful_team.planning.baselines.programs import Looks, ToolMotion, ToolPath, Waypoint, kinds_of
 
 KEYPOINTS = 6
 """The middle of a thing and five points of its boundary."""
@@ -129,18 +129,19 @@ class Moka(OpenLoop):
 
     async def make_plan(self, scene: SceneShown, start: Plan, advice: tuple[str, ...]) -> Plan:
         """Subtasks, their things, and a motion for each."""
-        kinds = tuple(kind for kind in scene.vocabulary.step_kinds if kind != "follow")
+        kinds = kinds_of(scene)
         listed_tasks: SubtaskList = (
             await self._readable(ListSubtasks(scene.task, kinds, advice), DECOMPOSER, "plan", "main")
         ).value
-        looks = Looks(self._detector, self.client, scene, self.attempt)
+        looks = Looks(self._detector, self.client, scene.view, self.attempt)
         found = {name: await self._find(looks, name) for name in _names(listed_tasks.subtasks)}
-        busy = _union([mask_of(one) for one in found.values()], scene.view.size_px)
+        size = scene.view.size_px
+        busy = np.any([np.zeros(size[::-1], bool), *(one.mask_in(size) for one in found.values())], axis=0)
         path: ToolPath | None = None
         moved: dict[str, Point] = {}
         for number, subtask in enumerate(listed_tasks.subtasks, start=1):
             held, other = (found.get(name.strip()) for name in (subtask.object_grasped, subtask.object_unattached))
-            view = _marked(scene.views[0], held, other)
+            view = _marked(scene.views[0], size, held, other)
             question = ChooseMotion(
                 subtask.instruction,
                 subtask.object_grasped,
@@ -190,29 +191,9 @@ def _names(subtasks: Sequence[SubtaskDraft]) -> list[str]:
     return [name for name in dict.fromkeys(every) if name]
 
 
-def mask_of(found: Detection) -> Array:
-    """A detection's mask, or its box as one, shape (H, W) of the view; the box alone gives its own size."""
-    if found.mask is not None:
-        return np.asarray(found.mask)
-    box = found.box
-    mask = np.zeros((math.ceil(box.y1), math.ceil(box.x1)), bool)
-    mask[int(box.y0) : math.ceil(box.y1), int(box.x0) : math.ceil(box.x1)] = True
-    return mask
-
-
-def _union(masks: Sequence[Array], size_px: tuple[int, int]) -> Array:
-    """Where any of these is, shape (H, W)."""
-    width, height = size_px
-    every = np.zeros((height, width), bool)
-    for mask in masks:
-        rows, columns = min(height, mask.shape[0]), min(width, mask.shape[1])
-        every[:rows, :columns] |= mask[:rows, :columns]
-    return every
-
-
-def keypoints(found: Detection) -> tuple[Point, ...]:
+def keypoints(found: Detection, size_px: tuple[int, int]) -> tuple[Point, ...]:
     """The middle of a thing, then points of its boundary as far from each other as they can be, from top to bottom [view px]."""
-    outlines, _ = cv2.findContours(mask_of(found).astype(np.uint8), cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)
+    outlines, _ = cv2.findContours(found.mask_in(size_px).astype(np.uint8), cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)
     boundary = max(outlines, key=cv2.contourArea)[:, 0, :].astype(float) + 0.5
     chosen = [boundary.mean(axis=0)]
     away = np.hypot(*(boundary - chosen[0]).T)
@@ -223,9 +204,9 @@ def keypoints(found: Detection) -> tuple[Point, ...]:
     return tuple((float(x), float(y)) for x, y in ordered)
 
 
-def _marked(view: Picture, held: Detection | None, other: Detection | None) -> Picture:
+def _marked(view: Picture, size_px: tuple[int, int], held: Detection | None, other: Detection | None) -> Picture:
     marks = [
-        Candidates(tuple(view.frame.point_to_picture(point) for point in keypoints(one)), letter)
+        Candidates(tuple(view.frame.point_to_picture(point) for point in keypoints(one, size_px)), letter)
         for one, letter in ((held, GRASPED), (other, UNATTACHED))
         if one is not None
     ]

@@ -12,7 +12,9 @@ from collections.abc import Awaitable, Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Literal, TypeAlias
 
+from wonderful_team.agents.rendering import ability_parts, fenced, listed, words
 from wonderful_team.agents.scene import SceneShown
+from wonderful_team.contracts import JudgeFromBoxes, WriteProgram
 from wonderful_team.core.actions import (
     At,
     CloseStep,
@@ -26,7 +28,7 @@ from wonderful_team.core.actions import (
 from wonderful_team.core.pictures import Picture, Point
 from wonderful_team.core.protocols import Detector
 from wonderful_team.core.steps import Height
-from wonderful_team.core.values import Detection, GroundedTarget, PointRole, Provenance, Subgoal, Target
+from wonderful_team.core.values import Detection, GroundedTarget, Part, PointRole, Provenance, Subgoal, Target, View
 from wonderful_team.core.values.plan_size import size_problem
 from wonderful_team.detectors import found_words, look, name_of
 from wonderful_team.errors import NotUnderstoodError, PlanError
@@ -40,12 +42,13 @@ class Looks:
     """A detector's looks at one view, each name once; told to subscribers.
 
     Attributes:
+        view: What it looks at.
         found: By name, in the order in which they were asked for.
     """
 
     detector: Detector
     client: ModelClient
-    scene: SceneShown
+    view: View
     attempt: int
     found: dict[str, tuple[Detection, ...]] = field(default_factory=dict)
 
@@ -56,7 +59,7 @@ class Looks:
             NotUnderstoodError: The detector refuses these words.
         """
         if name not in self.found:
-            self.found[name] = await look(self.detector, self.scene.view, [name], self.client.budget, self.client.tell)
+            self.found[name] = await look(self.detector, self.view, [name], self.client.budget, self.client.tell)
             said = f"{name_of(self.detector)}: {found_words(self.found[name], [name])}"
             self.client.tell("stage", "detected", {"text": said, "attempt": self.attempt})
         return self.found[name]
@@ -289,3 +292,41 @@ def point_in(value: Any, picture: Picture, what: str) -> Point:
 def _short(value: Any) -> str:
     text = repr(value)
     return text if len(text) <= 60 else f"{text[:60]}..."  # noqa: PLR2004  enough to be recognised
+
+
+def task_words(question: WriteProgram | JudgeFromBoxes) -> list[Part]:
+    """The instruction and the unit of positions, for a model that sees no picture."""
+    width, height = question.size_px
+    return [
+        *words("The user's instruction:", fenced("instruction", question.instruction)),
+        *listed("What its names in braces stand for", [f"{{{one.slot}}}: {one.words}" for one in question.slot_words]),
+        *words(
+            f'Positions are pixels of "{question.picture}", {width} wide and {height} high, from its top-left corner: x grows to the '
+            "right, y grows downwards."
+        ),
+    ]
+
+
+def render_program(question: WriteProgram) -> list[Part]:
+    """All of a question for a program, for every method that asks for one."""
+    rounds = [
+        part
+        for number, one in enumerate(question.rounds, start=1)
+        for part in words(
+            f"Your program {number}:", fenced("program", one.code), "What came of it:", fenced("output", one.said)
+        )
+    ]
+    return [
+        *task_words(question),
+        *listed("Functions that a program can call", [f"{one.signature}: {one.words}" for one in question.functions]),
+        *ability_parts(question.step_kinds),
+        *listed("What is known of the robot and its place", question.facts),
+        *(words("An example, of another table:", question.example) if question.example else []),
+        *listed("What went wrong before, to be avoided now", question.advice),
+        *rounds,
+    ]
+
+
+def kinds_of(scene: SceneShown) -> tuple[str, ...]:
+    """What the robot can do, but for paths of helper functions, which only the team writes."""
+    return tuple(kind for kind in scene.vocabulary.step_kinds if kind != "follow")

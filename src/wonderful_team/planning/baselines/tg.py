@@ -24,7 +24,7 @@ from dataclasses import replace
 from typing import Any
 
 from wonderful_team.agents.common import ANSWER, DATA, EXAMPLES, INSTRUCTION, PICTURES, system_words
-from wonderful_team.agents.rendering import ability_parts, fenced, listed, slot_parts, words
+from wonderful_team.agents.rendering import listed, slot_parts, words
 from wonderful_team.agents.role import Ask, role
 from wonderful_team.agents.scene import SceneShown
 from wonderful_team.contracts import (
@@ -41,7 +41,7 @@ from wonderful_team.contracts import (
 )
 from wonderful_team.core.plan_endings import ENDS_A_PLAN
 from wonderful_team.core.protocols import Detector, Done, GaveUp, Situation
-from wonderful_team.core.values import Detection, Part, Plan
+from wonderful_team.core.values import Detection, Plan
 from wonderful_team.detectors import extent_of, identity_of
 from wonderful_team.errors import CodeCrashError, PlanError
 from wonderful_team.models.client import ModelClient
@@ -54,8 +54,11 @@ from wonderful_team.planning.baselines.programs import (
     ToolPath,
     Waypoint,
     finite,
+    kinds_of,
     point_in,
+    render_program,
     run_with,
+    task_words,
 )
 from wonderful_team.sandbox import HostCall, SandboxError
 
@@ -76,38 +79,6 @@ find it by these words; of a whole scene what stands where, with positions in pi
         lambda question: [*words("Pictures of the instruction:"), *slot_parts(question.slots)],
     ),
 )
-
-
-def _task_words(question: WriteProgram | JudgeFromBoxes) -> list[Part]:
-    width, height = question.size_px
-    return [
-        *words("The user's instruction:", fenced("instruction", question.instruction)),
-        *listed("What its names in braces stand for", [f"{{{one.slot}}}: {one.words}" for one in question.slot_words]),
-        *words(
-            f'Positions are pixels of "{question.picture}", {width} wide and {height} high, from its top-left corner: x grows to the '
-            "right, y grows downwards."
-        ),
-    ]
-
-
-def render_program(question: WriteProgram) -> list[Part]:
-    """All of a question for a program, for every method that asks for one."""
-    rounds = [
-        part
-        for number, one in enumerate(question.rounds, start=1)
-        for part in words(
-            f"Your program {number}:", fenced("program", one.code), "What came of it:", fenced("output", one.said)
-        )
-    ]
-    return [
-        *_task_words(question),
-        *listed("Functions that a program can call", [f"{one.signature}: {one.words}" for one in question.functions]),
-        *ability_parts(question.step_kinds),
-        *listed("What is known of the robot and its place", question.facts),
-        *(words("An example, of another table:", question.example) if question.example else []),
-        *listed("What went wrong before, to be avoided now", question.advice),
-        *rounds,
-    ]
 
 
 def _box_line(one: FoundBox) -> str:
@@ -143,7 +114,7 @@ The motions ran. Judge from these positions whether the instruction is carried o
 attempted, what went wrong and what should be done differently.
 """,
         lambda question: [
-            *_task_words(question),
+            *task_words(question),
             *listed("Found before the motions", [_box_line(one) for one in question.before], "nothing"),
             *listed("Found after them", [_box_line(one) for one in question.after], "nothing"),
         ],
@@ -174,11 +145,11 @@ class TrajectoryGenerator(OpenLoop):
     async def make_plan(self, scene: SceneShown, start: Plan, advice: tuple[str, ...]) -> Plan:
         """Programs in turns, until one completes the task."""
         slot_words, view = await self._describe(scene), scene.views[0]
-        looks = Looks(self._detector, self.client, scene, self.attempt)
-        functions = self._functions(looks)
+        looks = Looks(self._detector, self.client, scene.view, self.attempt)
+        functions = self._functions(looks, scene)
         told = tuple(ProgramFunction(f"{name}({one.parameters})", one.words) for name, one in functions.items())
         question = WriteProgram(
-            scene.instruction.text, told, _kinds(scene), view.name, view.size_px, slot_words,
+            scene.instruction.text, told, kinds_of(scene), view.name, view.size_px, slot_words,
             facts=scene.task.facts, advice=advice,
         )  # fmt: skip
         motions: list[ToolMotion] = []
@@ -204,7 +175,7 @@ class TrajectoryGenerator(OpenLoop):
         if not completed:
             kind = CodeCrashError if failed else PlanError
             raise kind(f"no program completed the task in {ROUNDS} turns; the last one: {said[:400]}")
-        path = ToolPath(view, _kinds(scene), looks.named, "computed by the model's program", answer.provenance)
+        path = ToolPath(view, kinds_of(scene), looks.named, "computed by the model's program", answer.provenance)
         path.write(motions)
         return self.with_actions(scene, start, path.subgoals, path.grounded, tuple(path.steps))
 
@@ -212,7 +183,7 @@ class TrajectoryGenerator(OpenLoop):
         """Looks once more, and has it judged from boxes before and after."""
         scene = self.scene_of(situation)
         try:
-            looks = Looks(self._detector, self.client, scene, situation.attempt)
+            looks = Looks(self._detector, self.client, scene.view, situation.attempt)
             for name in dict.fromkeys(one.name for one in self._before):
                 await looks.at(name)
             question = JudgeFromBoxes(
@@ -238,11 +209,11 @@ class TrajectoryGenerator(OpenLoop):
                 self._slot_words = tuple(SlotWords(one.picture, one.words) for one in said.pictures)
         return self._slot_words
 
-    def _functions(self, looks: Looks) -> dict[str, HostFunction]:
+    def _functions(self, looks: Looks, scene: SceneShown) -> dict[str, HostFunction]:
         async def detect_object(name: Any) -> list[dict[str, Any]]:
             if not isinstance(name, str) or not name.strip():
                 raise ValueError(f"detect_object needs a name in words, it got {str(name)[:60]!r}")
-            return [_told(one, looks.scene) for one in await looks.at(name.strip())]
+            return [_told(one, scene) for one in await looks.at(name.strip())]
 
         return {
             "detect_object": HostFunction(
@@ -262,10 +233,6 @@ class TrajectoryGenerator(OpenLoop):
             "open_gripper": HostFunction("", "opens the gripper, or switches suction off"),
             "task_completed": HostFunction("", "says that the task is completed once these motions have run"),
         }
-
-
-def _kinds(scene: SceneShown) -> tuple[str, ...]:
-    return tuple(kind for kind in scene.vocabulary.step_kinds if kind != "follow")
 
 
 def _told(one: Detection, scene: SceneShown) -> dict[str, Any]:

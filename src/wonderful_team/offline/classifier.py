@@ -32,8 +32,8 @@ class ClassicalClassifier:
         Raises:
             NotUnderstoodError: The words hold something that it does not know; says which.
         """
-        eyes = eyes_at(np.asarray(rgb))
-        matches = _like(eyes, query) if isinstance(query, Picture) else eyes.find(described(query))
+        array = np.asarray(rgb)
+        matches = _like(array, query) if isinstance(query, Picture) else eyes_at(array).find(described(query))
         scores = [0.0] * len(masks)
         for match in matches:
             if match.thing is None:
@@ -46,13 +46,17 @@ class ClassicalClassifier:
         return scores
 
 
-def _like(eyes: Eyes, picture: Picture) -> list[Match]:
-    try:
-        example = study_example(in_plain_light(picture))
-    except NotSeen:
-        return []
-    asked = Description("object", "as shown", like="query", quantity="all")
-    return Eyes(eyes.scene, {"query": example}, {}, eyes.looked_at).find(asked)
+def _like(rgb: Array, picture: Picture) -> list[Match]:
+    """As the pixels are, for a picture in the same light, and in plain light, for one from elsewhere."""
+    asked, found = Description("object", "as shown", like="query", quantity="all"), list[Match]()
+    for plain in (False, True):
+        eyes = eyes_at(rgb, plain)
+        try:
+            example = study_example(in_plain_light(picture) if plain else picture)
+        except NotSeen:
+            continue
+        found += Eyes(eyes.scene, {"query": example}, {}, eyes.looked_at).find(asked)
+    return found
 
 
 def _overlap(one: Array, other: Array) -> float:

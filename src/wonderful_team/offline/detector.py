@@ -58,12 +58,12 @@ def described(words: str) -> Description:
     return description
 
 
-def eyes_at(rgb: Array) -> Eyes:
-    """What is seen in a picture by its pixels alone."""
+def eyes_at(rgb: Array, plain_light: bool = True) -> Eyes:
+    """What is seen in a picture by its pixels alone, as in plain light or in the light that it has."""
     # In the picture's own pixels: nothing is enlarged or shrunk, so boxes need no conversion.
     height, width = rgb.shape[:2]
     picture = whole(View("picture", "picture", 0.0, rgb), "picture", min_side_px=1, max_side_px=max(width, height))
-    return eyes_of(in_plain_light(picture), ())
+    return eyes_of(in_plain_light(picture) if plain_light else picture, ())
 
 
 def _detection(words: str, match: Match, thing: Thing, size: tuple[int, int]) -> Detection:

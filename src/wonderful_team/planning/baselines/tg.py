@@ -183,7 +183,7 @@ class TrajectoryGenerator(OpenLoop):
         """Looks once more, and has it judged from boxes before and after."""
         scene = self.scene_of(situation)
         try:
-            looks = Looks(self._detector, self.client, scene.view, situation.attempt)
+            looks = Looks(self._detector, self.client, scene.view, self.attempt)
             for name in dict.fromkeys(one.name for one in self._before):
                 await looks.at(name)
             question = JudgeFromBoxes(

@@ -107,7 +107,9 @@ def _rivals(out: Path) -> Iterator[Source]:
         try:
             # What is asked after the plan ran is asked where another attempt is allowed.
             again = int(method == "tg")
-            trial = wt.rollout(wt.Method(method=method, out=out / method.replace(":", "-")), world, seed=3, replans=again)
+            trial = wt.rollout(
+                wt.Method(method=method, out=out / method.replace(":", "-")), world, seed=3, replans=again
+            )
         finally:
             world.close()
         assert trial.folder is not None

@@ -82,9 +82,10 @@ def _query(description: Description, words: dict[str, str], pictured: bool) -> s
     """What a detector is asked for."""
     if description.quantity != "one" or description.placed is not None:
         raise NotUnderstoodError(f"model 'offline' sees no table here, and cannot count: {description.text!r}")
-    if description.like is None:
-        return render(description)
-    if description.like_only is not None or description.related or description.superlative:
+    said = render(description)
+    if description.like is None and "{" not in said:
+        return said
+    if description.like is None or description.like_only or description.related or description.superlative:
         raise NotUnderstoodError(f"model 'offline' sees no table here, and cannot compare: {description.text!r}")
     if pictured:
         return f"{{{description.like}}}"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from tests.sandbox.programs import ESCAPES
 from wonderful_team.sandbox import HostCall, SandboxError, run_program
 
 FUNCTIONS = {"detect": "name", "go": "points, angle=0"}
@@ -51,6 +52,13 @@ def test_a_program_that_swallows_the_stop_is_answered_all_the_same() -> None:
 def test_harm_and_nonsense_end_as_errors_for_the_author(code: str, said: str) -> None:
     with pytest.raises(SandboxError, match=said):
         run_program(code, FUNCTIONS, [{"value": None}], unanswered=GO)
+
+
+@pytest.mark.parametrize("expression", ESCAPES)
+def test_nothing_outside_is_reached(expression: str) -> None:
+    reached = expression.replace("path.", "detect.").replace("boxes", "{}")
+    with pytest.raises(SandboxError):
+        run_program(f"print(len({reached}))", FUNCTIONS)
 
 
 def test_what_is_printed_is_cut_and_never_taken_for_an_answer() -> None:

@@ -204,11 +204,8 @@ class Instruct2Act(OpenLoop):
         carried = sum(call.function == "pick_place" for call in run.calls)
         self.stage("program", f"the program ran in the sandbox: {len(run.calls)} calls, {carried} of pick_place")
         main = segments.looks.get(MAIN)
-        path = (
-            ToolPath(view, kinds_of(scene), lambda _: "", "computed by the model's program", answer.provenance)
-            if main is None
-            else ToolPath(view, kinds_of(scene), main.named, "computed by the model's program", answer.provenance)
-        )
+        named = (lambda _: "") if main is None else main.named
+        path = ToolPath(view, kinds_of(scene), named, "computed by the model's program", answer.provenance)
         path.write(motions)
         return self.with_actions(scene, start, path.subgoals, path.grounded, tuple(path.steps))
 

@@ -29,7 +29,7 @@ import numpy as np
 
 from wonderful_team.agents.common import ANSWER, DATA, EXAMPLES, INSTRUCTION, PICTURES, system_words
 from wonderful_team.agents.rendering import ability_parts, listed, picture_parts, task_parts, words
-from wonderful_team.agents.role import Ask, role
+from wonderful_team.agents.role import Ask, Role, role
 from wonderful_team.agents.scene import SceneShown
 from wonderful_team.contracts import ChooseMotion, ListSubtasks, MotionMarks, Question, SubtaskDraft, SubtaskList
 from wonderful_team.contracts.choose_motion import GRASPED, UNATTACHED
@@ -130,16 +130,16 @@ class Moka(OpenLoop):
     async def make_plan(self, scene: SceneShown, start: Plan, advice: tuple[str, ...]) -> Plan:
         """Subtasks, their things, and a motion for each."""
         kinds = kinds_of(scene)
-        listed_tasks: SubtaskList = (
+        planned: SubtaskList = (
             await self._readable(ListSubtasks(scene.task, kinds, advice), DECOMPOSER, "plan", "main")
         ).value
         looks = Looks(self._detector, self.client, scene.view, self.attempt)
-        found = {name: await self._find(looks, name) for name in _names(listed_tasks.subtasks)}
+        found = {name: await self._find(looks, name) for name in _names(planned.subtasks)}
         size = scene.view.size_px
         busy = np.any([np.zeros(size[::-1], bool), *(one.mask_in(size) for one in found.values())], axis=0)
         path: ToolPath | None = None
         moved: dict[str, Point] = {}
-        for number, subtask in enumerate(listed_tasks.subtasks, start=1):
+        for number, subtask in enumerate(planned.subtasks, start=1):
             held, other = (found.get(name.strip()) for name in (subtask.object_grasped, subtask.object_unattached))
             view = _marked(scene.views[0], size, held, other)
             question = ChooseMotion(
@@ -166,9 +166,8 @@ class Moka(OpenLoop):
             return self.with_actions(scene, start, (), {}, ())
         return self.with_actions(scene, start, path.subgoals, path.grounded, tuple(path.steps))
 
-    async def _readable(self, question: Question, role: object, stage: str, branch: str) -> Answer:
+    async def _readable(self, question: Question, asker: Role, stage: str, branch: str) -> Answer:
         """An answer in the form that is asked for; one that never comes is a crash, as in their program."""
-        asker = DECOMPOSER if role is DECOMPOSER else MARKER
         try:
             return await self.ask(question, asker, stage, branch)
         except ModelOutputError as error:

@@ -81,7 +81,7 @@ def _move(
             raise NotUnderstoodError(f"nobody says what {', '.join(sorted(set(meaning.slots) - told))} shows")
         if shown is not None and meaning.thing is not None and meaning.thing in shown:
             return Reference(f"{{{shown[meaning.thing]}}}")
-        if shown is not None and meaning.thing is None and meaning.slots:
+        if shown is not None and meaning.thing is None and meaning.slots and step["kind"] != "push":
             return Reference(shown_in=meaning.slots[0])
         return _reference(meaning, seen, nearest=shown is None)
 

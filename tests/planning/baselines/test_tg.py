@@ -185,3 +185,11 @@ def test_what_the_detector_does_not_find_ends_it_at_grounding(tmp_path: Path) ->
     made = decided("tg", replace(photo(tmp_path), instruction=Instruction("put the green star onto the blue square")))
     assert isinstance(made, GaveUp)
     assert (made.stage, made.reason) == ("grounding", "the detector finds no green star")
+
+
+@pytest.mark.parametrize("name", ["tg", "moka", "instruct2act"])
+def test_several_things_that_are_put_on_one_lie_on_each_other(name: str, tmp_path: Path) -> None:
+    trial = run(name, "manipulate_old_neighbor", tmp_path, seed=1000)
+    assert trial.outcome == "success"
+    first, second = (action.step.place.target for action in trial.plans[0].actions[:2])
+    assert first == second

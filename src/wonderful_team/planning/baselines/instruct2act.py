@@ -204,8 +204,8 @@ class Instruct2Act(OpenLoop):
         carried = sum(call.function == "pick_place" for call in run.calls)
         self.stage("program", f"the program ran in the sandbox: {len(run.calls)} calls, {carried} of pick_place")
         main = segments.looks.get(MAIN)
-        named = (lambda _: "") if main is None else main.named
-        path = ToolPath(view, kinds_of(scene), named, "computed by the model's program", answer.provenance)
+        around = (lambda _: None) if main is None else main.around
+        path = ToolPath(view, kinds_of(scene), around, "computed by the model's program", answer.provenance)
         path.write(motions)
         return self.with_actions(scene, start, path.subgoals, path.grounded, tuple(path.steps))
 

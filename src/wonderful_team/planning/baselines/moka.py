@@ -155,7 +155,7 @@ class Moka(OpenLoop):
             motion = Motion(question, answer.value, busy, seed)
             shifts = (moved.get(subtask.object_grasped.strip()), moved.get(subtask.object_unattached.strip()))
             path = path or ToolPath(
-                scene.views[0], kinds, looks.named, "a mark that the model chose", answer.provenance
+                scene.views[0], kinds, looks.around, "a mark that the model chose", answer.provenance
             )
             motions, carried = motion.path(*shifts)
             path.write(motions, subtask.instruction)

@@ -25,6 +25,7 @@ from wonderful_team.core.actions import (
     RotateGripperStep,
     Step,
 )
+from wonderful_team.core.geometry import Box
 from wonderful_team.core.pictures import Picture, Point
 from wonderful_team.core.protocols import Detector
 from wonderful_team.core.steps import Height
@@ -64,10 +65,10 @@ class Looks:
             self.client.tell("stage", "detected", {"text": said, "attempt": self.attempt})
         return self.found[name]
 
-    def named(self, point: Point) -> str:
-        """What was found round a point of the view: the smallest box; "" where there is none."""
+    def around(self, point: Point) -> Detection | None:
+        """What was found round a point of the view: the smallest box; None where there is none."""
         inside = [one for several in self.found.values() for one in several if one.box.contains(point)]
-        return min(inside, key=lambda one: one.box.area).words if inside else ""
+        return min(inside, key=lambda one: one.box.area, default=None)
 
 
 @dataclass(frozen=True)
@@ -137,13 +138,13 @@ class ToolPath:
     Attributes:
         kinds: What the robot can do. One that picks and places does so from where the gripper closes to where it opens; one
             that pushes does so along every stretch on the surface; an arm goes through all points.
-        named: What is at a point of the view, "" where nobody knows.
+        around: What was found round a point of the view, None where nobody knows.
         how: Where the points come from, for their story.
     """
 
     shown: Picture
     kinds: Sequence[str]
-    named: Callable[[Point], str]
+    around: Callable[[Point], Detection | None]
     how: str
     provenance: Provenance
     subgoals: list[Subgoal] = field(default_factory=list)
@@ -196,7 +197,7 @@ class ToolPath:
     def _carry(self, held: Waypoint, end: Waypoint, said: str) -> None:
         turn = _turn_deg(end.clockwise_deg - held.clockwise_deg)
         thing = self._thing(held.point, "pick")
-        place = self._target(end.point, "place")
+        place = self._place(end.point)
         said = said or f"the {self._words(thing)} lies at the {self._words(place)}" + (
             f", turned {turn:g} degrees" if turn else ""
         )
@@ -231,15 +232,27 @@ class ToolPath:
         for place, name in reversed(self._lies):
             if math.dist(place, point) <= SAME_PX:
                 return name
-        return self._target(point, role)
+        found = self.around(point)
+        # Its outline tells what it stands on. The tool goes where the path says, so only where it holds the thing in the middle.
+        held_in_the_middle = found is not None and math.dist(found.box.centre, point) <= SAME_PX
+        return self._target(point, role, found.box if found is not None and held_in_the_middle else None)
 
-    def _target(self, point: Point, role: PointRole) -> str:
-        """A target of its own for every point: several things put at one place are not shared out."""
-        name, words = f"T{len(self.grounded) + 1}", self.named(point)
-        kind: Literal["object", "area"] = "object" if words else "area"
-        target = Target(name, kind, words or f"spot at ({point[0]:.0f}, {point[1]:.0f}) px", use=(role,))
-        shown = self.shown.frame.point_to_picture(point)
-        self.grounded[name] = pointed(target, {role: shown}, self.shown, self.how, self.provenance)
+    def _place(self, point: Point) -> str:
+        """Where something is put: the target of what was put on the same thing before, so that it comes to lie on that."""
+        for name, one in self.grounded.items():
+            there = one.points.get("place")
+            if one.target.kind == "object" and there is not None and math.dist(there, point) <= SAME_PX:
+                return name
+        return self._target(point, "place")
+
+    def _target(self, point: Point, role: PointRole, box: Box | None = None) -> str:
+        found, name = self.around(point), f"T{len(self.grounded) + 1}"
+        kind: Literal["object", "area"] = "area" if found is None else "object"
+        words = f"spot at ({point[0]:.0f}, {point[1]:.0f}) px" if found is None else found.words
+        target, frame = Target(name, kind, words, use=(role,)), self.shown.frame
+        shown: dict[str, Point] = {role: frame.point_to_picture(point)}
+        outline = None if box is None else frame.box_to_picture(box)
+        self.grounded[name] = pointed(target, shown, self.shown, self.how, self.provenance, outline)
         return name
 
     def _words(self, name: str) -> str:

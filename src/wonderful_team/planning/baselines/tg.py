@@ -175,7 +175,7 @@ class TrajectoryGenerator(OpenLoop):
         if not completed:
             kind = CodeCrashError if failed else PlanError
             raise kind(f"no program completed the task in {ROUNDS} turns; the last one: {said[:400]}")
-        path = ToolPath(view, kinds_of(scene), looks.named, "computed by the model's program", answer.provenance)
+        path = ToolPath(view, kinds_of(scene), looks.around, "computed by the model's program", answer.provenance)
         path.write(motions)
         return self.with_actions(scene, start, path.subgoals, path.grounded, tuple(path.steps))
 

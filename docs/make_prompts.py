@@ -48,7 +48,7 @@ A request is the role's standing words (the system message), then its parts in t
 `wonderful-team list prompts` shows the words alone, `--prompts DIR` replaces them, `show RUN --role ROLE` shows those of a run.
 """
 
-RIVALS = ("direct", "pivot", "nlap")
+RIVALS = ("direct", "pivot", "nlap", "tg", "moka", "instruct2act")
 """Rivals that together ask everything that the team is not asked."""
 ASKERS = {**ROLES, **{asker.name: asker for name in RIVALS for asker in METHODS[name].roles}}
 QUESTIONS_BY_NAME = {kind.contract: kind for kind in QUESTIONS}
@@ -105,11 +105,16 @@ def _rivals(out: Path) -> Iterator[Source]:
     for method in RIVALS:
         world = wt.make_world("tabletop/visual_manipulation", seed=3)
         try:
-            trial = wt.rollout(wt.Method(method=method, out=out / method.replace(":", "-")), world, seed=3)
+            # What is asked after the plan ran is asked where another attempt is allowed.
+            again = int(method == "tg")
+            trial = wt.rollout(
+                wt.Method(method=method, out=out / method.replace(":", "-")), world, seed=3, replans=again
+            )
         finally:
             world.close()
         assert trial.folder is not None
-        yield Source(trial.folder, f"`run tabletop/visual_manipulation --seed 3 --method {method}`")
+        replans = " --replans 1" if again else ""
+        yield Source(trial.folder, f"`run tabletop/visual_manipulation --seed 3 --method {method}{replans}`")
 
 
 def _again(out: Path) -> Source:

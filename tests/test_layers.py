@@ -214,15 +214,15 @@ def test_simulators_and_the_team_never_meet() -> None:
         assert not ours(path) & {"models", "agents", "planning", "contracts"}, path
 
 
-SHARED_BY_RIVALS = "wonderful_team.planning.baselines.open_loop"
-"""The one file that rivals may share; it imports no planner itself."""
+SHARED_BY_RIVALS = tuple(f"wonderful_team.planning.baselines.{name}" for name in ("open_loop", "programs"))
+"""The files that rivals may share; they import no planner themselves."""
 
 
 def planners_met(path: Path, rival: bool) -> set[str]:
     """What a planner's file imports of the other planners: a rival of all but what rivals share, the team of its rivals."""
     planners = {name for name in imported(path) if name.startswith("wonderful_team.planning")}
     if rival:
-        return {name for name in planners if not name.startswith(f"{SHARED_BY_RIVALS}.")}
+        return {name for name in planners if not name.startswith(tuple(f"{shared}." for shared in SHARED_BY_RIVALS))}
     return {name for name in planners if "baselines" in name.split(".")}
 
 
@@ -232,8 +232,9 @@ def test_the_team_and_its_rivals_never_meet(tmp_path: Path) -> None:
     assert len(rivals) > 1
     for path in _files("planning"):
         assert not planners_met(path, path in rivals), path
-    shared = ROOT / "planning" / "baselines" / "open_loop.py"
-    assert not {name for name in imported(shared) if name.startswith("wonderful_team.planning")}
+    for name in SHARED_BY_RIVALS:
+        shared = ROOT.joinpath(*name.split(".")[1:]).with_suffix(".py")
+        assert not planners_met(shared, rival=True), shared
     planted = tmp_path / "planted.py"
     for line, of_rival, of_team in (
         ("from wonderful_team.planning.session import AgentSession", True, False),
@@ -241,8 +242,9 @@ def test_the_team_and_its_rivals_never_meet(tmp_path: Path) -> None:
         ("from wonderful_team.planning.baselines import open_loop", True, True),
         ("from wonderful_team.planning.baselines.direct import Direct", True, True),
         ("import wonderful_team.planning.baselines.direct", True, True),
-        (f"from {SHARED_BY_RIVALS} import OpenLoop", False, True),
-        (f"from {SHARED_BY_RIVALS}er import OpenLoop", True, True),
+        (f"from {SHARED_BY_RIVALS[0]} import OpenLoop", False, True),
+        (f"from {SHARED_BY_RIVALS[0]}er import OpenLoop", True, True),
+        (f"from {SHARED_BY_RIVALS[1]} import ToolPath", False, True),
     ):
         planted.write_text(f"{line}\n", encoding="utf-8")
         assert (bool(planners_met(planted, rival=True)), bool(planners_met(planted, rival=False))) == (

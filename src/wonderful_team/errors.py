@@ -289,6 +289,12 @@ class GeometryError(PlanError):
     """The numbers of a step cannot be computed: no room, no point, a place outside of the view; says what was measured."""
 
 
+class CodeCrashError(PlanError):
+    """A method's code came to an end before there was a plan: an answer that it cannot read, or a model's program that fails."""
+
+    stage = "crash"
+
+
 class NotFoundError(WonderfulTeamError):
     """A target is not in the picture, or could not be grounded within the bounds."""
 

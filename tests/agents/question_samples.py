@@ -10,21 +10,28 @@ from wonderful_team.agents import ROLES
 from wonderful_team.contracts import (
     EDGES,
     ChooseMark,
+    ChooseMotion,
     ChoosePoint,
+    DescribePictures,
     DraftPlan,
     ExtractTargets,
+    FoundBox,
     GiveBox,
     JudgeBox,
     JudgeBoxes,
+    JudgeFromBoxes,
     JudgeOutcome,
     JudgeRevision,
     ListedObject,
     ListObjects,
+    ListSubtasks,
     LocatePoints,
     MoveBox,
     PlanDirectly,
     PlanFromList,
     Presence,
+    ProgramFunction,
+    ProgramRound,
     Question,
     ReadScene,
     ReadTurn,
@@ -40,11 +47,12 @@ from wonderful_team.contracts import (
     SlotWords,
     Strip,
     WriteFunction,
+    WriteProgram,
     WriteSteps,
 )
 from wonderful_team.core.actions import Beside, MoveStep, OriginOf, PickPlaceStep
 from wonderful_team.core.geometry import Box, Frame
-from wonderful_team.core.pictures import Axes, BoxMark, Candidates, Mark, PathMark, Picture, PointMark, Tiles
+from wonderful_team.core.pictures import Axes, BoxMark, Candidates, Grid, Mark, PathMark, Picture, PointMark, Tiles
 from wonderful_team.core.values import Critique, Subgoal, Target, Verdict
 from wonderful_team.registry.methods import METHODS
 
@@ -194,6 +202,38 @@ SAMPLES: tuple[Question, ...] = (
         (picture("the table now"),),
         EXAMPLES,
         picture("the cone"),
+    ),
+    DescribePictures(EXAMPLES),
+    WriteProgram(
+        WANTED,
+        (ProgramFunction("detect_object(name)", "looks for a thing"), ProgramFunction("open_gripper()", "lets go")),
+        ("pick_place", "push"),
+        "wide view",
+        (64, 32),
+        (SlotWords("base_obj", "a tray of wood"),),
+        (ProgramRound("print(detect_object('mug'))", "1 found: mug"),),
+        "the example of a cone",
+        ("the blade is as wide as a hand",),
+        ("step 1: too far left",),
+    ),
+    JudgeFromBoxes(
+        WANTED,
+        (SlotWords("base_obj", "a tray of wood"),),
+        "wide view",
+        (64, 32),
+        (FoundBox("striped mug", 12, 31, 9, 7, 45),),
+        (FoundBox("striped mug", 50, 20, 10, 8, 135),),
+    ),
+    ListSubtasks(TASK, ("pick_place", "push"), ("step 1: too far left",)),
+    ChooseMotion(
+        "put the mug onto the tray",
+        "striped mug",
+        "wooden tray",
+        "from left to right",
+        picture(
+            "marked view", Candidates(((5.0, 5.0), (20.0, 10.0)), "P"), Candidates(((40.0, 20.0),), "Q"), Grid(5, 5)
+        ),
+        ("pick_place", "push"),
     ),
 )
 

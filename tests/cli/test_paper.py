@@ -13,6 +13,8 @@ from wonderful_team import registry
 from wonderful_team.api.known_suites import known_suites
 from wonderful_team.cli.app import run
 from wonderful_team.evals.paper_tables import PAPER_TABLES, filled
+from wonderful_team.evals.summary import Summary
+from wonderful_team.evals.trials import Condition, Row, TrialRow, TrialSpec
 from wonderful_team.registry.worlds import task_names
 
 
@@ -93,10 +95,22 @@ def test_a_cap_holds_for_all_tables_together(capsys: pytest.CaptureFixture[str],
 def test_a_table_that_cannot_be_run_shows_the_papers_figures_and_what_is_missing(
     capsys: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:
-    assert run(["paper", "moka", "--folder", str(tmp_path)]) == 0
+    assert run(["paper", "fetch", "--folder", str(tmp_path)]) == 0
     said = capsys.readouterr().out
-    assert "Cannot be run yet: it needs the methods tg and moka." in said
-    assert "40 %" in said
+    assert "Cannot be run yet: it needs the world fetch." in said
+    assert "80 %" in said
+
+
+def test_crashes_of_a_methods_code_are_counted_apart_from_other_failures() -> None:
+    task, seen = "tabletop/visual_manipulation", [("success", None), ("failure", "crash"), ("failure", "grounding")]
+    asked = Condition("moka", "m")
+    results = [TrialRow(outcome, stage) for outcome, stage in [*seen, ("error", None)]]
+    rows = [Row(TrialSpec(task, 1000 + k, asked), result) for k, result in enumerate(results)]
+    head, lines = filled(PAPER_TABLES["moka"], Summary(tuple(rows), (), (asked,), ()))
+    line = dict(zip(head, next(line for line in lines if line[0] == "moka"), strict=True))
+    for column, paper in (("success", "20 %"), ("failed otherwise", "40 %"), ("code crashed", "40 %")):
+        assert line[f"ours: {column}"].startswith("33.3333 % (n = 3;")
+        assert line[f"paper: {column}"].startswith(paper)
 
 
 def test_an_estimate_runs_nothing(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:

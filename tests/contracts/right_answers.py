@@ -163,6 +163,31 @@ RIGHT["PlanFromList"] = {
     ],
     "steps": RIGHT["PlanDirectly"]["steps"],
 }
+RIGHT["DescribePictures"] = {"pictures": [{"picture": "base_obj", "words": "a tray"}]}
+RIGHT["WriteProgram"] = {"reasoning": "", "code": "open_gripper()"}
+RIGHT["JudgeFromBoxes"] = {"reasoning": "", "completed": False, "summary": "The mug lies on the floor."}
+RIGHT["ListSubtasks"] = {
+    "reasoning": "",
+    "subtasks": [
+        {
+            "instruction": "put the mug onto the tray",
+            "object_grasped": "striped mug",
+            "object_unattached": "tray",
+            "motion_direction": "",
+        }
+    ],
+}
+RIGHT["ChooseMotion"] = {
+    "reasoning": "",
+    "grasp_keypoint": "P2",
+    "function_keypoint": "",
+    "target_keypoint": "Q1",
+    "pre_contact_tile": "",
+    "post_contact_tile": "b3",
+    "pre_contact_height": "",
+    "post_contact_height": "same",
+    "target_angle": 30,
+}
 
 LEAVE_OUT = object()
 """Given as a new value: the field is left out."""

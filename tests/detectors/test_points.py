@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import cv2
 import numpy as np
 import pytest
 
 from wonderful_team.core.geometry import Box
 from wonderful_team.core.values import Detection
-from wonderful_team.detectors import act_at
+from wonderful_team.detectors import act_at, extent_of
 
 YY, XX = np.mgrid[0:80, 0:100]
 DISC = np.hypot(XX + 0.5 - 50, YY + 0.5 - 40) < 20
@@ -59,3 +60,20 @@ def test_a_push_starts_beside_the_box_on_the_side_away_from_its_goal(
     assert not BOX.contains((x, y))
     assert (np.sign(x - 50), np.sign(y - 40)) == side
     assert act_at(Detection("disc", BOX, 1), "push_end") == (50, 40)
+
+
+@pytest.mark.parametrize("angle", [0, 30, 90, 150])
+def test_the_extent_of_a_turned_slab(angle: int) -> None:
+    mask = np.zeros((240, 240), np.uint8)
+    corners = cv2.boxPoints(((120, 120), (100, 40), float(angle))).astype(np.int32)
+    cv2.fillPoly(mask, [corners], 1)
+    found = extent_of(Detection("slab", Box(0, 0, 240, 240), 1.0, mask.astype(bool)))
+    assert (found.length, found.width) == pytest.approx((100, 40), abs=3)
+    assert min(abs(found.angle_deg - angle), 180 - abs(found.angle_deg - angle)) < 3
+
+
+def test_the_extent_of_a_box_lies_along_the_picture() -> None:
+    wide = extent_of(Detection("slab", Box(0, 0, 50, 20), 1.0))
+    tall = extent_of(Detection("slab", Box(0, 0, 20, 50), 1.0))
+    assert (wide.length, wide.width, wide.angle_deg) == (50, 20, 0)
+    assert (tall.length, tall.width, tall.angle_deg) == (50, 20, 90)

@@ -107,6 +107,21 @@ def stub_script() -> dict[str, Any]:
         },
         "PlanFromList": _listed_plan,
         "SelectMarks": lambda _: {"reasoning": "", "numbers": [1]},
+        "DescribePictures": lambda request: {
+            "pictures": [{"picture": slot.name, "words": "a thing"} for slot in request.question.slots],
+        },
+        "ListSubtasks": lambda _: {
+            "reasoning": "",
+            "subtasks": [
+                {
+                    "instruction": "put the first thing onto the second",
+                    "object_grasped": "the first thing",
+                    "object_unattached": "the second thing",
+                    "motion_direction": "",
+                }
+            ],
+        },
+        "WriteProgram": lambda _: {"reasoning": "", "code": "task_completed()"},
     }
     return dict(answers)
 
@@ -126,7 +141,7 @@ def _first(kind: Any) -> Any:
         return get_args(kind)[0]
     if type(None) in get_args(kind):
         return None
-    return {str: "", bool: True, int: 1}.get(kind, [])
+    return {str: "", bool: True, int: 1, float: 0.0}.get(kind, [])
 
 
 def _draft(with_targets: bool) -> dict[str, Any]:

@@ -12,6 +12,7 @@ from wonderful_team.core.pictures import (
     Axes,
     BoxMark,
     Candidates,
+    Grid,
     LineMark,
     Mark,
     PathMark,
@@ -86,12 +87,16 @@ def mark_words(mark: Mark) -> str:
             return f"a point labelled {mark.label}" if mark.label else "a point"
         case Candidates():
             count = len(mark.points)
+            if mark.prefix:
+                return f"points {mark.prefix}1 to {mark.prefix}{count}" if count > 1 else f"one point {mark.prefix}1"
             return f"points numbered 1 to {count}" if count > 1 else "one point numbered 1"
         case PathMark():
             strip = " with the strip that the tool sweeps" if mark.width else ""
             return (f"a path labelled {mark.label}" if mark.label else "a path with an arrow at its end") + strip
         case Tiles():
             return f"pictures numbered 1 to {len(mark.boxes)}"
+        case Grid():
+            return f"a grid of tiles {mark.names[0]} to {mark.names[-1]} (letters from left to right, numbers from bottom to top)"
         case TurnMark():
             return (
                 "an arc with the degrees of a turn"

@@ -1,15 +1,19 @@
 """The closed set of questions that a model can be asked: one file each, input and answer types together."""
 
 from wonderful_team.contracts.choose_mark import ChooseMark, MarkChoice
+from wonderful_team.contracts.choose_motion import ChooseMotion, MotionMarks
 from wonderful_team.contracts.choose_point import ChoosePoint, PointChoice
+from wonderful_team.contracts.describe_pictures import DescribePictures, PictureWords
 from wonderful_team.contracts.draft_plan import DraftPlan
 from wonderful_team.contracts.extract_targets import ExtractTargets, SubgoalTargets, TargetList
 from wonderful_team.contracts.give_box import BoxAnswer, GiveBox
 from wonderful_team.contracts.judge_box import BoxVerdict, JudgeBox, WrongPoint
 from wonderful_team.contracts.judge_boxes import BoxVerdicts, JudgeBoxes, TargetVerdict
+from wonderful_team.contracts.judge_from_boxes import FoundBox, JudgeFromBoxes, TaskVerdict
 from wonderful_team.contracts.judge_outcome import JudgeOutcome, Outcome, VerdictDraft
 from wonderful_team.contracts.judge_revision import JudgeRevision, RevisionVerdict
 from wonderful_team.contracts.list_objects import ListObjects, NamedPoint, ObjectList, SlotDescription
+from wonderful_team.contracts.list_subtasks import ListSubtasks, SubtaskDraft, SubtaskList
 from wonderful_team.contracts.locate_points import LocatePoints, Points
 from wonderful_team.contracts.move_box import BoxMove, MoveBox
 from wonderful_team.contracts.plan_directly import DirectPlan, PlanDirectly, PointedTarget, direct_plan_type, in_parts
@@ -45,6 +49,15 @@ from wonderful_team.contracts.shown import (
 )
 from wonderful_team.contracts.steps import PlaceDraft, StepList, step_list_type
 from wonderful_team.contracts.write_function import FunctionCode, WriteFunction
+from wonderful_team.contracts.write_program import (
+    Program,
+    ProgramFunction,
+    ProgramMove,
+    ProgramRound,
+    Reference,
+    WriteProgram,
+    program_for,
+)
 from wonderful_team.contracts.write_steps import WriteSteps
 
 QUESTIONS: tuple[type[Question], ...] = (
@@ -74,6 +87,11 @@ QUESTIONS: tuple[type[Question], ...] = (
     SelectMarks,
     ListObjects,
     PlanFromList,
+    DescribePictures,
+    WriteProgram,
+    JudgeFromBoxes,
+    ListSubtasks,
+    ChooseMotion,
 )
 
 __all__ = [
@@ -85,35 +103,42 @@ __all__ = [
     "BoxVerdict",
     "BoxVerdicts",
     "ChooseMark",
+    "ChooseMotion",
     "ChoosePoint",
     "ClarificationDraft",
     "CritiqueDraft",
+    "DescribePictures",
     "DirectPlan",
     "DraftPlan",
     "EDGES",
     "Edge",
     "EdgePresence",
     "ExtractTargets",
+    "FoundBox",
     "FunctionCode",
     "GROUNDING_KINDS",
     "GiveBox",
     "JudgeBox",
     "JudgeBoxes",
+    "JudgeFromBoxes",
     "JudgeOutcome",
     "JudgeRevision",
     "ListObjects",
+    "ListSubtasks",
     "ListedObject",
     "ListedPlan",
     "LocatePoints",
     "MarkChoice",
     "MarkSelection",
     "MemoryEntry",
+    "MotionMarks",
     "MoveBox",
     "MoveDraft",
     "NamedPoint",
     "ObjectList",
     "Outcome",
     "PathReview",
+    "PictureWords",
     "PlaceDraft",
     "PlanDirectly",
     "PlanDraft",
@@ -126,10 +151,15 @@ __all__ = [
     "Points",
     "Presence",
     "PresenceAnswer",
+    "Program",
+    "ProgramFunction",
+    "ProgramMove",
+    "ProgramRound",
     "QUESTIONS",
     "Question",
     "ReadScene",
     "ReadTurn",
+    "Reference",
     "Remember",
     "Replan",
     "ReviewPath",
@@ -150,18 +180,23 @@ __all__ = [
     "SubgoalCheck",
     "SubgoalDraft",
     "SubgoalTargets",
+    "SubtaskDraft",
+    "SubtaskList",
     "TargetDraft",
     "TargetList",
     "TargetVerdict",
+    "TaskVerdict",
     "Tolerance",
     "TurnChoice",
     "VerdictDraft",
     "WalkedReview",
     "WriteFunction",
+    "WriteProgram",
     "WriteSteps",
     "WrongPoint",
     "direct_plan_type",
     "in_parts",
     "listed_plan",
+    "program_for",
     "step_list_type",
 ]

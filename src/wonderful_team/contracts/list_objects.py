@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -62,19 +63,26 @@ class ListObjects(Question):
 
     def validate(self, answer: Any) -> tuple[Any, tuple[str, ...]]:
         fits(targets=len(answer.objects))
-        names = [item.picture.strip().strip("{}") for item in answer.pictures]
-        wanted = [slot.name for slot in self.slots]
-        known(names, wanted, "picture")
-        unique(names, "pictures")
-        missing = [name for name in wanted if name not in names]
-        if missing:
-            raise ValueError(f"every picture must be described; missing: {', '.join(missing)}")
         objects, repairs = [], list[str]()
         for item in answer.objects:
             point, texts = settle_point(item.point, self.view)
             objects.append(item.model_copy(update={"point": point}))
             repairs += texts
-        pictures = [
-            item.model_copy(update={"picture": name}) for item, name in zip(answer.pictures, names, strict=True)
-        ]
+        pictures = settle_descriptions(answer.pictures, self.slots)
         return answer.model_copy(update={"objects": objects, "pictures": pictures}), tuple(repairs)
+
+
+def settle_descriptions(given: Sequence[SlotDescription], slots: Sequence[ShownSlot]) -> list[SlotDescription]:
+    """Descriptions with their pictures' names as the instruction has them.
+
+    Raises:
+        ValueError: A picture is not described, described twice, or none of the instruction's.
+    """
+    names = [item.picture.strip().strip("{}") for item in given]
+    wanted = [slot.name for slot in slots]
+    known(names, wanted, "picture")
+    unique(names, "pictures")
+    missing = [name for name in wanted if name not in names]
+    if missing:
+        raise ValueError(f"every picture must be described; missing: {', '.join(missing)}")
+    return [item.model_copy(update={"picture": name}) for item, name in zip(given, names, strict=True)]

@@ -16,6 +16,7 @@ import numpy as np
 
 from wonderful_team.core.geometry import Box, Frame
 from wonderful_team.core.geometry.arrays import Array
+from wonderful_team.core.later import later
 
 Point: TypeAlias = tuple[float, float]
 BoxStyle: TypeAlias = Literal["target", "before", "after", "keep_out", "workspace"]
@@ -93,9 +94,14 @@ class PointMark:
 
 @dataclass(frozen=True)
 class Candidates:
-    """Numbered points to choose from: candidate k (1-based) stands at points[k - 1]."""
+    """Numbered points to choose from: candidate k (1-based) stands at points[k - 1].
+
+    Attributes:
+        prefix: Stands before every number, where points of several things are told apart ("P1", "Q1").
+    """
 
     points: tuple[Point, ...]
+    prefix: str = later("")
 
     def at(self, number: int) -> Point:
         """The point with that number.
@@ -149,6 +155,34 @@ class Tiles:
 
 
 @dataclass(frozen=True)
+class Grid:
+    """A grid over the whole picture; its tiles are called a1, a2, b1, ...: columns by letters from the left, rows by numbers from
+    the bottom.
+    """
+
+    columns: int
+    rows: int
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """All tiles, column after column."""
+        return tuple(f"{chr(97 + column)}{row + 1}" for column in range(self.columns) for row in range(self.rows))
+
+    def tile(self, name: str, size_px: tuple[int, int]) -> Box:
+        """A tile in a picture of that size.
+
+        Raises:
+            ValueError: No such tile.
+        """
+        if name not in self.names:
+            raise ValueError(f"tile {name!r} does not exist; valid: {self.names[0]} to {self.names[-1]}")
+        place = self.names.index(name)
+        column, row = place // self.rows, self.rows - 1 - place % self.rows
+        wide, high = size_px[0] / self.columns, size_px[1] / self.rows
+        return Box(column * wide, row * high, (column + 1) * wide, (row + 1) * high)
+
+
+@dataclass(frozen=True)
 class TurnMark:
     """A thing that is turned: its outline as it comes to lie, and by how much it was turned.
 
@@ -173,7 +207,7 @@ class RegionMark:
     label: str = ""
 
 
-Mark: TypeAlias = Axes | BoxMark | PointMark | Candidates | PathMark | LineMark | Tiles | TurnMark | RegionMark
+Mark: TypeAlias = Axes | BoxMark | PointMark | Candidates | PathMark | LineMark | Tiles | Grid | TurnMark | RegionMark
 M = TypeVar("M", bound=Mark)
 
 

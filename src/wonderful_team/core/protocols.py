@@ -9,6 +9,7 @@ from typing import Any, Protocol, TypeAlias, TypeGuard, TypeVar, cast, runtime_c
 
 from wonderful_team.core.actions import Action, Vocabulary
 from wonderful_team.core.geometry.arrays import Array
+from wonderful_team.core.pictures import Picture
 from wonderful_team.core.renamed import renamed_arguments, renamed_attribute
 from wonderful_team.core.values import (
     Answer,
@@ -78,6 +79,22 @@ class Detector(Protocol):
         Args:
             rgb: Shape (H, W, 3), uint8, row 0 at the top, read-only.
             words: One description of a thing each, such as "red block".
+        """
+        ...
+
+
+class Classifier(Protocol):
+    """Says how like a description, or a picture of one thing, each of some regions of a picture is: what CLIP is used for."""
+
+    name: str
+
+    def similar(self, rgb: Array, masks: Sequence[Array], query: str | Picture) -> Sequence[float]:
+        """A likeness of each region, 0 to 1.
+
+        Args:
+            rgb: Shape (H, W, 3), uint8.
+            masks: The regions, shape (H, W) each, bool.
+            query: Words, or a picture.
         """
         ...
 
@@ -277,6 +294,7 @@ def privileged(world: World) -> Privileged | None:
 __all__ = [
     "Act",
     "Answer",
+    "Classifier",
     "Decision",
     "Detection",
     "Detector",

@@ -5,6 +5,18 @@ there; names are resolved in `registry`. Nothing heavy is imported before a dete
 """
 
 from wonderful_team.detectors.asking import WITHIN_S, checked_detections, detect, found_words, identity_of, name_of
-from wonderful_team.detectors.points import act_at
+from wonderful_team.detectors.looking import look
+from wonderful_team.detectors.points import Extent, act_at, extent_of
 
-__all__ = ["WITHIN_S", "act_at", "checked_detections", "detect", "found_words", "identity_of", "name_of"]
+__all__ = [
+    "WITHIN_S",
+    "Extent",
+    "act_at",
+    "checked_detections",
+    "detect",
+    "extent_of",
+    "found_words",
+    "identity_of",
+    "look",
+    "name_of",
+]

@@ -1,8 +1,9 @@
-"""Where to act on what a detector found: from its mask where it has one, else from its box."""
+"""Where to act on what a detector found, and how large it is and how it lies: from its mask where it has one, else from its box."""
 
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 
 import cv2
 import numpy as np
@@ -58,3 +59,30 @@ def _beside(found: Detection, towards: Point | None) -> Point:
         box.height / 2 / abs(dy) if abs(dy) > 1e-6 else math.inf,
     )
     return x - dx * reach * (1 + STANDOFF), y - dy * reach * (1 + STANDOFF)
+
+
+@dataclass(frozen=True)
+class Extent:
+    """The tightest turned rectangle round a thing [px].
+
+    Attributes:
+        length, width: Its longer and its shorter side.
+        angle_deg: Of the longer side, clockwise from the x axis as the picture shows it, 0 or more and less than 180.
+    """
+
+    length: float
+    width: float
+    angle_deg: float
+
+
+def extent_of(found: Detection) -> Extent:
+    """How large a thing is and how it lies; along the picture's edges where there is no mask."""
+    if found.mask is None:
+        wide = found.box.width >= found.box.height
+        sides = (found.box.width, found.box.height)
+        return Extent(max(sides), min(sides), 0.0 if wide else 90.0)
+    rows, columns = np.nonzero(found.mask)
+    _, (one, other), angle = cv2.minAreaRect(np.stack([columns, rows], axis=1).astype(np.float32))
+    # The rectangle goes through the middles of the outermost pixels; y points down, so OpenCV's angle is clockwise.
+    longer = angle if one >= other else angle + 90.0
+    return Extent(max(one, other) + 1.0, min(one, other) + 1.0, float(longer % 180.0))

@@ -18,6 +18,7 @@ COLUMNS = {
     "tg": "tg",
     "moka": "moka",
     "nlap": "nlap",
+    "instruct2act": "instruct2act",
     "vima": "vima_200m",
 }
 """Names of rival methods and their column in the paper's table."""

@@ -15,6 +15,7 @@ from wonderful_team.core.pictures import (
     BoxMark,
     BoxStyle,
     Candidates,
+    Grid,
     LineMark,
     PathMark,
     Picture,
@@ -39,7 +40,7 @@ from wonderful_team.images.canvas import (
 )
 from wonderful_team.images.lettering import plain
 from wonderful_team.images.placing import PointLabel, label_box, label_points, paint_plates
-from wonderful_team.images.turn_marks import draw_turn, number_tiles
+from wonderful_team.images.turn_marks import draw_grid, draw_turn, number_tiles
 
 BOX_COLOURS: dict[BoxStyle, Colour] = {
     "target": ORANGE,
@@ -53,6 +54,8 @@ _THINGS: frozenset[BoxStyle] = frozenset({"target", "before", "after"})
 _SMALL_BOX = 7.0
 """A box whose shorter side is less than so many heights of a plate is hidden by the plates of points inside it."""
 _LEAST_RADIUS = 2.2  # of a numbered dot, in the canvas's unit
+_CHOICES = (BLUE, VERMILLION)
+"""Colours of numbered points, of one thing and of another."""
 DASHED: frozenset[BoxStyle] = frozenset({"before", "keep_out", "workspace"})
 
 
@@ -70,6 +73,8 @@ def draw(picture: Picture, ticks: Ticks = Ticks.PIXELS) -> Array:
         A new image of the same size, shape (H, W, 3), uint8.
     """
     canvas = Canvas.over(picture.rgb)
+    for grid in picture.mark(Grid):
+        draw_grid(canvas, grid)
     boxes, regions = picture.mark(BoxMark), picture.mark(RegionMark)
     paths = [path for path in picture.mark(PathMark) if path.points]
     _draw_boxes(canvas, boxes, regions)
@@ -82,16 +87,20 @@ def draw(picture: Picture, ticks: Ticks = Ticks.PIXELS) -> Array:
     turned = [label for mark in picture.mark(TurnMark) for label in draw_turn(canvas, mark)]
     choices, points = picture.mark(Candidates), picture.mark(PointMark)
     radius, reach = _choice_radius(canvas, choices), point_reach(canvas)
-    numbered = [(point, str(k)) for choice in choices for k, point in enumerate(choice.points, start=1)]
-    crowd = _crowd(canvas, numbered, radius)
-    for point, _ in numbered:
+    numbered = [
+        (point, f"{choice.prefix}{k}", _CHOICES[number % len(_CHOICES)])
+        for number, choice in enumerate(choices)
+        for k, point in enumerate(choice.points, start=1)
+    ]
+    crowd = _crowd(canvas, [point for point, _, _ in numbered], radius)
+    for point, _, _ in numbered:
         canvas.keep_clear(point, radius - 1)
     for mark in points:
         canvas.keep_clear(mark.point, reach * 0.8)
-    canvas.named += [point for point, _ in numbered] + [mark.point for mark in points]
+    canvas.named += [point for point, _, _ in numbered] + [mark.point for mark in points]
     for axes in picture.mark(Axes):
         draw_axes(canvas, picture.frame, axes, ticks)
-    labels = [PointLabel(point, text, radius, BLUE, off_things=crowd) for point, text in numbered]
+    labels = [PointLabel(point, text, radius, colour, off_things=crowd) for point, text, colour in numbered]
     labels += [
         PointLabel(mark.point, plain(mark.label), reach * 0.8, INK, off_things=True) for mark in points if mark.label
     ]
@@ -101,8 +110,8 @@ def draw(picture: Picture, ticks: Ticks = Ticks.PIXELS) -> Array:
         if path.label
     ]
     placed = label_points(canvas, [*labels, *turned])
-    for point, _ in numbered:
-        canvas.disc(point, radius, BLUE, WHITE)
+    for point, _, colour in numbered:
+        canvas.disc(point, radius, colour, WHITE)
     for mark in points:
         canvas.cross(mark.point, reach, WHITE)
     paint_plates(canvas, placed)
@@ -156,7 +165,7 @@ def _choice_radius(canvas: Canvas, choices: Sequence[Candidates]) -> float:
     return max(_LEAST_RADIUS * canvas.unit, min([candidate_radius(canvas), *(0.2 * gap for gap in gaps)]))
 
 
-def _crowd(canvas: Canvas, numbered: Sequence[tuple[Point, str]], radius: float) -> bool:
+def _crowd(canvas: Canvas, numbered: Sequence[Point], radius: float) -> bool:
     """Whether the plates of numbered points would hide the thing they stand on: then it is kept clear of them.
 
     That is so for a box that is small beside a plate, and without a box for points that stand close together.
@@ -166,7 +175,7 @@ def _crowd(canvas: Canvas, numbered: Sequence[tuple[Point, str]], radius: float)
     tall = canvas.plate_size("0")[1]
     if canvas.things:
         return min(min(x1 - x0, y1 - y0) for x0, y0, x1, y1 in canvas.things) < _SMALL_BOX * tall
-    xs, ys = ([point[axis] for point, _ in numbered] for axis in (0, 1))
+    xs, ys = ([point[axis] for point in numbered] for axis in (0, 1))
     if len(numbered) < 2 or max(max(xs) - min(xs), max(ys) - min(ys)) > _SMALL_BOX * tall:  # noqa: PLR2004  one is no crowd
         return False
     room = 1.5 * tall + radius

@@ -1,4 +1,4 @@
-"""How turns are drawn: an arc with its degrees and the turned outline; and the numbers of turned cut-outs."""
+"""How turns are drawn: an arc with its degrees and the turned outline; the numbers of turned cut-outs; and grids of tiles."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping, Sequence
 
 from wonderful_team.core.actions import PickPlaceStep
 from wonderful_team.core.geometry import Box
-from wonderful_team.core.pictures import Point, TurnMark
+from wonderful_team.core.pictures import Grid, Point, TurnMark
 from wonderful_team.core.values import GroundedTarget, PlannedAction, View
 from wonderful_team.images.canvas import INK, PURPLE, WHITE, Canvas
 from wonderful_team.images.lettering import plain
@@ -111,3 +111,17 @@ def number_tiles(canvas: Canvas, boxes: Sequence[Box]) -> None:
     for number, box in enumerate(boxes, start=1):
         height = canvas.plate_size(str(number))[1]
         canvas.plate(str(number), round(box.x0), max(0, round(box.y0) - height - 1))
+
+
+def draw_grid(canvas: Canvas, grid: Grid) -> None:
+    """Thin lines between the tiles, and the name of each in its upper left corner, small: what is shown stays seen."""
+    width, height = canvas.size_px
+    lines = [
+        ((width * k / grid.columns, 0.0), (width * k / grid.columns, float(height))) for k in range(1, grid.columns)
+    ]
+    lines += [((0.0, height * k / grid.rows), (float(width), height * k / grid.rows)) for k in range(1, grid.rows)]
+    for line in lines:
+        canvas.dashes(line, WHITE, width_px=1, halo=INK)
+    for name in grid.names:
+        tile = grid.tile(name, canvas.size_px)
+        canvas.plate(name, round(tile.x0) + 2, round(tile.y0) + 2)

@@ -35,17 +35,18 @@ class ClassicalDetector:
         Raises:
             NotUnderstoodError: The words hold something it does not know; says which.
         """
-        described = [(text, _described(text)) for text in words]
-        eyes = _eyes(np.asarray(rgb))
+        asked = [(text, described(text)) for text in words]
+        eyes = eyes_at(np.asarray(rgb))
         return tuple(
             _detection(text, match, match.thing, rgb.shape[:2])
-            for text, description in described
+            for text, description in asked
             for match in eyes.find(description)
             if match.thing is not None
         )
 
 
-def _described(words: str) -> Description:
+def described(words: str) -> Description:
+    """What words say of a thing. Raises NotUnderstoodError for words that it does not know, or that point to a picture."""
     try:
         description = describe(words)
     except NotUnderstoodError as error:
@@ -57,21 +58,22 @@ def _described(words: str) -> Description:
     return description
 
 
-def _eyes(rgb: Array) -> Eyes:
+def eyes_at(rgb: Array, plain_light: bool = True) -> Eyes:
+    """What is seen in a picture by its pixels alone, as in plain light or in the light that it has."""
     # In the picture's own pixels: nothing is enlarged or shrunk, so boxes need no conversion.
     height, width = rgb.shape[:2]
     picture = whole(View("picture", "picture", 0.0, rgb), "picture", min_side_px=1, max_side_px=max(width, height))
-    return eyes_of(in_plain_light(picture), ())
+    return eyes_of(in_plain_light(picture) if plain_light else picture, ())
 
 
 def _detection(words: str, match: Match, thing: Thing, size: tuple[int, int]) -> Detection:
     height, width = size
     box = match.box.intersection(Box(0, 0, width, height))
     assert box is not None, "a thing that is seen lies in the picture"
-    return Detection(words, box, float(np.clip(match.score, 0.0, 1.0)), _mask(thing, size))
+    return Detection(words, box, float(np.clip(match.score, 0.0, 1.0)), mask_at(thing, size))
 
 
-def _mask(thing: Thing, size: tuple[int, int]) -> Array:
+def mask_at(thing: Thing, size: tuple[int, int]) -> Array:
     """What shows of a thing, in the picture's pixels, shape (H, W)."""
     height, width = size
     rows = (np.arange(height) + 0.5) / thing.zoom - thing.offset[1]

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import time
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
@@ -12,9 +11,9 @@ from wonderful_team.agents import build_request
 from wonderful_team.agents.request import role_for
 from wonderful_team.contracts import QUESTIONS, MemoryEntry, Question, Remember
 from wonderful_team.core.protocols import Detector
-from wonderful_team.core.values import Answer, Detection, DetectorRun, Note, View
-from wonderful_team.detectors import WITHIN_S, detect, found_words, identity_of, name_of
-from wonderful_team.errors import ConfigError, DetectorCodeError, ModelOutputError, NotUnderstoodError
+from wonderful_team.core.values import Answer, Detection, Note, View
+from wonderful_team.detectors import found_words, look, name_of
+from wonderful_team.errors import ConfigError, ModelOutputError
 from wonderful_team.models.client import ModelClient
 from wonderful_team.planning.config import Members, TeamConfig
 from wonderful_team.planning.memory import Notebooks, SystemMemory
@@ -84,24 +83,8 @@ class AgentSession:
             BudgetReached: The cap on seconds was met.
         """
         assert self.detector is not None
-        asked, started = tuple(dict.fromkeys(words)), time.monotonic()
-        budget = self.client.budget
-        left = budget.seconds_left
-        try:
-            found = await detect(
-                self.detector, view.rgb, asked, within_s=WITHIN_S if left is None else min(WITHIN_S, max(left, 0.001))
-            )
-        except DetectorCodeError as error:
-            if left is not None and not budget.seconds_left:
-                raise budget.time_is_up(f"looking with detector {name_of(self.detector)!r}") from error
-            raise
-        except NotUnderstoodError as error:
-            run = DetectorRun(identity_of(self.detector), view, asked, (), time.monotonic() - started, str(error))
-            self.client.tell("detector", run.detector["name"], run)
-            raise
-        run = DetectorRun(identity_of(self.detector), view, asked, found, time.monotonic() - started)
-        self.client.tell("detector", run.detector["name"], run)
-        self.stage("detected", f"{run.detector['name']}: {found_words(found, asked)}")
+        found = await look(self.detector, view, words, self.client.budget, self.client.tell)
+        self.stage("detected", f"{name_of(self.detector)}: {found_words(found, words)}")
         return found
 
     def note(self, role: str, key: str, text: str) -> None:

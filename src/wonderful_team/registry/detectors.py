@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any, cast
 
-from wonderful_team.core.protocols import Detector
+from wonderful_team.core.protocols import Classifier, Detector
 from wonderful_team.errors import ConfigError, DetectorCodeError, UnknownNameError, code_of
 from wonderful_team.registry.files import arguments_of, is_file_name, make_from_file, named_arguments
 
@@ -35,6 +35,13 @@ def _classical() -> Callable[..., Detector]:
     from wonderful_team.offline.detector import ClassicalDetector
 
     return ClassicalDetector
+
+
+def make_classifier() -> Classifier:
+    """Who says which region is meant where a method of the literature asks CLIP: the classical one; there are no weights of CLIP."""
+    from wonderful_team.offline.classifier import ClassicalClassifier
+
+    return ClassicalClassifier()
 
 
 def _owlv2() -> Callable[..., Detector]:

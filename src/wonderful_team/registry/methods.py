@@ -16,9 +16,9 @@ from wonderful_team.errors import ConfigError, MethodCodeError, UnknownNameError
 from wonderful_team.models.budget import Budget
 from wonderful_team.models.client import DEADLINE_S, ModelClient
 from wonderful_team.planning import ABLATIONS, TeamConfig, TeamPolicy, members_of
-from wonderful_team.planning.baselines import direct, nlap, pivot, point, shown
+from wonderful_team.planning.baselines import direct, instruct2act, moka, nlap, pivot, point, shown, tg
 from wonderful_team.planning.config import Grounding, Members, Mode
-from wonderful_team.registry.detectors import make_detector
+from wonderful_team.registry.detectors import make_classifier, make_detector
 from wonderful_team.registry.files import is_file_name, make_from_file
 from wonderful_team.registry.models import DEFAULT_ROLE
 from wonderful_team.registry.told import teller
@@ -197,6 +197,24 @@ METHODS: dict[str, MethodRow] = {
         "points found among numbered marks in 3 iterations and 3 parallel runs (PIVOT, arXiv 2402.07872)",
         lambda setup: pivot.Pivot(setup.client()),
         roles=(pivot.PLANNER, pivot.SELECTOR),
+    ),
+    "tg": MethodRow(
+        "a model without pictures asks a detector by name and writes programs (Trajectory Generators, arXiv 2310.11604)",
+        lambda setup: tg.TrajectoryGenerator(setup.client(), setup.detector()),
+        roles=(tg.DESCRIBER, tg.PROGRAMMER),
+        detects=True,
+    ),
+    "moka": MethodRow(
+        "things by name through a detector, motions by marks on the picture (MOKA, arXiv 2403.03174)",
+        lambda setup: moka.Moka(setup.client(), setup.detector()),
+        roles=(moka.DECOMPOSER, moka.MARKER),
+        detects=True,
+    ),
+    "instruct2act": MethodRow(
+        "one program over a segmenter and a classifier, written without a picture (Instruct2Act, arXiv 2305.11176)",
+        lambda setup: instruct2act.Instruct2Act(setup.client(), setup.detector(), make_classifier()),
+        roles=(instruct2act.CODER,),
+        detects=True,
     ),
     **{
         (full := name + ("" if thoughts else ":no-cot")): _nlap(full, words, pictures, privileged, thoughts)

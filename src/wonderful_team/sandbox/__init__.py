@@ -1,6 +1,7 @@
 """Runs Python that a model wrote, in a worker process that has no files, no network and no clock."""
 
 from wonderful_team.sandbox.errors import SandboxError, SandboxUnavailableError
+from wonderful_team.sandbox.program import HostCall, ProgramRun, run_program
 from wonderful_team.sandbox.run import run_path
 
-__all__ = ["SandboxError", "SandboxUnavailableError", "run_path"]
+__all__ = ["HostCall", "ProgramRun", "SandboxError", "SandboxUnavailableError", "run_path", "run_program"]

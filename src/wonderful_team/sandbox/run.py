@@ -10,20 +10,13 @@ import pydantic_monty
 from wonderful_team.core.geometry import Box
 from wonderful_team.core.pictures import Point
 from wonderful_team.sandbox.errors import SandboxError
+from wonderful_team.sandbox.explained import explained
 from wonderful_team.sandbox.returned import cut, describing, parsed
 from wonderful_team.sandbox.worker import WorkerLostError, discarded_output, in_worker
 
 MAX_CODE_CHARACTERS = 20_000
 
 _AUTHORS_FILE = "<python-input-0>"
-_FORBIDDEN = {
-    "ModuleNotFoundError": "only the math module is needed; other packages do not exist here",
-    "PermissionError": "there are no files here; compute the path from the boxes alone",
-    "NotImplementedError": "use plain functions, loops, lists and the math module",
-    "MemoryError": "a path has a few points; build no large lists or texts",
-    "RecursionError": "use a loop instead of calling a function inside itself",
-    "TimeoutError": "the function did not end in time: check the loops, and do not wait",
-}
 
 
 def run_path(code: str, boxes: Mapping[str, Box], *, max_points: int = 20, timeout_s: float = 2.0) -> tuple[Point, ...]:
@@ -70,14 +63,8 @@ def run_path(code: str, boxes: Mapping[str, Box], *, max_points: int = 20, timeo
 
 
 def _explained(error: Any, code: str) -> str:
-    """The exception, the line of the author's code where it arose, and what would be valid."""
-    message = cut(str(error))
-    kind = type(error.exception()).__name__
-    if kind == "NameError" and "'path'" in message and not any(f.filename == _AUTHORS_FILE for f in error.traceback()):
+    """The same as for every program; or that it lacks the function."""
+    own = any(frame.filename == _AUTHORS_FILE for frame in error.traceback())
+    if type(error.exception()).__name__ == "NameError" and "'path'" in str(error) and not own:
         return "the code does not define a function path(boxes)"
-    text = message if message.startswith(kind) else f"{kind}: {message}"
-    lines = [frame.line for frame in error.traceback() if frame.filename == _AUTHORS_FILE]
-    source = code.splitlines()
-    if lines and 1 <= lines[-1] <= len(source):
-        text += f"\nin line {lines[-1]}: {source[lines[-1] - 1].strip()[:200]}"
-    return text + (f"\n{_FORBIDDEN[kind]}" if kind in _FORBIDDEN else "")
+    return explained(error, code, _AUTHORS_FILE)

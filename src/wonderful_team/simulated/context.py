@@ -100,14 +100,14 @@ class Context:
         moves = moves_of(self.truth.oracle(), self.truth, self.instruction)
         sizes = {name: _size_m(thing) for name, thing in things.items()}
         pushing = any(isinstance(move, Shove) for move in moves)
-        words = Names(unique_words(seen.newest, things), self._shown(things) if pushing else {})
+        words = Names(unique_words(seen.newest, things), self.shown(things) if pushing else {})
         right = write(moves, words, sizes)
         mistaken = self._mistaken(moves, seen)
         own = right if mistaken is moves else write(mistaken, words, sizes)
         self._plans = (seen.newest, own, right)
         return own, right
 
-    def _shown(self, things: Mapping[str, TrueThing]) -> dict[str, str]:
+    def shown(self, things: Mapping[str, TrueThing]) -> dict[str, str]:
         """The picture of the instruction that shows a thing alone, by the thing's name."""
         found: dict[str, str] = {}
         for name, slot in {}.items() if self.instruction is None else self.instruction.slots.items():

@@ -14,9 +14,11 @@ from wonderful_team.contracts import (
     BoxMove,
     BoxPx,
     BoxVerdict,
+    ChooseMotion,
     DirectPlan,
     MarkChoice,
     MarkSelection,
+    MotionMarks,
     ObjectList,
     Outcome,
     PointChoice,
@@ -80,6 +82,8 @@ class ErrorSampler:
                 return value.model_copy(update={"objects": objects})
             case MarkSelection():
                 return self._selection(value, len(question.candidates.points))
+            case MotionMarks():
+                return self._marks(value, question)
             case TurnChoice():
                 return self._choice(value, len(question.turns))
             case BoxMove():
@@ -148,6 +152,19 @@ class ErrorSampler:
             return value
         order = self._rng("other").permutation(count) + 1
         return value.model_copy(update={"numbers": [int(number) for number in order[: len(value.numbers)]]})
+
+    def _marks(self, value: MotionMarks, question: ChooseMotion) -> MotionMarks:
+        """Every mark that is chosen may be another of its kind."""
+        changed = {}
+        for name, letter in (("grasp_keypoint", "P"), ("function_keypoint", "P"), ("target_keypoint", "Q")):
+            said, count = getattr(value, name), len(question.keypoints(letter).points)
+            if said and self.draws(self.profile.wrong_choice, name):
+                changed[name] = self.other(said, [f"{letter}{k}" for k in range(1, count + 1)], f"other {name}")
+        for name in ("pre_contact_tile", "post_contact_tile"):
+            said = getattr(value, name)
+            if said and self.draws(self.profile.wrong_choice, name):
+                changed[name] = self.other(said, question.grid.names, f"other {name}")
+        return value.model_copy(update=changed)
 
     def _choice(self, value: Any, count: int) -> Any:
         if value.number is None or not self.draws(self.profile.wrong_choice, "choice"):

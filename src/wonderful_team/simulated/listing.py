@@ -13,6 +13,7 @@ from wonderful_team.contracts import (
     ObjectList,
     PlanFromList,
     PointPx,
+    ShownSlot,
     ShownTask,
     SlotDescription,
     listed_plan,
@@ -39,11 +40,15 @@ def answer_list_objects(context: Context, question: ListObjects) -> ObjectList:
         objects = [NamedPoint(name=said, point=PointPx.of(at, question.view)) for said, at in placed if at is not None]
     pictures = []
     for slot in question.slots:
-        shown = context.see(slot.pictures[0]) if slot.pictures else None
-        lines = [] if shown is None else [_line(shown, name, slot.kind in SCENES) for name in shown.names]
-        said = "; ".join(lines) or "nothing that was ever there"
-        pictures.append(SlotDescription(picture=slot.name, words=said))
+        pictures.append(SlotDescription(picture=slot.name, words=slot_words(context, slot)))
     return ObjectList(reasoning=f"{len(objects)} things show", objects=objects, pictures=pictures)
+
+
+def slot_words(context: Context, slot: ShownSlot) -> str:
+    """What one of the instruction's pictures really shows; of a whole scene, what stands where."""
+    shown = context.see(slot.pictures[0]) if slot.pictures else None
+    lines = [] if shown is None else [_line(shown, name, slot.kind in SCENES) for name in shown.names]
+    return "; ".join(lines) or "nothing that was ever there"
 
 
 def answer_plan_from_list(context: Context, question: PlanFromList) -> ListedPlan:
@@ -73,11 +78,20 @@ def _main(context: Context, question: PlanFromList) -> Seen:
             raise NotUnderstoodError("one of the pictures of this task shows nothing that was ever there")
         return task.main
     context.check_words(ShownTask(question.instruction, ()))
-    log = context.truth.observation_log(question.picture.removesuffix(" view"))
-    picture: Picture | None = whole(log[0].view, question.picture, long_side_px=MARKED_SIDE_PX) if log else None
-    seen = None if picture is None or picture.size_px != question.size_px else context.see(picture)
+    return main_of(context, question.picture, question.size_px)
+
+
+def main_of(context: Context, name: str, size_px: tuple[int, int]) -> Seen:
+    """The main view as it is now, for a question that names it and shows nothing.
+
+    Raises:
+        NotUnderstoodError: There is no such view.
+    """
+    log = context.truth.observation_log(name.removesuffix(" view"))
+    picture: Picture | None = whole(log[0].view, name, long_side_px=MARKED_SIDE_PX) if log else None
+    seen = None if picture is None or picture.size_px != size_px else context.see(picture)
     if seen is None:
-        raise NotUnderstoodError(f"the list's positions are pixels of {question.picture!r}, which is not known")
+        raise NotUnderstoodError(f"positions are pixels of {name!r}, which is not known")
     return seen
 
 

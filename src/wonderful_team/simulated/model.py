@@ -7,16 +7,20 @@ from typing import Any
 
 from wonderful_team.contracts import (
     ChooseMark,
+    ChooseMotion,
     ChoosePoint,
+    DescribePictures,
     DirectPlan,
     DraftPlan,
     ExtractTargets,
     GiveBox,
     JudgeBox,
     JudgeBoxes,
+    JudgeFromBoxes,
     JudgeOutcome,
     JudgeRevision,
     ListObjects,
+    ListSubtasks,
     LocatePoints,
     MoveBox,
     PlanDirectly,
@@ -31,6 +35,7 @@ from wonderful_team.contracts import (
     ReviewSteps,
     RevisePlan,
     SelectMarks,
+    WriteProgram,
     WriteSteps,
     direct_plan_type,
     in_parts,
@@ -39,7 +44,7 @@ from wonderful_team.core.caps import Estimate
 from wonderful_team.core.protocols import SceneTruth
 from wonderful_team.core.values import Answer, Instruction, Request, Usage
 from wonderful_team.errors import UnsupportedQuestion
-from wonderful_team.simulated import crops, drafting, grounding, listing, outcome, turns
+from wonderful_team.simulated import crops, drafting, grounding, listing, marks, outcome, programs, turns
 from wonderful_team.simulated.context import Context
 from wonderful_team.simulated.error_sampler import ErrorSampler
 from wonderful_team.simulated.profile import Profile
@@ -79,6 +84,11 @@ ANSWERS: dict[type[Question], Callable[[Context, Any], Any]] = {
     SelectMarks: grounding.answer_select_marks,
     ListObjects: listing.answer_list_objects,
     PlanFromList: listing.answer_plan_from_list,
+    DescribePictures: programs.answer_describe_pictures,
+    WriteProgram: programs.answer_write_program,
+    JudgeFromBoxes: programs.answer_judge_from_boxes,
+    ListSubtasks: marks.answer_list_subtasks,
+    ChooseMotion: marks.answer_choose_motion,
 }
 """One function per kind of question."""
 

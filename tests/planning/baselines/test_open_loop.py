@@ -112,6 +112,13 @@ def test_nothing_to_do_is_done(tmp_path: Path) -> None:
     assert "already fulfilled" in made.reason
 
 
+@pytest.mark.parametrize("name", ["tg", "moka"])
+def test_a_cap_on_calls_ends_those_that_look_with_a_detector_at_stage_budget(name: str, tmp_path: Path) -> None:
+    trial = run(name, "visual_manipulation", tmp_path, max_calls=1)
+    assert (trial.outcome, trial.stage, trial.usage.calls) == ("failure", "budget", 1)
+    assert trial.page.is_file()
+
+
 def test_the_command_line_runs_lists_and_shows_them(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     def told(*command: str) -> str:
         with pytest.raises(SystemExit) as ended:

@@ -32,6 +32,15 @@ class Detection:
     score: float
     mask: Array | None = None
 
+    def mask_in(self, size_px: tuple[int, int]) -> Array:
+        """Its pixels in the picture of that width and height, shape (H, W), bool; all of its box where it has no mask."""
+        if self.mask is not None:
+            return self.mask
+        width, height = size_px
+        mask = np.zeros((height, width), bool)
+        mask[int(self.box.y0) : math.ceil(self.box.y1), int(self.box.x0) : math.ceil(self.box.x1)] = True
+        return mask
+
     def __post_init__(self) -> None:
         if not isinstance(self.words, str) or not self.words.strip():
             raise ValueError(f"words {self.words!r}: valid is the text that was asked for")

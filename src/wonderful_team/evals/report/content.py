@@ -118,7 +118,19 @@ def _stage_table(summary: Summary) -> dict[str, Any]:
     return {"names": names, "lines": lines}
 
 
-_ORDER = ("draft", "plan", "checked", "grounding", "wrong object", "actions", "gate", "execution", "replan", "budget")
+_ORDER = (
+    "draft",
+    "plan",
+    "checked",
+    "grounding",
+    "crash",
+    "wrong object",
+    "actions",
+    "gate",
+    "execution",
+    "replan",
+    "budget",
+)
 
 
 def _place(stage: str) -> tuple[int, str]:

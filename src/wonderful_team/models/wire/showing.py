@@ -16,6 +16,7 @@ from wonderful_team.core.pictures import (
     Axes,
     BoxMark,
     Candidates,
+    Grid,
     LineMark,
     Mark,
     PathMark,
@@ -178,7 +179,7 @@ def _scaled_mark(mark: Mark, sx: float, sy: float) -> Mark:
             return LineMark(at(mark.start), at(mark.end))
         case RegionMark():
             return replace(mark, corners=tuple(at(point) for point in mark.corners))
-        case Axes():
+        case Axes() | Grid():
             return mark
 
 

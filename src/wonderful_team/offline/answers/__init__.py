@@ -7,17 +7,21 @@ from typing import Any
 
 from wonderful_team.contracts import (
     ChooseMark,
+    ChooseMotion,
     ChoosePoint,
+    DescribePictures,
     DirectPlan,
     DraftPlan,
     ExtractTargets,
     GiveBox,
     JudgeBox,
     JudgeBoxes,
+    JudgeFromBoxes,
     JudgeOutcome,
     JudgeRevision,
     ListedPlan,
     ListObjects,
+    ListSubtasks,
     LocatePoints,
     MoveBox,
     PlanDirectly,
@@ -34,11 +38,12 @@ from wonderful_team.contracts import (
     RevisePlan,
     SelectMarks,
     ShownTask,
+    WriteProgram,
     WriteSteps,
     direct_plan_type,
     in_parts,
 )
-from wonderful_team.offline.answers import listing
+from wonderful_team.offline.answers import listing, marks, programs
 from wonderful_team.offline.answers.crops import (
     answer_choose_point,
     answer_judge_box,
@@ -110,6 +115,11 @@ ANSWERS: dict[type[Question], Callable[..., Any]] = {
     SelectMarks: answer_select_marks,
     ListObjects: listing.answer_list_objects,
     PlanFromList: answer_plan_from_list,
+    DescribePictures: programs.answer_describe_pictures,
+    WriteProgram: programs.answer_write_program,
+    JudgeFromBoxes: programs.answer_judge_from_boxes,
+    ListSubtasks: lambda question: marks.answer_list_subtasks(question, lambda part: ANSWERS[type(part)](part)),
+    ChooseMotion: marks.answer_choose_motion,
 }
 """One function per kind of question; those that take independent samples also take the sample's number."""
 

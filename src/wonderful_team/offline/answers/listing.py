@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 from wonderful_team.contracts import (
@@ -18,8 +19,10 @@ from wonderful_team.contracts.shown import ShownSlot
 from wonderful_team.core.geometry import Box
 from wonderful_team.core.pictures import Picture, Point
 from wonderful_team.errors import UnsupportedQuestion
+from wonderful_team.offline.description import SHAPES, Description
 from wonderful_team.offline.eyes import eyes_of, unique_words
-from wonderful_team.offline.vision import NotSeen
+from wonderful_team.offline.language import render
+from wonderful_team.offline.vision import NotSeen, study_example
 
 
 def answer_list_objects(question: ListObjects) -> ObjectList:
@@ -64,3 +67,21 @@ def _described(slot: ShownSlot) -> str:
     named = _named(slot.pictures[0]) if slot.pictures else []
     lines = [words + (f" at x {x:.0f}, y {y:.0f}" if slot.whole_scene else "") for words, (x, y) in named]
     return "; ".join(lines) or "nothing that is seen"
+
+
+def shown_words(slot: ShownSlot) -> str:
+    """What one of the instruction's pictures shows, in words by which the thing is found on a table; of a scene, what lies where."""
+    if slot.whole_scene or not slot.pictures:
+        return _described(slot)
+    try:
+        look = study_example(slot.pictures[0]).look
+    except NotSeen:
+        return "nothing that is seen"
+    colours = tuple(colour.name for colour in look.colours[: 1 if look.pattern == "plain" else 2])
+    pattern = None if look.pattern == "plain" else look.pattern
+    described = Description("object", "", colours=colours, pattern=pattern)
+    if look.shape == "letter":
+        described = replace(described, noun="letter", name=max(look.letters, key=lambda name: look.letters[name]))
+    elif look.shape in SHAPES:
+        described = replace(described, shape=look.shape)
+    return render(described)

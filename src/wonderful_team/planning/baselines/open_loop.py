@@ -35,7 +35,7 @@ from wonderful_team.motion import ground_actions
 
 
 class OpenLoop(ABC):
-    """A rival that plans from what is seen, has the plan run, and is done.
+    """A rival that plans from what is seen, has the plan run, and is done; one that judges what came of it says so in `after`.
 
     Args:
         client: Where its model is asked: capped and recorded.
@@ -70,9 +70,12 @@ class OpenLoop(ABC):
         """A plan at first, and again after a refusal while replans are left; after execution it is done."""
         if situation.plan is not None and not situation.executed and situation.refused is None:
             return Act(situation.plan.actions, situation.plan)
-        if situation.executed:
-            return Done("the plan has run; this method does not judge what came of it")
         advice: tuple[str, ...] = ()
+        if situation.executed:
+            judged = await self.after(situation)
+            if not isinstance(judged, str):
+                return judged
+            advice = (judged,)
         if situation.advice:
             advice = (f"A person declined the plan: {situation.advice}",)
         elif situation.refused is not None:
@@ -85,9 +88,13 @@ class OpenLoop(ABC):
             return GaveUp(plan.message, plan.stage or "plan", plan)
         return Act(plan.actions, plan) if plan.actions else Done(plan.message)
 
+    async def after(self, situation: Situation) -> Done | GaveUp | str:
+        """What follows once the plan has run: the end, or in words what the next plan should heed."""
+        return Done("the plan has run; this method does not judge what came of it")
+
     async def _planned(self, situation: Situation, advice: tuple[str, ...]) -> Plan:
         limits = situation.limits
-        scene = SceneShown(situation.observation, situation.instruction, situation.vocabulary, limits, situation.facts)
+        scene = self.scene_of(situation)
         before = None if self._best is None else self._best.id
         start = Plan(
             situation.instruction, "failed", keep_out=limits.keep_out, scene_hash=situation.observation.hash, parent=before
@@ -100,6 +107,17 @@ class OpenLoop(ABC):
         self._best = plan
         self.client.tell("plan", plan.id, plan)
         return plan
+
+    @staticmethod
+    def scene_of(situation: Situation) -> SceneShown:
+        """What is seen now, ready to be shown."""
+        return SceneShown(
+            situation.observation, situation.instruction, situation.vocabulary, situation.limits, situation.facts
+        )
+
+    def stage(self, name: str, text: str) -> None:
+        """Tell subscribers that something was done, in one line."""
+        self.client.tell("stage", name, {"text": text, "attempt": self.attempt})
 
     @abstractmethod
     async def make_plan(self, scene: SceneShown, start: Plan, advice: tuple[str, ...]) -> Plan:

@@ -1,0 +1,120 @@
+"""DescribePictures, WriteProgram and JudgeFromBoxes: what a text-only planner is told and asked, answered from truth.
+
+No picture comes with these questions. As for a plan from a list, the plan is the one that truth asks for now; where things are is
+what a detector tells the program, of several the one nearest to the truth. What it does not find, this model cannot move.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+
+from wonderful_team.contracts import (
+    DescribePictures,
+    JudgeFromBoxes,
+    PictureWords,
+    Program,
+    ProgramMove,
+    Reference,
+    ShownTask,
+    SlotDescription,
+    TaskVerdict,
+    WriteProgram,
+    program_for,
+)
+from wonderful_team.contracts.shown import ShownSlot
+from wonderful_team.errors import NotFoundError, NotUnderstoodError
+from wonderful_team.simulated.context import Context
+from wonderful_team.simulated.draft import Meaning, Written
+from wonderful_team.simulated.listing import main_of, slot_words
+from wonderful_team.simulated.places import place_of, point_of
+from wonderful_team.simulated.plan import moves_of
+from wonderful_team.simulated.seeing import Seen
+
+
+def answer_describe_pictures(context: Context, question: DescribePictures) -> PictureWords:
+    """What each picture really shows."""
+
+    def said(slot: ShownSlot) -> SlotDescription:
+        return SlotDescription(picture=slot.name, words=slot_words(context, slot))
+
+    return PictureWords(pictures=[said(slot) for slot in question.slots])
+
+
+def answer_write_program(context: Context, question: WriteProgram) -> Program:
+    """The moves that truth asks for, as a program.
+
+    Raises:
+        NotUnderstoodError: What the plan needs of the instruction's pictures is not told.
+        NotFoundError: The detector found nothing of a thing, or refuses its words.
+    """
+    check_found(question)
+    context.check_words(ShownTask(question.instruction, ()))
+    seen = main_of(context, question.picture, question.size_px)
+    plan, _ = context.plans(seen)
+    told = {one.slot for one in question.slot_words}
+    shown = None if question.has("execute_trajectory") else context.shown(context.things(seen))
+    moves = [_move(step, plan, seen, told, shown) for step in plan.steps]
+    return program_for(question, moves, f"{len(moves)} moves lead from this table to what is asked.")
+
+
+def check_found(question: WriteProgram) -> None:
+    """Raises NotFoundError where the last program found nothing of a name, or failed: this model would write it again."""
+    if not question.rounds:
+        return
+    said = question.rounds[-1].said
+    missing = re.search(r"^0 found: (.+) \[\]$", said, re.MULTILINE)
+    if missing:
+        raise NotFoundError(f"the detector finds no {missing.group(1)}")
+    if said.startswith("error: "):
+        raise NotFoundError(f"the last program failed: {said.removeprefix('error: ').splitlines()[0]}")
+
+
+def _move(
+    step: dict[str, object], plan: Written, seen: Seen, told: set[str], shown: Mapping[str, str] | None
+) -> ProgramMove:
+    """One step as a move; `shown` names the picture of the instruction that shows a thing, for programs that can look by it."""
+
+    def reference(name: object) -> Reference:
+        meaning = plan.meanings[str(name)]
+        if shown is None and set(meaning.slots) - told:
+            raise NotUnderstoodError(f"nobody says what {', '.join(sorted(set(meaning.slots) - told))} shows")
+        if shown is not None and meaning.thing is not None and meaning.thing in shown:
+            return Reference(f"{{{shown[meaning.thing]}}}")
+        if shown is not None and meaning.thing is None and meaning.slots and step["kind"] != "push":
+            return Reference(shown_in=meaning.slots[0])
+        return _reference(meaning, seen, nearest=shown is None)
+
+    pushed = step["kind"] == "push"
+    place = step["end"] if pushed else step["place"]
+    thing = step["start"]["target"] if pushed else step["pick"]  # type: ignore[index]
+    assert isinstance(place, dict)
+    turn = step.get("rotate_deg", 0.0)
+    assert isinstance(turn, float | int)
+    return ProgramMove(
+        reference(thing), reference(place["target"]), float(turn), pushed=pushed, origin=place["how"] == "origin"
+    )
+
+
+def _reference(meaning: Meaning, seen: Seen, nearest: bool) -> Reference:
+    if meaning.thing is not None:
+        thing = seen.thing(meaning.thing)
+        near = seen.position(meaning.thing) if nearest else None
+        return Reference(meaning.thing if thing is None else thing.words, near=near)
+    place = place_of(meaning, seen)
+    if place is None:
+        raise NotUnderstoodError("a place lies outside of the view")
+    return Reference(spot=point_of(place, "place", seen))
+
+
+def answer_judge_from_boxes(context: Context, question: JudgeFromBoxes) -> TaskVerdict:
+    """Completed when truth has nothing left to do. The boxes add nothing to that."""
+    context.check_words(ShownTask(question.instruction, ()))
+    left = moves_of(context.truth.oracle(), context.truth, context.instruction)
+    completed = context.truth.score().success is True or not left
+    if context.sampler is not None and context.sampler.draws(context.profile.overlooks, "boxes"):
+        completed = not completed
+    words = {name: thing.words for name, thing in context.truth.things().items()}
+    open_ones = ", ".join(dict.fromkeys(words.get(move.thing, move.thing) for move in left)) or "the goal"
+    summary = "" if completed else f"not where it should be: {open_ones}"
+    return TaskVerdict(reasoning=summary or "everything is where it should be", completed=completed, summary=summary)

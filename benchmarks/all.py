@@ -149,13 +149,13 @@ def blocks(count: int) -> Any:
 def record_ms(quick: bool) -> str:
     """What one more request costs the record, from the first hundred to the thousandth."""
     from benchmarks.request_cost import PLAN, photo
+    from tests.models.providers.asking import TARGETS
     from wonderful_team.agents import build_request
     from wonderful_team.contracts import ReadScene
     from wonderful_team.core.protocols import Event
     from wonderful_team.core.values import Answer
     from wonderful_team.images import whole
     from wonderful_team.record.recorder import Recorder
-    from tests.models.providers.asking import TARGETS
 
     picture, marks = whole(photo((640, 480), 0), "top view"), []
     total = 300 if quick else 1000

@@ -28,8 +28,8 @@ from wonderful_team.core.pictures import (
 )
 from wonderful_team.images import Ticks, draw
 from wonderful_team.images.canvas import Canvas
+from wonderful_team.images.png import fast_png
 from wonderful_team.models.conventions import PIXELS, Convention, Size
-from wonderful_team.models.wire.png import fast_png
 
 _TICKS = {"pixels": Ticks.PIXELS, "thousandths": Ticks.THOUSANDTHS, "percent": Ticks.PERCENT, "unit": Ticks.UNIT}
 GAP_PX = 12

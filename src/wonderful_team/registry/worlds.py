@@ -125,7 +125,7 @@ def make_world(
             world = deadline.bounded(f"setting up world {name!r}", _named_world, name, seed, harder)
             if instruction is None and not keep_out:
                 # Its instruction is not even looked at: that draws its pictures, and controls need none.
-                return cast(World, world)
+                return world
     with code_of(f"instruction of world {name!r}", WorldUnavailableError):
         own = getattr(world, "instruction", None)
         whole = offers(world, World)

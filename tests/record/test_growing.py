@@ -103,3 +103,12 @@ def test_a_record_of_an_earlier_release_that_was_killed_reads_as_it_stands(kille
     record = {**read_record(folder), "state": "running"}
     (tmp_path / "record.json").write_text(json.dumps(record), encoding="utf-8")
     assert read_record(tmp_path) == record
+
+
+def test_the_whole_record_has_an_entry_a_line(killed):
+    folder, recorder = killed
+    recorder.close()
+    text = (folder / "record.json").read_text(encoding="utf-8")
+    assert json.loads(text) == read_record(folder)
+    stages = [line for line in text.split("\n") if line.startswith('   {"name": ')]
+    assert len(stages) == len(read_record(folder)["planner"]["stages"])

@@ -7,12 +7,19 @@ import numpy as np
 
 from wonderful_team.core.geometry import Box, Frame
 from wonderful_team.core.geometry.arrays import Array
+from wonderful_team.core.kept import Kept
 from wonderful_team.core.pictures import Picture
 from wonderful_team.core.values import View
 
 _PAD_LIGHT, _PAD_DARK = 150, 118  # the two greys of the padding's stripes
 _ROUNDS = 2  # of giving a pixel its colour back that enlarging took
 _PAD_PERIOD_PX = 16  # width of a light and a dark stripe together
+
+_KEPT_BYTES = 32_000_000
+_kept: Kept[tuple[int, bytes, tuple[int, int], tuple[float, ...]], tuple[View, Array, Array | None]] = Kept(
+    _KEPT_BYTES, lambda held: held[1].nbytes + (0 if held[2] is None else held[2].nbytes)
+)
+"""The last windows of views: one question after the other shows the same one, with other marks."""
 
 
 def picture_of(view: View, frame: Frame, name: str) -> Picture:
@@ -26,9 +33,16 @@ def picture_of(view: View, frame: Frame, name: str) -> Picture:
     Raises:
         ValueError: The frame is turned, mirrored or not on whole pixels.
     """
-    rgb = resampled(view.rgb, frame)
-    depth_m = None if view.depth_m is None else resampled_depth(view.depth_m, frame)
-    return Picture(name, rgb, frame, depth_m)
+    # The entry holds the view, so its id cannot have passed to another.
+    key = (id(view), frame.T_view_picture.tobytes(), frame.size_px, frame.valid.as_tuple)
+    held = _kept.get(key)
+    if held is None:
+        rgb = resampled(view.rgb, frame)
+        depth_m = None if view.depth_m is None else resampled_depth(view.depth_m, frame)
+        for array in (rgb, *(() if depth_m is None else (depth_m,))):
+            array.setflags(write=False)
+        held = _kept.keep(key, (view, rgb, depth_m))
+    return Picture(name, held[1], frame, held[2])
 
 
 def resampled(rgb: Array, frame: Frame) -> Array:

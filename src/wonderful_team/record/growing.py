@@ -8,7 +8,7 @@ gets one more). So what an event costs does not grow with what has happened befo
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
@@ -113,6 +113,25 @@ def _as_list(record: Mapping[str, Any]) -> dict[str, Any]:
     requests = [planner["requests"][key] for key in sorted(planner["requests"])]
     rest = {name: value for name, value in planner.items() if name != "requests"}
     return {**record, "planner": {**rest, "requests": requests}}
+
+
+def as_lines(record: Mapping[str, Any]) -> str:
+    """A record as text to look at: an entry a line. Indented all the way down it takes ten times as long to write."""
+    return _spread(record, lambda part: _spread(part, lambda items: _spread(items, _compact, "   "), "  "), " ")
+
+
+def _spread(value: Any, inner: Callable[[Any], str], margin: str) -> str:
+    """An object or a list with each of its parts on a line of its own; anything else on one line."""
+    if not value or not isinstance(value, dict | list):
+        return _compact(value)
+    if isinstance(value, list):
+        return "[\n" + ",\n".join(margin + _compact(item) for item in value) + f"\n{margin[:-1]}]"
+    parts = (f"{margin}{_compact(key)}: {inner(item)}" for key, item in value.items())
+    return "{\n" + ",\n".join(parts) + f"\n{margin[:-1]}}}"
+
+
+def _compact(value: Any) -> str:
+    return json.dumps(value, ensure_ascii=False)
 
 
 def empty_record(command: str | None) -> dict[str, Any]:

@@ -24,7 +24,7 @@ from wonderful_team.images.keep_out import outlines
 from wonderful_team.images.png import fast_png
 from wonderful_team.record import entries
 from wonderful_team.record.detections import detector_entry
-from wonderful_team.record.growing import LINES_NAME, GrowingRecord, empty_record, now
+from wonderful_team.record.growing import LINES_NAME, GrowingRecord, as_lines, empty_record, now
 from wonderful_team.record.picture_store import DRAWING, PictureStore
 from wonderful_team.record.plan_file import plan_to_json
 from wonderful_team.record.plan_picture import plan_picture
@@ -85,7 +85,7 @@ class Recorder:
         }
         # Before anything has happened a folder that cannot be written to ends the run.
         write_private(self.folder / "log.txt", b"")
-        write_private(self.folder / RECORD_NAME, self._whole(indent=None))
+        write_private(self.folder / RECORD_NAME, self._whole())
 
     def on_event(self, event: Event) -> None:
         """Keep one event. Kinds that are not known are left out."""
@@ -107,7 +107,7 @@ class Recorder:
             if self._record["state"] == "running":
                 self._growing.set("interrupted", "state")
             self._files.try_again()
-            if self._files.write(RECORD_NAME, self._whole(indent=1)):
+            if self._files.write(RECORD_NAME, self._whole()):
                 self._files.remove(LINES_NAME)
 
     @property
@@ -380,13 +380,13 @@ class Recorder:
         line = redact(f"{self._elapsed_s():6.1f} s  {name:10s} {text}")
         self._files.append("log.txt", visible(spoken(line.replace("\n", " "), self._pictures)) + "\n")
 
-    def _whole(self, indent: int | None) -> bytes:
+    def _whole(self) -> bytes:
         record = self._growing.laid_out()
         # This is what the lines say.
         missing = [name for name in self._files.missing if name != LINES_NAME]
         if missing:
             record["unwritten"] = missing
-        return _text(json.dumps(record, indent=indent, ensure_ascii=False))
+        return _text(as_lines(record))
 
 
 def _text(text: str) -> bytes:

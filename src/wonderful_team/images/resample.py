@@ -16,8 +16,8 @@ _ROUNDS = 2  # of giving a pixel its colour back that enlarging took
 _PAD_PERIOD_PX = 16  # width of a light and a dark stripe together
 
 _KEPT_BYTES = 32_000_000
-_kept: Kept[tuple[int, bytes, tuple[int, int], tuple[float, ...]], tuple[View, Array, Array | None]] = Kept(
-    _KEPT_BYTES, lambda held: held[1].nbytes + (0 if held[2] is None else held[2].nbytes)
+_kept: Kept[tuple[int, bytes, tuple[int, int], tuple[float, ...]], tuple[Array, Array]] = Kept(
+    _KEPT_BYTES, lambda held: held[1].nbytes
 )
 """The last windows of views: one question after the other shows the same one, with other marks."""
 
@@ -33,20 +33,24 @@ def picture_of(view: View, frame: Frame, name: str) -> Picture:
     Raises:
         ValueError: The frame is turned, mirrored or not on whole pixels.
     """
-    # The entry holds the view, so its id cannot have passed to another.
-    key = (id(view), frame.T_view_picture.tobytes(), frame.size_px, frame.valid.as_tuple)
-    held = _kept.get(key)
-    if held is None:
-        rgb = resampled(view.rgb, frame)
-        depth_m = None if view.depth_m is None else resampled_depth(view.depth_m, frame)
-        for array in (rgb, *(() if depth_m is None else (depth_m,))):
-            array.setflags(write=False)
-        held = _kept.keep(key, (view, rgb, depth_m))
-    return Picture(name, held[1], frame, held[2])
+    rgb = resampled(view.rgb, frame)
+    depth_m = None if view.depth_m is None else resampled_depth(view.depth_m, frame)
+    return Picture(name, rgb, frame, depth_m)
 
 
 def resampled(rgb: Array, frame: Frame) -> Array:
-    """Colours of the frame's window, shape (height, width, 3), uint8; padding is striped grey."""
+    """Colours of the frame's window, shape (height, width, 3), uint8, read-only; padding is striped grey."""
+    if rgb.flags.writeable:
+        return _colours(rgb, frame)
+    # The entry holds the image, so its id cannot have passed to another.
+    key = (id(rgb), frame.T_view_picture.tobytes(), frame.size_px, frame.valid.as_tuple)
+    held = _kept.get(key)
+    if held is None:
+        held = _kept.keep(key, (rgb, _colours(rgb, frame)))
+    return held[1]
+
+
+def _colours(rgb: Array, frame: Frame) -> Array:
     cut, zoom_x, zoom_y = _cut(rgb, frame)
     size = frame.size_px
     if zoom_x >= 1 and zoom_y >= 1:
@@ -56,6 +60,7 @@ def resampled(rgb: Array, frame: Frame) -> Array:
     real = valid_mask(frame)
     if not real.all():
         image = np.where(real[..., None], image, _padding(size))
+    image.setflags(write=False)
     return image
 
 

@@ -30,8 +30,8 @@ from wonderful_team.core.geometry import Box
 from wonderful_team.core.pictures import Axes, BoxMark, PointMark
 from wonderful_team.core.values import Request, View
 from wonderful_team.images import crop, draw, whole
+from wonderful_team.images.png import fast_png
 from wonderful_team.models.wire import compose, ticks_of
-from wonderful_team.models.wire.png import fast_png
 
 PLAN = ("G1: put T1 into T2",)
 

@@ -10,7 +10,7 @@ import pytest
 from tests.key_codings import AWKWARD, CODINGS
 from wonderful_team import redaction
 from wonderful_team.errors import MESSAGE_LIMIT, ActionRefusedError, MethodCodeError
-from wonderful_team.redaction import HIDDEN, keep_secret, redact, redact_all, redacted_streams
+from wonderful_team.redaction import HIDDEN, keep_secret, redact, redact_all, redact_known, redacted_streams
 
 
 @pytest.mark.parametrize(
@@ -134,3 +134,17 @@ def test_another_key_does_not_compile_those_before_it_anew(monkeypatch):
     keep_secret("a-key-of-another-user")
     assert redact("it is a-key-of-another-user, not a-key-of-user-0007") == f"it is {HIDDEN}, not {HIDDEN}"
     assert redaction._finder.cache_info().misses == before + 1
+
+
+def test_a_secret_is_known_as_soon_as_the_environment_or_a_user_names_it_and_forgotten_with_it(monkeypatch):
+    """What was looked up is kept only for as long as nothing changed."""
+    monkeypatch.setattr(redaction, "_used", set())
+    told = "words of-the-environment and of-a-user"
+    before = redaction.known_secrets()
+    assert redact_known(told) == told
+    monkeypatch.setenv("SOME_TEST_API_KEY", "of-the-environment")
+    redaction.keep_secret("of-a-user")
+    assert redact_known(told) == "words [redacted] and [redacted]"
+    assert redaction.known_secrets() is not before
+    monkeypatch.delenv("SOME_TEST_API_KEY")
+    assert redact_known(told) == "words of-the-environment and [redacted]"

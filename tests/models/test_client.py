@@ -62,7 +62,7 @@ def test_what_the_schema_cannot_say_is_sent_back_in_words():
     assert answer.usage.calls == 2
     assert "exactly when" in model.requests[1].feedback
     assert model.requests[1].previous == CONTRADICTION
-    assert heard.kinds == ["request", "invalid", "request", "answer"]
+    assert heard.kinds == ["request", "drawn", "invalid", "request", "drawn", "answer"]
 
 
 def test_three_invalid_answers_are_a_typed_failure_of_the_method():

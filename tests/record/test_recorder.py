@@ -14,6 +14,7 @@ from tests.runtime.runtime_fake_run import TalkingPolicy, world_with_pictures
 from tests.runtime.runtime_fakes import Listener, MovesPolicy, SquaresTruth, SquaresWorld
 from wonderful_team.images import draw, load_picture
 from wonderful_team.record import Recorder, read_plan, read_plan_scene
+from wonderful_team.record.record_schema import read_record
 from wonderful_team.runtime import rollout
 
 GOALS = {"red": (200.0, 30.0), "blue": (60.0, 60.0)}
@@ -103,7 +104,7 @@ moves = [((60.0, 60.0), (200.0, 30.0)), ((160.0, 90.0), (60.0, 60.0))]
 rollout(MovesPolicy([moves]), Dies(), subscribers=[Recorder(Path({str(tmp_path)!r}))])
 """
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 9
-    record = record_of(tmp_path)
+    record = read_record(tmp_path)
     assert record["state"] == "running"
     assert [run["subgoal"] for run in record["planner"]["subgoals"]] == ["G1"]
     assert (tmp_path / "plan.json").is_file()

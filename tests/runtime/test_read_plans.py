@@ -196,7 +196,7 @@ def test_a_picture_that_was_changed_since_is_not_at_hand(recorded):
 
 def test_a_record_that_is_broken_is_named(recorded):
     (recorded / "record.json").write_text("[" * 100_000, encoding="utf-8")
-    with pytest.raises(ConfigError, match=r"record\.json: cannot be read"):
+    with pytest.raises(ConfigError, match=r"record\.json' is nested too deeply"):
         read_run_plan(recorded)
 
 

@@ -19,6 +19,7 @@ from wonderful_team.core import values
 from wonderful_team.core.actions import PICK_PLACE, VOCABULARIES, Vocabulary
 from wonderful_team.core.deadline import limited, to_end
 from wonderful_team.core.geometry import PlanarCamera
+from wonderful_team.core.heap import give_back_free_memory
 from wonderful_team.core.interrupts import ends_on_signal, held
 from wonderful_team.core.protocols import Decision, Policy, Situation, Subscriber
 from wonderful_team.core.values import (
@@ -265,6 +266,7 @@ def _close(recorder: Recorder) -> None:
     with held():
         recorder.close()
         write_page_or_warn(recorder)
+        give_back_free_memory()
 
 
 @contextlib.contextmanager

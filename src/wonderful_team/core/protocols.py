@@ -270,7 +270,9 @@ class Event:
     """Something that happened.
 
     Attributes:
-        kind: request | answer | invalid | stage | decision | observe | gate | execute | verdict | warning | crash | done.
+        kind: request | sent | drawn | answer | invalid | stage | decision | observe | gate | execute | verdict | warning |
+            crash | done. `sent` brings the files of a request's pictures as they go out; `drawn` says with which ticks
+            the pictures of a request are drawn that no file goes out for.
         name: Which one, such as the request's id or the stage's name.
         content: The value itself (a Request, an Answer, a Plan, a GateReport, …) or a small mapping.
     """

@@ -17,6 +17,7 @@ from typing import Any
 
 from wonderful_team.core.caps import Caps
 from wonderful_team.core.deadline import GRACE_S
+from wonderful_team.core.heap import give_back_free_memory
 from wonderful_team.core.interrupts import in_thread
 from wonderful_team.errors import FileNotWrittenError, WonderfulTeamError
 from wonderful_team.evals.leases import RENEW_EVERY_S, Owner
@@ -127,6 +128,7 @@ async def _run(work: Work, store: Store, owner: Owner, claim: Claim) -> None:
         # Interrupted: nothing of it counts, and somebody else may take it at once.
         store.give_back(claim.trial, owner)
         raise
+    give_back_free_memory()
     if work.late and result.stage == "budget" and result.outcome != "success":
         store.give_back(claim.trial, owner, LATE, result)
         return

@@ -6,7 +6,7 @@ from wonderful_team.images.candidates import beside_points, inside_points
 from wonderful_team.images.compare import CHANGED, region_change
 from wonderful_team.images.cut import Edge, StripSide, crop, edge_strips, whole
 from wonderful_team.images.draw import draw, line_width_px
-from wonderful_team.images.encode import to_png
+from wonderful_team.images.encode import to_jpeg, to_png
 from wonderful_team.images.load import OWN_FORMATS, load_picture, open_picture
 from wonderful_team.images.overview import action_arrows, overview, swept_width, swept_widths
 from wonderful_team.images.resample import picture_of, resampled, resampled_depth, valid_mask
@@ -37,6 +37,7 @@ __all__ = [
     "seen_from_above",
     "swept_width",
     "swept_widths",
+    "to_jpeg",
     "to_png",
     "valid_mask",
     "whole",

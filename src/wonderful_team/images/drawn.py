@@ -9,6 +9,7 @@ from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.pictures import Picture, picture_hash
 from wonderful_team.images.axes import Ticks
 from wonderful_team.images.draw import draw
+from wonderful_team.images.png import fast_png
 
 _lock = threading.Lock()
 _drawn: WeakKeyDictionary[Picture, dict[Ticks, Array]] = WeakKeyDictionary()
@@ -27,6 +28,11 @@ def drawn(picture: Picture, ticks: Ticks = Ticks.PIXELS) -> Array:
     made.setflags(write=False)
     with _lock:
         return _drawn.setdefault(picture, {}).setdefault(ticks, made)
+
+
+def drawn_png(picture: Picture, ticks: Ticks = Ticks.PIXELS) -> bytes:
+    """The PNG file of what `drawn` gives."""
+    return fast_png(drawn(picture, ticks))
 
 
 def drawn_hash(picture: Picture, ticks: Ticks = Ticks.PIXELS) -> str:

@@ -23,7 +23,7 @@ MAX_PICTURE_ASPECT = 20
 _VALID_PICTURE = "a PNG, JPEG, WebP, BMP, TIFF or GIF picture"
 FORMATS = ("PNG", "JPEG", "WEBP", "BMP", "TIFF", "GIF")
 """What is read; anything else that Pillow knows may start programs (EPS: Ghostscript), whatever the file is called."""
-OWN_FORMATS = ("PNG",)
+OWN_FORMATS = ("PNG", "JPEG")
 """What our own folders and files hold."""
 GREY_16 = ("I;16", "I;16B", "I;16L", "I;16N", "I")
 

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from functools import lru_cache
 from typing import TypeAlias
 
 import numpy as np
 
 from wonderful_team.core.geometry import Frame
+from wonderful_team.core.kept import Kept
 from wonderful_team.core.pictures import Panel, Picture
 from wonderful_team.images.canvas import INK, WHITE, Canvas
 from wonderful_team.images.lettering import plain
@@ -31,7 +31,12 @@ def fit(groups: tuple[Group, ...]) -> bool:
     return width <= MOST_ACROSS_PX and height <= MOST_DOWN_PX
 
 
-@lru_cache(maxsize=64)
+_MOST_BYTES = 48_000_000
+_kept: Kept[tuple[tuple[Group, ...], str], Picture] = Kept(
+    _MOST_BYTES, lambda made: made.rgb.nbytes + sum(panel.picture.rgb.nbytes for panel in made.panels)
+)
+
+
 def side_by_side(groups: tuple[Group, ...], name: str) -> Picture:
     """One picture that holds these from left to right, row by row, tops in line, each group's name below it.
 
@@ -40,6 +45,11 @@ def side_by_side(groups: tuple[Group, ...], name: str) -> Picture:
     Raises:
         ValueError: No pictures, or one with marks.
     """
+    made = _kept.get((groups, name))
+    return made if made is not None else _kept.keep((groups, name), _beside(groups, name))
+
+
+def _beside(groups: tuple[Group, ...], name: str) -> Picture:
     pictures = [picture for _, held in groups for picture in held]
     if not pictures or any(picture.marks for picture in pictures):
         raise ValueError("side_by_side needs at least one picture, and none with marks")

@@ -7,12 +7,19 @@ import numpy as np
 
 from wonderful_team.core.geometry import Box, Frame
 from wonderful_team.core.geometry.arrays import Array
+from wonderful_team.core.kept import Kept
 from wonderful_team.core.pictures import Picture
 from wonderful_team.core.values import View
 
 _PAD_LIGHT, _PAD_DARK = 150, 118  # the two greys of the padding's stripes
 _ROUNDS = 2  # of giving a pixel its colour back that enlarging took
 _PAD_PERIOD_PX = 16  # width of a light and a dark stripe together
+
+_KEPT_BYTES = 32_000_000
+_kept: Kept[tuple[int, bytes, tuple[int, int], tuple[float, ...]], tuple[Array, Array]] = Kept(
+    _KEPT_BYTES, lambda held: held[1].nbytes
+)
+"""The last windows of views: one question after the other shows the same one, with other marks."""
 
 
 def picture_of(view: View, frame: Frame, name: str) -> Picture:
@@ -32,7 +39,18 @@ def picture_of(view: View, frame: Frame, name: str) -> Picture:
 
 
 def resampled(rgb: Array, frame: Frame) -> Array:
-    """Colours of the frame's window, shape (height, width, 3), uint8; padding is striped grey."""
+    """Colours of the frame's window, shape (height, width, 3), uint8, read-only; padding is striped grey."""
+    if rgb.flags.writeable:
+        return _colours(rgb, frame)
+    # The entry holds the image, so its id cannot have passed to another.
+    key = (id(rgb), frame.T_view_picture.tobytes(), frame.size_px, frame.valid.as_tuple)
+    held = _kept.get(key)
+    if held is None:
+        held = _kept.keep(key, (rgb, _colours(rgb, frame)))
+    return held[1]
+
+
+def _colours(rgb: Array, frame: Frame) -> Array:
     cut, zoom_x, zoom_y = _cut(rgb, frame)
     size = frame.size_px
     if zoom_x >= 1 and zoom_y >= 1:
@@ -42,6 +60,7 @@ def resampled(rgb: Array, frame: Frame) -> Array:
     real = valid_mask(frame)
     if not real.all():
         image = np.where(real[..., None], image, _padding(size))
+    image.setflags(write=False)
     return image
 
 

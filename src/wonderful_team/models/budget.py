@@ -11,7 +11,7 @@ from dataclasses import dataclass, field, replace
 
 from wonderful_team.core import deadline
 from wonderful_team.core.caps import Caps, Estimate
-from wonderful_team.core.values import Usage
+from wonderful_team.core.values import SentPicture, Usage
 from wonderful_team.errors import BudgetReached
 
 LEAST_OUT = 256
@@ -29,6 +29,8 @@ class Ticket:
         tries: How often it was sent.
         lost: What tries without an answer may have cost.
         answered: What an answer cost that was none for the team (a refusal, say).
+        hear: Told of the files of the request's pictures when they go out.
+        sent: Whether they did.
     """
 
     budget: Budget | None = None
@@ -41,6 +43,14 @@ class Ticket:
     usd: float = 0.0
     lost: Usage = field(default_factory=Usage)
     answered: Usage | None = None
+    hear: Callable[[tuple[SentPicture, ...]], None] | None = None
+    sent: bool = False
+
+    def sends(self, pictures: tuple[SentPicture, ...]) -> None:
+        """Tell what goes out now."""
+        self.sent = True
+        if self.hear is not None:
+            self.hear(pictures)
 
     def another_try(self) -> None:
         """Ask leave to send once more.

@@ -30,6 +30,7 @@ from wonderful_team.errors import (
     WonderfulTeamError,
     code_of,
 )
+from wonderful_team.images import Ticks
 from wonderful_team.models.budget import Budget, Ticket, set_current_ticket
 from wonderful_team.models.wire import chat as _chat  # noqa: F401  gives requests their messages()
 from wonderful_team.models.wire.unreadable import Unreadable
@@ -146,8 +147,12 @@ class ModelClient:
             ticket = await budget.take(estimate)
             usage = None
             started = time.monotonic()
+            ticket.hear = lambda pictures: self.tell("sent", request.id, (request, pictures))
             try:
                 self.tell("request", request.id, request)
+                if not isinstance(getattr(model, "ticks", None), Ticks):
+                    # It draws nothing itself: it is handed the request.
+                    self._tell_drawn(request, ticket, Ticks.PIXELS)
                 left = budget.seconds_left
                 # A service knows how long its own tries may take.
                 most_s = max(self._deadline_s, float(getattr(model, "deadline_s", 0.0)))
@@ -163,6 +168,7 @@ class ModelClient:
                     raise ModelUnavailableError(
                         f"{_name(model)} did not answer {request.contract} within {most_s:g} s"
                     ) from error
+                self._tell_drawn(request, ticket, getattr(model, "ticks", Ticks.PIXELS))
                 seconds = time.monotonic() - started
                 if answer.provenance in UNSENT:
                     usage = Usage(seconds=seconds)
@@ -177,10 +183,17 @@ class ModelClient:
             except WonderfulTeamError as error:
                 if not error.sent:
                     usage = Usage(seconds=time.monotonic() - started)
+                self._tell_drawn(request, ticket, getattr(model, "ticks", Ticks.PIXELS))
                 self.tell("failed", request.id, (request, error))
                 raise
             finally:
                 budget.settle(request.role, usage or _failed_usage(request, ticket, started), ticket)
+
+    def _tell_drawn(self, request: Request, ticket: Ticket, ticks: Ticks) -> None:
+        """Say how pictures look that nobody sent, once."""
+        if request.pictures and not ticket.sent:
+            ticket.sent = True
+            self.tell("drawn", request.id, (request, ticks))
 
     def _place(self) -> asyncio.Semaphore:
         # A semaphore belongs to one event loop; each synchronous entry may bring a new one.

@@ -103,7 +103,7 @@ def in_order(record: dict[str, Any], album: Album) -> tuple[Asked, ...]:
     asked = []
     for number, entry in enumerate(sorted(record["planner"]["requests"], key=sent), start=1):
         parts = tuple(_part(part, album, names) for part in entry["parts"])
-        drawn = tuple(part["drawn"] for part in entry["parts"] if "drawn" in part)
+        drawn = tuple(part["drawn"] for part in entry["parts"] if part.get("drawn"))
         answered = times.get(entry["key"], {}).get("answered_s")
         words = "\n\n".join(_sent_words(part) for part in entry["parts"])
         exact = words if spoken(words, names) != words else ""
@@ -118,6 +118,10 @@ def _sent_words(part: dict[str, Any]) -> str:
 def _part(part: dict[str, Any], album: Album, names: Mapping[str, str]) -> Part:
     if "words" in part:
         return Part(words=part["words"])
-    width, height = part["size_px"]
-    caption = f"{spoken(part['picture'], names)}, {width} × {height} px as sent"
+    width, height = part.get("sent_px") or part["size_px"]
+    name, on_sheet = spoken(part["picture"], names), part.get("on_sheet")
+    if on_sheet is None:
+        caption = f"{name}, {width} × {height} px as sent"
+    else:
+        caption = f"{name}: number {on_sheet} on one sheet of {width} × {height} px"
     return Part(picture=album.image(part["drawn"], caption), caption=caption)

@@ -2,22 +2,27 @@
 
 from __future__ import annotations
 
+from functools import cache
 from pathlib import Path
 from typing import Any
 
-from jinja2 import Environment, FileSystemLoader, StrictUndefined
+from jinja2 import Environment, FileSystemLoader, StrictUndefined, pass_context
+from jinja2.runtime import Context
 from markupsafe import Markup
 
-from wonderful_team.core.filesystem import write_redacted
+from wonderful_team.core.filesystem import write_private
 from wonderful_team.core.text import counted, visible
 from wonderful_team.errors import reading
 from wonderful_team.pages import cost, planted, requests, sections
 from wonderful_team.pages.pictures import Album, pictured
 from wonderful_team.pages.words import clock_time, money, pretty, pretty_name, seconds
 from wonderful_team.record.record_schema import read_record
+from wonderful_team.redaction import redact
 
 PAGE_NAME = "page.html"
 _HERE = Path(__file__).parent
+_PICTURES = "<!-- pictures -->"
+"""Stands for them while the page is made; words on a page are escaped, so none of them reads so."""
 
 
 def write_page(folder: Path) -> Path:
@@ -32,34 +37,45 @@ def write_page(folder: Path) -> Path:
     folder = Path(folder)
     record = read_record(folder)
     with reading(f"{folder}: the record"):
-        html = _html(folder, record)
+        html, pictures = _html(folder, record)
+    # Pictures are not searched for keys: their letters may look like anything, and are most of the page.
+    whole = redact(visible(html, layout=True)).replace(_PICTURES, pictures, 1)
     path = folder / PAGE_NAME
-    write_redacted(path, visible(html, layout=True), errors="xmlcharrefreplace")
+    write_private(path, whole.encode("utf-8", errors="xmlcharrefreplace"))
     return path
 
 
-def _html(folder: Path, record: dict[str, Any]) -> str:
+def _html(folder: Path, record: dict[str, Any]) -> tuple[str, str]:
+    """The page, and the pictures that belong in the place of `_PICTURES`."""
     album = Album(folder, record["files"])
+    content = _content(record, album)
+    style = Markup((_HERE / "page.css").read_text(encoding="utf-8"))
+    # The body comes first: it decides which pictures the page has to hold.
+    body = _environment().get_template("body.html.j2").render(**content)
+    page = _environment().get_template("page.html.j2")
+    held = {"title": content["title"], "style": style, "body": Markup(body), "pictures": Markup(_PICTURES)}
+    return page.render(**held), album.definitions()
+
+
+@cache
+def _environment() -> Environment:
+    """The templates, compiled once in a process."""
     environment = Environment(
         loader=FileSystemLoader(_HERE),
         autoescape=True,
         undefined=StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
+        auto_reload=False,
     )
     environment.filters.update(pretty=pretty, seconds=seconds, money=money, title=pretty_name, clock=clock_time)
-    environment.filters["counted"] = counted
-    environment.filters["pictured"] = lambda text: pictured(text, record, album)
-    content = _content(record, album)
-    style = Markup((_HERE / "page.css").read_text(encoding="utf-8"))
-    # The body comes first: it decides which pictures the page has to hold.
-    body = environment.get_template("body.html.j2").render(**content)
-    return environment.get_template("page.html.j2").render(
-        title=content["title"],
-        style=style,
-        body=Markup(body),
-        pictures=album.definitions(),
-    )
+    environment.filters.update(counted=counted, pictured=_pictured)
+    return environment
+
+
+@pass_context
+def _pictured(context: Context, text: str | Markup) -> Markup:
+    return pictured(text, context["record"], context["album"])
 
 
 def _content(record: dict[str, Any], album: Album) -> dict[str, Any]:

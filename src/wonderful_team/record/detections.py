@@ -28,7 +28,7 @@ def detector_entry(run: DetectorRun, store: PictureStore) -> dict[str, Any]:
         "size_px": [width, height],
         "words": list(run.words),
         "found": [_detection_entry(one) for one in run.found],
-        "drawn": store.keep_sent(picture.marked(*marks)),
+        "drawn": store.keep_drawn(picture.marked(*marks)),
         "refused": run.refused,
     }
 

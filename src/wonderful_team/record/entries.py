@@ -14,6 +14,7 @@ from wonderful_team.core.values import (
     Observation,
     PlannedAction,
     Request,
+    SentPicture,
     StepReport,
     SubgoalRun,
     Target,
@@ -30,8 +31,8 @@ def request_key(request: Request) -> str:
     return f"{request.id} try {request.attempt + 1}"
 
 
-def request_entry(request: Request, store: PictureStore) -> dict[str, Any]:
-    """One request: words, pictures as hashes of what was drawn, and what a right answer is."""
+def request_entry(request: Request) -> dict[str, Any]:
+    """One request: words, pictures (what was drawn or sent of them is told later), and what a right answer is."""
     return {
         "key": request_key(request),
         "id": request.id,
@@ -41,7 +42,7 @@ def request_entry(request: Request, store: PictureStore) -> dict[str, Any]:
         "targets": _targets(request.question),
         "system": request.system,
         "notes": to_jsonable(request.notes),
-        "parts": [_part(part, store) for part in request.parts],
+        "parts": [_part(part) for part in request.parts],
         "output": request.output.__name__,
         "sample": request.sample,
         "attempt": request.attempt,
@@ -51,11 +52,17 @@ def request_entry(request: Request, store: PictureStore) -> dict[str, Any]:
     }
 
 
-def _part(part: Any, store: PictureStore) -> dict[str, Any]:
+def sent_entry(file: SentPicture, key: str, number: int | None) -> dict[str, Any]:
+    """How a picture went out: its file's key and size; its number on the sheet where all went out as one."""
+    told = {"drawn": key, "sent_px": list(file.size_px)}
+    return told if number is None else {**told, "on_sheet": number}
+
+
+def _part(part: Any) -> dict[str, Any]:
     if isinstance(part, Picture):
         return {
             "picture": part.name,
-            "drawn": store.keep_sent(part),
+            "drawn": None,
             "clean": part.hash,
             "size_px": list(part.size_px),
             "view": part.frame.view_id,

@@ -5,16 +5,17 @@ from __future__ import annotations
 import hashlib
 import io
 import re
+from collections.abc import Callable
 
 import numpy as np
 
 from wonderful_team.core.deadline import for_record
 from wonderful_team.core.filesystem import make_private_folder
-from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.pictures import Picture
-from wonderful_team.core.values import Observation, View
-from wonderful_team.images import to_png
-from wonderful_team.images.drawn import drawn, drawn_hash
+from wonderful_team.core.values import Observation, SentPicture, View
+from wonderful_team.images import Ticks
+from wonderful_team.images.drawn import drawn_hash, drawn_png
+from wonderful_team.images.png import fast_png
 from wonderful_team.record.run_files import RunFiles
 from wonderful_team.redaction import redact
 
@@ -26,33 +27,44 @@ DRAWING = "drawing pictures for the record"
 class PictureStore:
     """Writes pictures into a run folder.
 
-    Attributes:
-        files: From a picture's hash to its file, relative to the run folder.
+    Args:
+        files: Of the run folder.
+        named: Told of every picture's key and file, relative to the run folder, once.
     """
 
-    def __init__(self, files: RunFiles) -> None:
-        self._files = files
+    def __init__(self, files: RunFiles, named: Callable[[str, str], None]) -> None:
+        self._files, self._named = files, named
+        self._known: set[str] = set()
         self._sent: set[str] = set()
         self._views = 0
         self._depths: dict[str, str] = {}
-        self.files: dict[str, str] = {}
         make_private_folder(files.folder / FOLDER)
 
-    def keep_sent(self, picture: Picture) -> str:
-        """Store a picture as it is sent, marks drawn; returns the hash of what was drawn."""
-        key = drawn_hash(picture)
+    def keep_file(self, sent: SentPicture, name: str) -> str:
+        """Store a picture's file as it was sent; returns the hash of its bytes."""
+        key = hashlib.sha256(sent.file).hexdigest()[:16]
         if key not in self._sent:
-            self._sent.add(key)
-            rgb = for_record(DRAWING, drawn, picture)
-            self._write(key, f"{len(self._sent):03d}_{_slug(picture.name)}.png", rgb)
+            self._write(key, self._numbered(key, name, "jpg" if sent.media_type == "image/jpeg" else "png"), sent.file)
         return key
+
+    def keep_drawn(self, picture: Picture, ticks: Ticks = Ticks.PIXELS) -> str:
+        """Store a picture that was sent nowhere, marks drawn; returns the hash of what was drawn."""
+        key = drawn_hash(picture, ticks)
+        if key not in self._sent:
+            file = for_record(DRAWING, drawn_png, picture, ticks)
+            self._write(key, self._numbered(key, picture.name, "png"), file)
+        return key
+
+    def _numbered(self, key: str, name: str, ending: str) -> str:
+        self._sent.add(key)
+        return f"{len(self._sent):03d}_{_slug(name)}.{ending}"
 
     def keep_view(self, view: View, where: str) -> str:
         """Store a clean view; returns its hash."""
         key = view.hash
-        if key not in self.files:
+        if key not in self._known:
             self._views += 1
-            self._write(key, f"view_{self._views:03d}_{_slug(where)}_{_slug(view.camera_name)}.png", view.rgb)
+            self._write(key, f"view_{self._views:03d}_{_slug(where)}_{_slug(view.camera_name)}.png", fast_png(view.rgb))
         return key
 
     def keep_observation(self, observation: Observation, where: str) -> dict[str, str]:
@@ -71,9 +83,10 @@ class PictureStore:
             self._depths[key] = f"{FOLDER}/{name}"
         return self._depths[key]
 
-    def _write(self, key: str, name: str, rgb: Array) -> None:
-        self._files.write(f"{FOLDER}/{name}", to_png(rgb))
-        self.files[key] = f"{FOLDER}/{name}"
+    def _write(self, key: str, name: str, file: bytes) -> None:
+        self._files.write(f"{FOLDER}/{name}", file)
+        self._known.add(key)
+        self._named(key, f"{FOLDER}/{name}")
 
 
 def _slug(words: str) -> str:

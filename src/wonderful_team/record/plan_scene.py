@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import Any
 
@@ -10,6 +9,7 @@ from wonderful_team.core.values import Observation, Plan, ReadPlan, View
 from wonderful_team.errors import ConfigError
 from wonderful_team.images import load_picture
 from wonderful_team.record.plan_file import read_plan
+from wonderful_team.record.record_schema import grown_record
 from wonderful_team.record.stored import file_of_run, observation_of
 
 
@@ -36,7 +36,7 @@ def read_plan_scene(folder: Path, plan: Plan) -> Observation | None:
     """
     file = Path(folder) / "record.json"
     try:
-        record: Any = json.loads(file.read_text(encoding="utf-8"))
+        record: Any = grown_record(Path(folder))
         # A run that was handed its plan keeps what that was made from apart from what it saw itself.
         seen = [*record["planner"]["observations"], *filter(None, [record["planner"].get("plan_scene")])]
         named = [entry["hash"] for entry in seen]

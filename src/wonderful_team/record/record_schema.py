@@ -14,8 +14,8 @@ from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationErr
 
 from wonderful_team.core.jsonable import read_json
 from wonderful_team.errors import ConfigError
+from wonderful_team.record.growing import LINES_NAME, RECORD_SCHEMA_VERSION, grown
 
-RECORD_SCHEMA_VERSION = 1
 SCHEMA_FILE = Path(__file__).with_name("record-v1.schema.json")
 
 
@@ -317,6 +317,22 @@ def record_schema() -> dict[str, Any]:
     return {"$schema": "https://json-schema.org/draft/2020-12/schema", **RecordFile.model_json_schema()}
 
 
+def grown_record(folder: Path) -> Any:
+    """What a run folder's record.json holds; while the run goes on, and after it was killed, with all that happened since.
+
+    Raises:
+        ConfigError: Missing, or not JSON.
+    """
+    for _ in range(2):
+        record = read_json(folder / "record.json", "record", "the folder of a run")
+        if not isinstance(record, dict) or record.get("state") != "running":
+            return record
+        if (folder / LINES_NAME).is_file():
+            return grown(folder, record)
+    # Of an earlier release; or the run ended between two looks, and then the second finds it whole.
+    return record
+
+
 def read_record(folder: Path) -> dict[str, Any]:
     """The record of a run folder, checked.
 
@@ -324,7 +340,7 @@ def read_record(folder: Path) -> dict[str, Any]:
         ConfigError: Missing, not JSON, of another schema version, or not what the schema says; names the place.
     """
     file = Path(folder) / "record.json"
-    record = read_json(file, "record", "the folder of a run")
+    record = grown_record(Path(folder))
     version = record.get("schema_version") if isinstance(record, dict) else None
     if version != RECORD_SCHEMA_VERSION:
         raise ConfigError(f"{file}: record schema version {version!r}; this release reads {RECORD_SCHEMA_VERSION}")

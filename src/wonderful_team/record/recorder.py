@@ -6,8 +6,6 @@ import json
 import threading
 import time
 from collections.abc import Callable, Mapping, Sequence
-from datetime import UTC, datetime
-from functools import partial
 from pathlib import Path
 from types import TracebackType
 from typing import Any
@@ -16,29 +14,27 @@ from wonderful_team.core.deadline import for_record
 from wonderful_team.core.filesystem import write_private
 from wonderful_team.core.interrupts import held
 from wonderful_team.core.jsonable import to_jsonable
+from wonderful_team.core.pictures import Picture
 from wonderful_team.core.protocols import Event
 from wonderful_team.core.text import counted, ending_words, picture_names, spoken, visible
 from wonderful_team.core.values import GateCheck, GateReport, Instruction, Limits, Observation, Plan, Request, Trial
 from wonderful_team.errors import ActionRefusedError, BudgetReached, FileNotWrittenError, WonderfulTeamError
-from wonderful_team.images import action_arrows, action_turns, overview, swept_widths, to_png
+from wonderful_team.images import Ticks
 from wonderful_team.images.keep_out import outlines
+from wonderful_team.images.png import fast_png
 from wonderful_team.record import entries
 from wonderful_team.record.detections import detector_entry
+from wonderful_team.record.growing import LINES_NAME, GrowingRecord, as_lines, empty_record, now
 from wonderful_team.record.picture_store import DRAWING, PictureStore
 from wonderful_team.record.plan_file import plan_to_json
-from wonderful_team.record.record_schema import RECORD_SCHEMA_VERSION
+from wonderful_team.record.plan_picture import plan_picture
 from wonderful_team.record.run_files import RunFiles
 from wonderful_team.record.run_folders import RECORD_NAME
-from wonderful_team.record.versions import versions
 from wonderful_team.redaction import redact, redact_all
-
-_REWRITE_EVERY_S = 0.3
-"""Least time between two rewrites of record.json; important events are written at once."""
-_AT_ONCE = frozenset({"run", "stage", "plan", "gate", "execute", "subgoal", "warning", "crash", "done"})
 
 
 class Recorder:
-    """A subscriber that keeps a run.
+    """A subscriber that keeps a run: every event is a line in `record.jsonl`; `record.json` is written whole at the end.
 
     The record's key "planner" holds what the planner was asked, answered and did, without clock times and in an
     order that no race changes: removing the scorer leaves it bit-identical. Times stand under "clock".
@@ -51,34 +47,26 @@ class Recorder:
     def __init__(self, folder: Path, *, command: str | None = None) -> None:
         self.folder = Path(folder)
         self._files = RunFiles(self.folder)
-        self._store = PictureStore(self._files)
+        self._store = PictureStore(self._files, self._named)
         self._lock = threading.RLock()
         self._zero = time.monotonic()
-        self._last_write = -1.0
-        self._requests: dict[str, dict[str, Any]] = {}
+        self._asked: set[str] = set()
+        self._undrawn: dict[str, Request] = {}
         self._observations: dict[str, Observation] = {}
         self._seen: Observation | None = None
         self._limits: Limits | None = None
         self._pictures: dict[str, str] = {}
-        self._planner: dict[str, Any] = {"instruction": None, "outlines": []}
-        for key in ("observations", "stages", "plans", "decisions", "gates", "executions", "subgoals", "verdicts"):
-            self._planner[key] = []
-        self._planner["warnings"] = []
-        self._clock: dict[str, Any] = {"started": _now(), "requests": {}, "stages": [], "gates": [], "executions": []}
-        self._record: dict[str, Any] = {
-            "schema_version": RECORD_SCHEMA_VERSION,
-            "state": "running",
-            "command": command,
-            "configuration": {},
-            "versions": versions(),
-            "outcome": None,
-        }
+        self._growing = GrowingRecord(empty_record(command))
+        self._record = self._growing.held
+        self._planner = self._record["planner"]
         self._handlers: dict[str, Callable[[Event], None]] = {
             "run": self._on_run,
             "observe": self._on_observe,
             "plan_scene": self._on_plan_scene,
             "stage": self._on_stage,
             "request": self._on_request,
+            "sent": self._on_sent,
+            "drawn": self._on_drawn,
             "answer": self._on_answer,
             "invalid": self._on_invalid,
             "failed": self._on_failed,
@@ -107,16 +95,20 @@ class Recorder:
         # An interrupt that came in the middle would leave half an entry.
         with held(), self._lock:
             handle(event)
-            if event.kind in _AT_ONCE or self._elapsed_s() - self._last_write >= _REWRITE_EVERY_S:
-                self._write()
+            lines = self._growing.lines()
+            if lines:
+                self._files.append(LINES_NAME, lines)
 
     def close(self) -> None:
         """Write what is left. A run that was never finished is marked as interrupted."""
         with held(), self._lock:
+            for request in list(self._undrawn.values()):
+                self._draw(request, Ticks.PIXELS)
             if self._record["state"] == "running":
-                self._record["state"] = "interrupted"
+                self._growing.set("interrupted", "state")
             self._files.try_again()
-            self._write()
+            if self._files.write(RECORD_NAME, self._whole()):
+                self._files.remove(LINES_NAME)
 
     @property
     def unwritten(self) -> tuple[str, ...]:
@@ -148,21 +140,22 @@ class Recorder:
     # -- what happens ------------------------------------------------------------------------------------------------
 
     def _on_run(self, event: Event) -> None:
-        content = dict(event.content or {})
+        grow, content = self._growing, dict(event.content or {})
         task, limits = content.pop("task", None), content.pop("limits", None)
         if isinstance(task, Instruction):
-            self._planner["instruction"] = entries.instruction_entry(task, self._store)
+            grow.set(entries.instruction_entry(task, self._store), "planner", "instruction")
             self._pictures = picture_names(task.text, task.slots)
         if isinstance(limits, Limits):
             self._limits = limits
-            self._planner["limits"] = to_jsonable(limits)
-        self._record["command"] = content.pop("command", None) or self._record["command"]
+            grow.set(to_jsonable(limits), "planner", "limits")
+        grow.set(content.pop("command", None) or self._record["command"], "command")
         for key in ("setup", "words"):
             if key in content:
-                self._record[key] = content.pop(key)
-        self._record["configuration"].update(entries.plain(content))
-        if event.name:
-            self._record["configuration"].setdefault("scene", event.name)
+                grow.set(content.pop(key), key)
+        for key, value in entries.plain(content).items():
+            grow.set(value, "configuration", key)
+        if event.name and "scene" not in self._record["configuration"]:
+            grow.set(event.name, "configuration", "scene")
 
     def _on_observe(self, event: Event) -> None:
         observation: Observation = event.content
@@ -170,67 +163,98 @@ class Recorder:
         self._observations[observation.hash] = observation
         while len(self._observations) > 8:
             self._observations.pop(next(iter(self._observations)))
-        self._planner["observations"].append(entries.observation_entry(event.name, observation, self._store))
+        self._add("observations", entries.observation_entry(event.name, observation, self._store))
 
     def _on_plan_scene(self, event: Event) -> None:
         """What a plan that was read was made from: it stays with the plan, so that the plan can be read from here too."""
-        self._planner["plan_scene"] = entries.observation_entry("plan", event.content, self._store)
+        entry = entries.observation_entry("plan", event.content, self._store)
+        self._growing.set(entry, "planner", "plan_scene")
 
     def _on_stage(self, event: Event) -> None:
         content = event.content
         text = content.get("text", "") if isinstance(content, Mapping) else str(content or "")
         attempt = content.get("attempt", 0) if isinstance(content, Mapping) else 0
-        self._planner["stages"].append({"name": event.name, "text": text, "attempt": attempt})
+        self._add("stages", {"name": event.name, "text": text, "attempt": attempt})
         self._stamp("stages")
         self._log(event.name, text)
 
     def _on_request(self, event: Event) -> None:
         request: Request = event.content
-        entry = entries.request_entry(request, self._store)
-        self._requests[entry["key"]] = entry
-        self._clock["requests"][entry["key"]] = {"sent_s": round(self._elapsed_s(), 4), "answered_s": None}
+        entry = entries.request_entry(request)
+        key = entry["key"]
+        self._asked.add(key)
+        if request.pictures:
+            self._undrawn[key] = request
+        self._growing.set(entry, "planner", "requests", key)
+        sent = {"sent_s": round(self._elapsed_s(), 4), "answered_s": None}
+        self._growing.set(sent, "clock", "requests", key)
+
+    def _on_sent(self, event: Event) -> None:
+        """The pictures of a request as they went out: the very files are kept."""
+        request, files = event.content
+        places = [number for number, part in enumerate(request.parts) if isinstance(part, Picture)]
+        sheet = len(files) < len(places)
+        for count, number in enumerate(places):
+            file = files[0 if sheet else count]
+            name = "sheet" if sheet else request.parts[number].name
+            told = entries.sent_entry(file, self._store.keep_file(file, name), count + 1 if sheet else None)
+            self._tell_part(request, number, told)
+
+    def _on_drawn(self, event: Event) -> None:
+        """The pictures of a request that went nowhere: to a model that is handed the request itself, or kept answers."""
+        request, ticks = event.content
+        self._draw(request, ticks)
+
+    def _draw(self, request: Request, ticks: Ticks) -> None:
+        for number, part in enumerate(request.parts):
+            if isinstance(part, Picture):
+                self._tell_part(request, number, {"drawn": self._store.keep_drawn(part, ticks)})
+
+    def _tell_part(self, request: Request, number: int, told: Mapping[str, Any]) -> None:
+        key = self._key_of(request)
+        self._undrawn.pop(key, None)
+        for name, value in told.items():
+            self._growing.set(value, "planner", "requests", key, "parts", number, name)
 
     def _on_answer(self, event: Event) -> None:
         request, answer = event.content
-        entry = self._entry_of(request)
-        entry["answer"] = entries.answer_entry(answer)
-        self._answered(entry["key"])
+        self._answered(request, "answer", entries.answer_entry(answer))
 
     def _on_invalid(self, event: Event) -> None:
         request, raw, error = event.content
-        entry = self._entry_of(request)
-        entry["invalid"] = {"raw": str(raw), "error": str(error)}
-        self._answered(entry["key"])
+        self._answered(request, "invalid", {"raw": str(raw), "error": str(error)})
         self._log("invalid", f"{request.id}: {error}")
 
     def _on_failed(self, event: Event) -> None:
         request, error = event.content
-        entry = self._entry_of(request)
-        entry["failed"] = entries.error_entry(error)
-        self._answered(entry["key"])
+        self._answered(request, "failed", entries.error_entry(error))
 
-    def _entry_of(self, request: Request) -> dict[str, Any]:
+    def _key_of(self, request: Request) -> str:
         key = entries.request_key(request)
-        if key not in self._requests:
+        if key not in self._asked:
             # Answered without being sent (a cache): it is part of the story all the same.
             self._on_request(Event("request", request.id, request))
-        return self._requests[key]
+        return key
 
-    def _answered(self, key: str) -> None:
-        self._clock["requests"][key]["answered_s"] = round(self._elapsed_s(), 4)
+    def _answered(self, request: Request, how: str, entry: Mapping[str, Any]) -> None:
+        key = self._key_of(request)
+        if key in self._undrawn:
+            self._draw(request, Ticks.PIXELS)
+        self._growing.set(entry, "planner", "requests", key, how)
+        self._growing.set(round(self._elapsed_s(), 4), "clock", "requests", key, "answered_s")
 
     def _on_plan(self, event: Event) -> None:
         plan: Plan = event.content
-        data = plan_to_json(plan)
+        data = redact_all(plan_to_json(plan))
         # The instruction's pictures stand once, as files, under "instruction".
         words_only = {**data["plan"]["instruction"], "slots": {}}
         kept = {**data, "plan": {**data["plan"], "instruction": words_only}}
         if kept in self._planner["plans"]:
             return
-        self._planner["plans"].append(kept)
+        self._add("plans", kept)
         if self._planner["instruction"] is None:
-            self._planner["instruction"] = entries.instruction_entry(plan.instruction, self._store)
-        self._files.write("plan.json", _text(json.dumps(redact_all(data), indent=1, ensure_ascii=False)))
+            self._growing.set(entries.instruction_entry(plan.instruction, self._store), "planner", "instruction")
+        self._files.write("plan.json", _text(json.dumps(data, indent=1, ensure_ascii=False)))
         self._draw_final(plan)
 
     def _draw_final(self, plan: Plan) -> None:
@@ -239,35 +263,23 @@ class Recorder:
             return
         view = observation.main
         regions = (*plan.keep_out, *(self._limits.keep_out if self._limits is not None else ()))
-        self._planner["outlines"] = outlines(dict.fromkeys(regions), self._limits, view.camera)
-        said = plan.instruction
-        drawing = partial(
-            overview,
-            view,
-            plan.grounded,
-            names=picture_names(said.text, said.slots),
-            arrows=action_arrows(plan.actions),
-            turns=action_turns(plan.actions, plan.grounded, view),
-            widths=swept_widths(plan.actions, self._limits.blade_m if self._limits else None, view.camera),
-            keep_out=plan.keep_out,
-            workspace=self._limits,
-        )
+        self._growing.set(outlines(dict.fromkeys(regions), self._limits, view.camera), "planner", "outlines")
         try:
-            rgb = for_record(DRAWING, drawing)
+            rgb = for_record(DRAWING, plan_picture, plan, view, self._limits)
         except BudgetReached as error:
             self._log("warning", f"the picture of the plan is missing: {error}")
             return
-        self._files.write("final.png", to_png(rgb))
+        self._files.write("final.png", fast_png(rgb))
 
     def _on_asking(self, event: Event) -> None:
-        self._planner.setdefault("asked", []).append({**event.content, "so_far": self._so_far()})
+        self._add("asked", {**event.content, "so_far": self._so_far()})
 
     def _on_clarified(self, event: Event) -> None:
         """What the user answered: a replay gives the same answers."""
-        self._planner.setdefault("clarified", []).append(to_jsonable(event.content))
+        self._add("clarified", to_jsonable(event.content))
 
     def _on_decision(self, event: Event) -> None:
-        self._planner["decisions"].append({**entries.plain(event.content), "so_far": self._so_far()})
+        self._add("decisions", {**entries.plain(event.content), "so_far": self._so_far()})
 
     def _so_far(self) -> dict[str, int]:
         """How much has happened: what a method is told is what happened since its last decision."""
@@ -275,74 +287,67 @@ class Recorder:
 
     def _on_gate(self, event: Event) -> None:
         report: GateReport = event.content
-        self._planner["gates"].append({"plan": self._plan_number, **entries.gate_entry(event.name, report)})
+        self._add("gates", {"plan": self._plan_number, **entries.gate_entry(event.name, report)})
         self._stamp("gates")
         checks = counted(len(report.checks), "check")
         self._log("gate", f"{event.name}: " + gate_words(report.admitted, checks, report.reasons))
 
     def _on_subgoal(self, event: Event) -> None:
-        entry = entries.subgoal_entry(event.content, self._store)
-        self._planner["subgoals"].append({"plan": self._plan_number, **entry})
+        self._add("subgoals", {"plan": self._plan_number, **entries.subgoal_entry(event.content, self._store)})
 
     def _on_execute(self, event: Event) -> None:
         planned, report = event.content
         number = len(self._planner["executions"]) + 1
-        self._planner["executions"].append(entries.execution_entry(number, planned, report))
+        self._add("executions", entries.execution_entry(number, planned, report))
         self._stamp("executions")
         self._log("execute", f"action {number} {report.action.kind}: " + report.words)
 
     def _on_verdicts(self, event: Event) -> None:
-        verdicts = to_jsonable(tuple(event.content))
+        verdicts = redact_all(to_jsonable(tuple(event.content)))
         if not self._planner["verdicts"] or self._planner["verdicts"][-1]["verdicts"] != verdicts:
             after = len(self._planner["subgoals"])
-            self._planner["verdicts"].append({"after_subgoals": after, "verdicts": verdicts})
+            self._add("verdicts", {"after_subgoals": after, "verdicts": verdicts})
 
     def _on_warning(self, event: Event) -> None:
         text = str(event.content)
-        self._planner["warnings"].append(text)
+        self._add("warnings", text)
         self._log("warning", text)
 
     def _on_detector(self, event: Event) -> None:
-        self._planner.setdefault("detections", []).append(detector_entry(event.content, self._store))
-        self._clock.setdefault("detections", []).append(round(event.content.seconds, 4))
+        self._add("detections", detector_entry(event.content, self._store))
+        self._growing.add(round(event.content.seconds, 4), "clock", "detections")
 
     def _on_crash(self, event: Event) -> None:
         """The user's own code raised: its traceback is kept, line by line in the log."""
         error: WonderfulTeamError = event.content
-        entry = {"error": event.name, "message": str(error), "trace": error.trace}
-        self._planner.setdefault("crashes", []).append(entry)
+        self._add("crashes", {"error": event.name, "message": str(error), "trace": error.trace})
         self._log("crash", str(error))
         for line in error.trace.splitlines():
             self._log("", line)
 
     def _on_done(self, event: Event) -> None:
-        self._record["state"] = "finished"
-        self._clock["ended"] = _now()
-        self._clock["seconds"] = round(self._elapsed_s(), 4)
+        self._growing.set("finished", "state")
+        self._growing.set(now(), "clock", "ended")
+        self._growing.set(round(self._elapsed_s(), 4), "clock", "seconds")
+        outcome: dict[str, Any]
         match event.content:
             case Plan() as plan:
                 self._on_plan(Event("plan", plan.id, plan))
                 # A plan that the gate refuses is refused, however well it was made.
                 made = {"outcome": plan.status, "stage": plan.stage, "reason": plan.message}
-                self._record["outcome"] = self._refusal() or made
+                outcome = self._refusal() or made
             case Trial() as trial:
-                self._record["outcome"] = {
-                    "outcome": trial.ending,
-                    "stage": trial.stage,
-                    "reason": trial.reason,
-                    "seed": trial.seed,
-                    "method": trial.method,
-                    "model": trial.model,
-                }
+                outcome = {"outcome": trial.ending, "stage": trial.stage, "reason": trial.reason}
+                outcome |= {"seed": trial.seed, "method": trial.method, "model": trial.model}
                 # The score comes after the trial and stays out of the planner's part.
                 usage = {role: entries.usage_entry(one) for role, one in trial.usage_by_role.items()}
-                self._clock["usage_by_role"] = usage
+                self._growing.set(usage, "clock", "usage_by_role")
             case WonderfulTeamError() as error:
-                self._record["outcome"] = {"outcome": event.name, "stage": error.stage, "reason": str(error)}
+                outcome = {"outcome": event.name, "stage": error.stage, "reason": str(error)}
             case _:
-                self._record["outcome"] = {"outcome": event.name, "stage": None, "reason": ""}
-        outcome = self._record["outcome"]
-        self._log("done", "  ".join(ending_words(outcome["outcome"], outcome["reason"])).strip())
+                outcome = {"outcome": event.name, "stage": None, "reason": ""}
+        self._growing.set(outcome, "outcome")
+        self._log("done", "  ".join(ending_words(str(outcome["outcome"]), str(outcome["reason"]))).strip())
 
     def _refusal(self) -> dict[str, Any] | None:
         """The outcome of a plan that the gate refused last; None when it admitted it or was not asked."""
@@ -358,29 +363,30 @@ class Recorder:
         return len(self._planner["plans"]) - 1 if self._planner["plans"] else None
 
     def _stamp(self, kind: str) -> None:
-        self._clock[kind].append(round(self._elapsed_s(), 4))
+        self._growing.add(round(self._elapsed_s(), 4), "clock", kind)
+
+    def _add(self, kind: str, entry: Any) -> None:
+        self._growing.add(entry, "planner", kind)
 
     # -- files -------------------------------------------------------------------------------------------------------
 
     def _elapsed_s(self) -> float:
         return time.monotonic() - self._zero
 
+    def _named(self, key: str, file: str) -> None:
+        self._growing.set(file, "files", key)
+
     def _log(self, name: str, text: str) -> None:
         line = redact(f"{self._elapsed_s():6.1f} s  {name:10s} {text}")
         self._files.append("log.txt", visible(spoken(line.replace("\n", " "), self._pictures)) + "\n")
 
-    def _write(self) -> None:
-        self._files.write(RECORD_NAME, self._whole())
-        self._last_write = self._elapsed_s()
-
     def _whole(self) -> bytes:
-        planner = {**self._planner, "requests": [self._requests[key] for key in sorted(self._requests)]}
-        record = {**self._record, "files": self._store.files, "planner": planner, "clock": self._clock}
-        if self._files.missing:
-            record["unwritten"] = list(self._files.missing)
-        # Indenting takes ten times as long: only the finished record is laid out for reading.
-        indent = None if record["state"] == "running" else 1
-        return _text(json.dumps(redact_all(record), indent=indent, ensure_ascii=False))
+        record = self._growing.laid_out()
+        # This is what the lines say.
+        missing = [name for name in self._files.missing if name != LINES_NAME]
+        if missing:
+            record["unwritten"] = missing
+        return _text(as_lines(record))
 
 
 def _text(text: str) -> bytes:
@@ -391,7 +397,3 @@ def _text(text: str) -> bytes:
 def gate_words(admitted: bool, checks: str, reasons: Sequence[str]) -> str:
     """One passage through the gate in a line."""
     return f"admitted ({checks})" if admitted else f"refused ({checks}): " + "; ".join(reasons)
-
-
-def _now() -> str:
-    return datetime.now(UTC).isoformat(timespec="seconds")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Callable
 from pathlib import Path
 
@@ -33,17 +34,26 @@ class RunFiles:
         """The files that are not on disk as they should be, relative to the folder."""
         return tuple(self._why)
 
-    def write(self, name: str, content: bytes) -> None:
-        """Write a file, now or at the end."""
+    def write(self, name: str, content: bytes) -> bool:
+        """Write a file, now or at the end; whether it is written."""
         self._waiting.pop(name, None)
-        if not self.attempt(name, lambda: write_private(self.folder / name, content)):
+        written = self.attempt(name, lambda: write_private(self.folder / name, content))
+        if not written:
             self._waiting[name] = content
+        return written
 
     def append(self, name: str, text: str) -> None:
         """Add to a file; once that failed, all that follows waits with it, in its order."""
         text = self._lines.pop(name, "") + text
         if not self.attempt(name, lambda: append_private(self.folder / name, text)):
             self._lines[name] = text
+
+    def remove(self, name: str) -> None:
+        """Want a file no longer: nothing of it waits or is missing. One that cannot be deleted stays."""
+        self._lines.pop(name, None)
+        self._why.pop(name, None)
+        with contextlib.suppress(OSError):
+            (self.folder / name).unlink(missing_ok=True)
 
     def attempt(self, name: str, write: Callable[[], object]) -> bool:
         """Whether something could be written; if not, the reason is kept."""

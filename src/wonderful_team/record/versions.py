@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import platform
 import subprocess
+from functools import cache
 from importlib import metadata
 from pathlib import Path
 
@@ -11,7 +12,15 @@ PACKAGES = ("wonderful-team", "numpy", "opencv-python-headless", "scikit-image",
 
 
 def versions() -> dict[str, str | None]:
-    """Versions of what took part, Python, the platform, and the commit when run from a git checkout."""
+    """Versions of what took part, Python, the platform, and the commit when run from a git checkout: as first looked up.
+
+    What is loaded stays loaded, whatever is installed or checked out meanwhile.
+    """
+    return dict(_found())
+
+
+@cache
+def _found() -> dict[str, str | None]:
     found: dict[str, str | None] = {}
     for name in PACKAGES:
         try:

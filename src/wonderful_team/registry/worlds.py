@@ -123,6 +123,9 @@ def make_world(
         else:
             _take_none(name, arguments)
             world = deadline.bounded(f"setting up world {name!r}", _named_world, name, seed, harder)
+            if instruction is None and not keep_out:
+                # Its instruction is not even looked at: that draws its pictures, and controls need none.
+                return world
     with code_of(f"instruction of world {name!r}", WorldUnavailableError):
         own = getattr(world, "instruction", None)
         whole = offers(world, World)

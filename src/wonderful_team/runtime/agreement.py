@@ -17,6 +17,9 @@ from wonderful_team.core.actions import (
     CloseStep,
     Gripper,
     OpenStep,
+    PickPlaceStep,
+    Place,
+    PushStep,
     Vocabulary,
     places_of,
     steps_for,
@@ -51,6 +54,28 @@ def size_checks(actions: Sequence[PlannedAction], plan: Plan | None) -> list[Gat
     problem = size_problem(actions=len(actions), **parts)
     limit = f"{MAX_SUBGOALS} subgoals, {MAX_TARGETS} targets, {MAX_ACTIONS} actions"
     return [GateCheck(None, "size of plan", False, problem, limit)] if problem else []
+
+
+def repeat_checks(actions: Sequence[PlannedAction]) -> list[GateCheck]:
+    """A refusal of every step that puts a thing where the plan has put it already: where it was picked up, nothing lies.
+
+    A plan that names several things alike reads so. A thing that was put elsewhere in between, is turned, or was pushed may
+    well go there again.
+    """
+    found, lies = [], dict[str, tuple[Place, int]]()
+    for index, planned in enumerate(actions):
+        match planned.step:
+            case PickPlaceStep(pick=name, place=place, rotate_deg=turn):
+                there, since = lies.get(name, (None, 0))
+                if there == place and turn == 0:
+                    value = f"{name} lies there since action {since + 1}"
+                    found.append(
+                        GateCheck(index, "picked again", False, value, "a thing that lies elsewhere, or is turned")
+                    )
+                lies[name] = (place, index)
+            case PushStep(start=start):
+                lies.pop(start.target, None)
+    return found
 
 
 def class_checks(actions: Sequence[PlannedAction]) -> list[GateCheck]:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -100,14 +101,19 @@ class Course:
         # What a robot holds from the start has a size that nobody has said.
         self._held = ("", Carried(None), np.zeros(0, dtype=np.int64)) if holding else None
         self._at: tuple[str, Array] | None = None
+        self._due: Callable[[], None] | None = None
 
     def next(self, planned: PlannedAction, tool_m: Array | None) -> Stage:
-        """The stage of the next action; the scene is afterwards as that action should leave it.
+        """The stage of the next action, after which the scene is as that action should leave it.
 
         Args:
             planned: The action.
             tool_m: Where the tool stands before it, shape (3,) [m]; None when unknown.
         """
+        # What the last action leaves is worked out when another one comes: after the last nobody asks.
+        due, self._due = self._due, None
+        if due is not None:
+            due()
         action, step = planned.action, planned.step
         motion = Stay() if action is None else action.motion(tool_m)
         if isinstance(motion, Carry):
@@ -131,7 +137,7 @@ class Course:
         back = isinstance(place, OriginOf) and place.target == name and way.yaw_rad == 0 and self._returns(name, way)
         put = self._put("" if place is None else place.target)
         stage = Stage(way, self._relief, own, carried, meant, level, stated, back, put)
-        self._move(name, own, base, way.start_m, way.end_m, way.yaw_rad)
+        self._due = partial(self._move, name, own, base, way.start_m, way.end_m, way.yaw_rad)
         self._lies_at[name] = place.target if isinstance(place, At) else ""
         return stage
 
@@ -171,7 +177,7 @@ class Course:
             along = (self._relief.xyz_m[own, :2] - way.start_m[:2]) @ (along_m / length)
             shift = np.append(along_m / length * max(0.0, length - float(along.min())), 0.0)
             at_m = np.append(way.start_m[:2], base)
-            self._move(name, own, base, at_m, at_m + shift, 0.0)
+            self._due = partial(self._move, name, own, base, at_m, at_m + shift, 0.0)
         return stage
 
     def _returns(self, name: str, way: Carry) -> bool:

@@ -156,7 +156,8 @@ class Execution:
     ) -> RolloutEnd | None:
         actions, plan = decision.actions, decision.plan
         expected_change: list[Box] = []
-        stages = stages_of(actions, plan, now.main, self._world.limits)
+        # What is expected before the first action was checked by the gate.
+        stages = stages_of(actions, plan, now.main, self._world.limits) if len(actions) > 1 else ()
         last = before = now
         reports: list[StepReport] = []
         for index, planned in enumerate(actions):

@@ -20,7 +20,7 @@ from wonderful_team.core.motions import Carry, Drive, Leave, Lost
 from wonderful_team.core.text import counted
 from wonderful_team.core.values import GateCheck, GateReport, KeepOut, Limits, Observation, Plan, PlannedAction
 from wonderful_team.images.keep_out import table_height_m
-from wonderful_team.runtime.agreement import agreement_checks, class_checks, form_checks, size_checks
+from wonderful_team.runtime.agreement import agreement_checks, class_checks, form_checks, repeat_checks, size_checks
 from wonderful_team.runtime.approval import Approval, Declined, approval_checks, approved_id
 from wonderful_team.runtime.course import Course, Stage
 from wonderful_team.runtime.keep_out_checks import keep_out_checks, keep_out_px_checks
@@ -80,6 +80,7 @@ def check_gate(
         if refusal:
             return GateReport(tuple(refusal))
     checks = _plan_checks(actions, plan, expected_plan_id)
+    checks += repeat_checks(actions) if plan is not None else []
     picture = (then or now).hash
     checks += approval_checks(approved_id(plan, actions), picture, page, approval, approval_required)
     regions = (*limits.keep_out, *(plan.keep_out if plan is not None else ()))

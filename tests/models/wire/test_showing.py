@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 from tests.models.wire.scenes import picture
 from wonderful_team.core.geometry import Box
 from wonderful_team.core.pictures import BoxMark, Candidates, LineMark, PathMark, PointMark
+from wonderful_team.images.png import fast_png
 from wonderful_team.models.conventions import CONVENTIONS
-from wonderful_team.models.wire.png import fast_png
 from wonderful_team.models.wire.showing import paste, scaled, show, show_encoded
 
 

@@ -21,7 +21,7 @@ from wonderful_team.core.values.plan import (
 )
 from wonderful_team.core.values.plan_size import MAX_ACTIONS, MAX_SUBGOALS, MAX_TARGETS, size_problem
 from wonderful_team.core.values.read import ReadPlan
-from wonderful_team.core.values.request import Answer, Note, Part, Request, Usage, Words
+from wonderful_team.core.values.request import Answer, Note, Part, Request, SentPicture, Usage, Words
 from wonderful_team.core.values.result import (
     GateCheck,
     GateReport,
@@ -63,6 +63,7 @@ __all__ = [
     "ReadPlan",
     "Request",
     "RobotState",
+    "SentPicture",
     "Slot",
     "SlotKind",
     "StepReport",

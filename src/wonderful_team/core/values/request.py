@@ -69,6 +69,22 @@ Part: TypeAlias = Words | Picture
 
 
 @dataclass(frozen=True, eq=False)
+class SentPicture:
+    """One picture as it went out: the bytes of its file, PNG or JPEG.
+
+    Attributes:
+        size_px: Its width and height, which may differ from those of the picture it shows.
+    """
+
+    file: bytes
+    size_px: tuple[int, int]
+
+    @property
+    def media_type(self) -> str:
+        return "image/jpeg" if self.file.startswith(b"\xff\xd8") else "image/png"
+
+
+@dataclass(frozen=True, eq=False)
 class Request:
     """One question on its way to a model.
 

@@ -5,6 +5,7 @@ Only `pydantic_ai.models.*.request` is used: no agent, no tools, no retries of i
 
 from __future__ import annotations
 
+import functools
 import importlib
 import importlib.metadata
 from collections.abc import Awaitable, Callable, Sequence
@@ -32,6 +33,7 @@ KEY_HEADERS = frozenset({"authorization", "x-api-key", "x-goog-api-key"})
 """Where vendors' clients put the key; which of these it is depends on their version."""
 
 
+@functools.cache
 def library_version() -> str:
     """Name and version of the client library, for records and cache keys.
 

@@ -171,6 +171,7 @@ class Provider:
             if tries:
                 ticket.another_try()
             tries += 1
+            ticket.sends(composed.sent)
             began = time.monotonic()
             outcome = await self._try(request, composed, limit, min(ends, own_ends) - began)
             if not isinstance(outcome, Fault):

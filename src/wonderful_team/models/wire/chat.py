@@ -8,8 +8,7 @@ from typing import Any
 
 from wonderful_team.core.values import Request, Words
 from wonderful_team.errors import ConfigError
-from wonderful_team.images.drawn import drawn
-from wonderful_team.models.wire.png import fast_png
+from wonderful_team.images.drawn import drawn_png
 
 PICTURES = ("data_url", "png")
 
@@ -23,7 +22,7 @@ def chat_messages(request: Request, pictures: str = "data_url") -> list[dict[str
         if isinstance(part, Words):
             content.append({"type": "text", "text": part.text})
             continue
-        png = fast_png(drawn(part))
+        png = drawn_png(part)
         if pictures == "png":
             content.append({"type": "image", "media_type": "image/png", "data": png})
         else:

@@ -13,11 +13,11 @@ from pydantic import BaseModel
 
 from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.pictures import Axes, Picture
-from wonderful_team.core.values import Request, Words
+from wonderful_team.core.values import Request, SentPicture, Words
 from wonderful_team.images.captions import axes_words, size_words
+from wonderful_team.images.png import fast_png
 from wonderful_team.models.conventions import PIXELS, Convention
 from wonderful_team.models.wire.form import Form, box_keys, point_keys
-from wonderful_team.models.wire.png import fast_png
 from wonderful_team.models.wire.reading import Reading, read_json, read_point_tags
 from wonderful_team.models.wire.showing import Shown, paste, show_encoded, ticks_of
 from wonderful_team.models.wire.weight import UNLIMITED, Weight, lightened, sent_bytes
@@ -37,6 +37,7 @@ class Composed:
         sizes_px: Width and height of every picture sent.
         picture_bytes: Of all pictures sent, in base64.
         notice: What was done to pictures that are too heavy, in words; "" for nothing.
+        sent: The files of the request's pictures, in order; the one sheet where all stand on it.
     """
 
     system: str
@@ -48,6 +49,7 @@ class Composed:
     _canvas: tuple[int, int]
     picture_bytes: int = 0
     notice: str = ""
+    sent: tuple[SentPicture, ...] = ()
 
     def read(self, text: str) -> Reading:
         """What a model said, as a value with our names and places in pixels of our picture.
@@ -132,7 +134,9 @@ def compose(
         pieces.append(f"Answer with one JSON object and nothing else. Its JSON schema:\n{form.text}")
     sizes = (canvas,) if pasted else tuple(held[picture].picture.size_px for picture in request.pictures)
     weight = sum(sent_bytes(piece) for piece in pieces if isinstance(piece, bytes))
-    return Composed(request.system, _joined(pieces), form, convention, sizes, where, canvas, weight, notice)
+    out = [one["sheet"]] if pasted else [files[picture] for picture in request.pictures]
+    sent = tuple(SentPicture(file, size) for file, size in zip(out, sizes, strict=False))
+    return Composed(request.system, _joined(pieces), form, convention, sizes, where, canvas, weight, notice, sent)
 
 
 def answer_picture(request: Request) -> Picture | None:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import threading
-from collections import OrderedDict
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -12,6 +10,7 @@ import numpy as np
 
 from wonderful_team.core.geometry import Box, Frame
 from wonderful_team.core.geometry.arrays import Array
+from wonderful_team.core.kept import Kept
 from wonderful_team.core.pictures import (
     Axes,
     BoxMark,
@@ -29,8 +28,9 @@ from wonderful_team.core.pictures import (
 )
 from wonderful_team.images import Ticks, draw
 from wonderful_team.images.canvas import Canvas
+from wonderful_team.images.drawn import drawn
+from wonderful_team.images.png import fast_png
 from wonderful_team.models.conventions import PIXELS, Convention, Size
-from wonderful_team.models.wire.png import fast_png
 
 _TICKS = {"pixels": Ticks.PIXELS, "thousandths": Ticks.THOUSANDTHS, "percent": Ticks.PERCENT, "unit": Ticks.UNIT}
 GAP_PX = 12
@@ -72,7 +72,9 @@ def show(picture: Picture, convention: Convention = PIXELS) -> Shown:
     """The picture in the size that the model looks at, its marks drawn with the model's ticks."""
     sent = scaled(picture, convention.seen_size(picture.size_px))
     scale = (sent.size_px[0] / picture.size_px[0], sent.size_px[1] / picture.size_px[1])
-    return Shown(sent, draw(sent, ticks_of(convention)), scale=scale)
+    # At its own size it may have been drawn before: the cache looks at it too.
+    rgb = drawn(sent, ticks_of(convention)) if sent is picture else draw(sent, ticks_of(convention))
+    return Shown(sent, rgb, scale=scale)
 
 
 def paste(pictures: Sequence[Picture], convention: Convention = PIXELS) -> tuple[Array, list[Shown]]:
@@ -111,27 +113,21 @@ def paste(pictures: Sequence[Picture], convention: Convention = PIXELS) -> tuple
     return canvas.rgb, shown
 
 
-_KEPT = 32
-_shown: OrderedDict[tuple[int, Convention], tuple[Picture, Shown, bytes]] = OrderedDict()
-_lock = threading.Lock()
+KEPT_BYTES = 48_000_000
+_shown: Kept[tuple[int, Convention], tuple[Picture, Shown, bytes]] = Kept(
+    KEPT_BYTES, lambda held: held[0].rgb.nbytes + held[1].rgb.nbytes + len(held[2])
+)
 
 
 def show_encoded(picture: Picture, convention: Convention = PIXELS) -> tuple[Shown, bytes]:
     """`show` and its PNG bytes; the last ones are kept, for samples and second tries that show the same again."""
+    # The entry holds the picture, so its id cannot have passed to another.
     key = (id(picture), convention)
-    with _lock:
-        held = _shown.get(key)
-        # The entry holds the picture, so its id cannot have passed to another.
-        if held is not None:
-            _shown.move_to_end(key)
-            return held[1], held[2]
-    shown = show(picture, convention)
-    png = fast_png(shown.rgb)
-    with _lock:
-        _shown[key] = (picture, shown, png)
-        while len(_shown) > _KEPT:
-            _shown.popitem(last=False)
-    return shown, png
+    held = _shown.get(key)
+    if held is None:
+        shown = show(picture, convention)
+        held = _shown.keep(key, (picture, shown, fast_png(shown.rgb)))
+    return held[1], held[2]
 
 
 def scaled(picture: Picture, size_px: Size) -> Picture:

@@ -10,10 +10,9 @@ from collections.abc import Hashable, Mapping
 from dataclasses import dataclass
 from typing import TypeVar
 
-import cv2
-
 from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.text import counted
+from wonderful_team.images import to_jpeg
 
 K = TypeVar("K", bound=Hashable)
 
@@ -71,7 +70,7 @@ def lightened(
         if limits.request is None or _total(light, times) <= limits.request:
             break
         for key, file in light.items():
-            light[key] = min(file, _jpeg(pixels[key], step), key=len)
+            light[key] = min(file, to_jpeg(pixels[key], step), key=len)
         quality = step
     changed = sum(light[key] is not files[key] for key in files)
     if not changed:
@@ -85,19 +84,10 @@ def lightened(
 def _within(file: bytes, rgb: Array, most: int) -> tuple[bytes, int]:
     """The picture at the best quality that is light enough, or at the lowest; and the quality."""
     for quality in QUALITIES:
-        made = _jpeg(rgb, quality)
+        made = to_jpeg(rgb, quality)
         if sent_bytes(made) <= most:
             return made, quality
     return min(file, made, key=len), QUALITIES[-1]
-
-
-def _jpeg(rgb: Array, quality: int) -> bytes:
-    options = [cv2.IMWRITE_JPEG_QUALITY, quality]
-    options += [cv2.IMWRITE_JPEG_SAMPLING_FACTOR, cv2.IMWRITE_JPEG_SAMPLING_FACTOR_444]
-    encoded, file = cv2.imencode(".jpg", cv2.cvtColor(rgb, cv2.COLOR_RGB2BGR), options)
-    if not encoded:
-        raise RuntimeError(f"OpenCV encoded no JPEG of {rgb.shape[1]} x {rgb.shape[0]} px")
-    return file.tobytes()
 
 
 def _total(files: Mapping[K, bytes], times: Mapping[K, int]) -> int:

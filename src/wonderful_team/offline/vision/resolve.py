@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
+from typing import Any
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
@@ -207,7 +209,36 @@ def _has_look(description: Description) -> bool:
     )
 
 
+_MOST_KEPT = 1024
+_kept: WeakKeyDictionary[Scene, dict[Any, tuple[Match, ...]]] = WeakKeyDictionary()
+"""What fits looks, by scene: plans, their checks and their words ask the same of the same things again and again."""
+
+
 def _fitting(scene: Scene, description: Description, examples: Mapping[str, Example]) -> list[Match]:
+    """The things whose looks fit, whatever they are related to."""
+    said = description
+    example = examples.get(said.like) if said.like is not None else None
+    key = (
+        said.noun,
+        said.name,
+        said.colours,
+        said.dark,
+        said.pattern,
+        said.shape,
+        said.material,
+        said.like,
+        said.like_only,
+    )
+    known = _kept.setdefault(scene, {})
+    found = known.get((key, example))
+    if found is None:
+        if len(known) >= _MOST_KEPT:
+            known.clear()
+        found = known[key, example] = tuple(_judged(scene, description, examples))
+    return list(found)
+
+
+def _judged(scene: Scene, description: Description, examples: Mapping[str, Example]) -> list[Match]:
     out = []
     for thing in scene.things:
         score, parts = suits(thing, description, examples, scene.view_scale)

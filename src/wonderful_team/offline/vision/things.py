@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import cv2
 import numpy as np
@@ -105,6 +106,10 @@ class Thing:
 
     def steady_point(self) -> Point:
         """A point well inside what shows of it: its centre when that lies on it, else the deepest one near the centre."""
+        return self._steady
+
+    @cached_property
+    def _steady(self) -> Point:
         deep = cv2.distanceTransform(np.pad(self.mask.astype(np.uint8), 1), cv2.DIST_L2, 3)[1:-1, 1:-1]
         rows, columns = np.mgrid[0 : deep.shape[0], 0 : deep.shape[1]]
         away = np.hypot(

@@ -123,6 +123,8 @@ def _set_options(spec: Any, size_px: tuple[int, int], look: Look) -> None:
     spec.option.integrator = mj.mjtIntegrator.mjINT_IMPLICITFAST
     spec.option.cone = mj.mjtCone.mjCONE_ELLIPTIC
     spec.option.impratio = 5.0
+    # What rests is left out of the computation until something touches it.
+    spec.option.enableflags |= int(mj.mjtEnableBit.mjENBL_SLEEP)
     spec.visual.global_.offwidth, spec.visual.global_.offheight = size_px
     spec.visual.quality.offsamples = 4
     spec.visual.quality.shadowsize = SHADOW_PX if look.light.shadows else 0

@@ -1,0 +1,211 @@
+"""The figures of speed and growth in one table, with the aim beside each: CPU time of our own work, whatever else the machine does.
+
+    python -m benchmarks.all --quick            # two minutes of CPU
+    python -m benchmarks.all --only record      # rows whose name holds a word
+    python -m benchmarks.all                    # more scenes and repetitions
+
+Every row runs in a process of its own (a fresh heap, nothing warm from the row before). A local server that answers is not
+counted. Compare two versions by running this in both, in turn: ratios hold on a loaded machine, single figures less so.
+"""
+
+from __future__ import annotations
+
+import argparse
+import asyncio
+import multiprocessing
+import os
+import statistics
+import tempfile
+import threading
+import time
+import warnings
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from tests.servers.server import WireServer
+
+
+@dataclass(frozen=True)
+class Row:
+    """One figure.
+
+    Attributes:
+        measure: From "quick" to the value in words.
+    """
+
+    name: str
+    aim: str
+    measure: Callable[[bool], str]
+
+
+def request_ms(size: tuple[int, int], quick: bool) -> str:
+    """Draw and encode, and the whole of a request, as means over three kinds of question."""
+    from benchmarks.request_cost import QUESTIONS, measure
+
+    costs = [asyncio.run(measure("openai-chat", one, size, 5 if quick else 15)) for one in QUESTIONS]
+    part = statistics.mean(cost.draw_ms + cost.encode_ms for cost in costs)
+    return f"{part:.1f} / {statistics.mean(cost.total_ms for cost in costs):.1f} ms"
+
+
+def plan_ms(method: str, quick: bool) -> str:
+    """CPU of whole plans for a photo over a server, record and page included, by request."""
+    import wonderful_team as wt
+    from benchmarks.request_cost import photo
+    from tests.planning.stub_model import stub_script
+    from tests.servers.brains import AgentSession, Tapped, typed_brain
+    from tests.servers.server import Rules, WireServer
+    from tests.servers.wiring import WIRES
+
+    script, session, wire = stub_script(), AgentSession(), WIRES["openai-chat"]
+    brain = typed_brain(session, lambda request: script[request.contract](request), wire.speech)
+    used, requests = 0.0, 0
+    with WireServer(brain, Rules(), remember=False) as server, tempfile.TemporaryDirectory() as out:
+        for turn in range(3 if quick else 8):
+            model = Tapped(wire.provider(server, deadline_s=60.0), session)
+            view = photo((640, 480), turn)
+            before = _own_cpu_s(server)
+            made = wt.Team(model=model, method=method, out=out, cache="off", allow_unpriced=True).plan(
+                view.rgb, "put the one into the other"
+            )
+            if turn:  # the first one loads and compiles
+                used += _own_cpu_s(server) - before
+                requests += made.usage.calls
+    return f"{1000 * used / requests:.0f} ms"
+
+
+def _own_cpu_s(server: WireServer) -> float:
+    """CPU time of this process without the threads of the server that answers [s]."""
+    serving = [one for one in threading.enumerate() if one is server._thread or one.name.startswith("asyncio_")]
+    return time.process_time() - sum(map(_thread_cpu_s, serving))
+
+
+def _thread_cpu_s(thread: threading.Thread) -> float:
+    assert thread.ident is not None
+    return time.clock_gettime(time.pthread_getcpuclockid(thread.ident))
+
+
+def trial_s(model: str, quick: bool) -> str:
+    """CPU of one scene of each task: set up, planned, run and scored, without a record."""
+    from benchmarks.perfect import VIMA_TASKS, Job, by_team
+
+    jobs = [
+        Job(f"tabletop/{task}", seed, "lean", "full", model, 0, None, "", "")
+        for task in VIMA_TASKS
+        for seed in range(300000, 300001 if quick else 300004)
+    ]
+    by_team(jobs[0])
+    before = time.process_time()
+    solved = sum(by_team(job)[0] for job in jobs)
+    return f"{(time.process_time() - before) / len(jobs):.2f} s ({solved}/{len(jobs)} solved)"
+
+
+def oracle_ms(quick: bool) -> str:
+    """CPU of an oracle's episode: set up, physics, scoring; nothing is drawn."""
+    from benchmarks.perfect import VIMA_TASKS, Job, by_oracle
+
+    jobs = [
+        Job(f"tabletop/{task}", seed, "lean", "full", "", 0, None, "", "")
+        for task in VIMA_TASKS
+        for seed in range(300000, 300002 if quick else 300010)
+    ]
+    by_oracle(jobs[0])
+    before = time.process_time()
+    solved = sum(by_oracle(job) for job in jobs)
+    return f"{1000 * (time.process_time() - before) / len(jobs):.0f} ms ({solved}/{len(jobs)} solved)"
+
+
+def blocks_s(count: int, quick: bool) -> str:
+    """CPU of a plan by `offline` for "every red block into the bowl"."""
+    import wonderful_team as wt
+
+    with tempfile.TemporaryDirectory() as out:
+        before = time.process_time()
+        made = wt.Team(model="offline", out=out).plan(blocks(count), "put every red block into the blue bowl")
+        seconds = time.process_time() - before
+    picked = {str(getattr(step.step, "pick", "")) for step in made.plan.actions}
+    return f"{seconds:.1f} s ({made.plan.status}, {len(picked)} picked)"
+
+
+def blocks(count: int) -> Any:
+    """A photo of so many red blocks and a blue bowl on a table, shape (960, 1280, 3), uint8."""
+    import cv2
+    import numpy as np
+
+    rng = np.random.default_rng(7)
+    rgb = np.full((960, 1280, 3), (214, 208, 196), np.uint8)
+    cv2.circle(rgb, (1080, 480), 130, (40, 80, 190), -1, cv2.LINE_AA)
+    cv2.circle(rgb, (1080, 480), 104, (30, 60, 150), -1, cv2.LINE_AA)
+    places = [(90 + 105 * column, 80 + 115 * row) for column in range(8) for row in range(8)]
+    for number in rng.permutation(len(places))[:count]:
+        x, y = places[int(number)]
+        box = cv2.boxPoints(((x, y), (46, 46), float(rng.uniform(0, 90))))
+        cv2.fillPoly(rgb, [np.round(box * 16).astype(np.int32)], (196, 44, 40), cv2.LINE_AA, 4)
+    return rgb
+
+
+def record_ms(quick: bool) -> str:
+    """What one more request costs the record, from the first hundred to the thousandth."""
+    from benchmarks.request_cost import PLAN, photo
+    from tests.models.providers.asking import TARGETS
+    from wonderful_team.agents import build_request
+    from wonderful_team.contracts import ReadScene
+    from wonderful_team.core.protocols import Event
+    from wonderful_team.core.values import Answer
+    from wonderful_team.images import whole
+    from wonderful_team.record.recorder import Recorder
+
+    picture, marks = whole(photo((640, 480), 0), "top view"), []
+    total = 300 if quick else 1000
+    with tempfile.TemporaryDirectory() as name, Recorder(Path(name) / "run") as recorder:
+        for number in range(total):
+            request = build_request(ReadScene(TARGETS, PLAN, picture), id=f"0/ground/{number:04d}", stage="ground")
+            before = time.process_time()
+            recorder.on_event(Event("request", request.id, request))
+            recorder.on_event(Event("answer", request.id, (request, Answer({"reasoning": "as it is"}))))
+            recorder.on_event(Event("stage", "look", "a line of the story"))
+            marks.append(time.process_time() - before)
+    first, last = (1000 * statistics.median(part) for part in (marks[20:60], marks[-40:]))
+    return f"{first:.2f} -> {last:.2f} ms at request {total}"
+
+
+ROWS = (
+    Row("request 640x480: draw + encode / in all", "5 / 12 ms", lambda quick: request_ms((640, 480), quick)),
+    Row("request 1920x1080: draw + encode / in all", "- / 25 ms", lambda quick: request_ms((1920, 1080), quick)),
+    Row("plan, CPU a request, record and page included, team", "35 ms", lambda quick: plan_ms("team", quick)),
+    Row(
+        "plan, CPU a request, record and page included, team:paper", "35 ms", lambda quick: plan_ms("team:paper", quick)
+    ),
+    Row("oracle episode, CPU", "50 ms", oracle_ms),
+    Row("simulated:perfect trial, CPU", "0.18 s", lambda quick: trial_s("simulated:perfect", quick)),
+    Row("offline, 20 red blocks into the bowl, CPU", "4 s", lambda quick: blocks_s(20, quick)),
+    Row("offline, 50 red blocks into the bowl, CPU", "12 s", lambda quick: blocks_s(50, quick)),
+    Row("one more request in a record", "constant", record_ms),
+)
+
+
+def _measured(number: int, quick: bool) -> str:
+    warnings.simplefilter("ignore")
+    return ROWS[number].measure(quick)
+
+
+def main() -> None:
+    """Measure and print."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--quick", action="store_true", help="fewer scenes and repetitions")
+    parser.add_argument("--only", default="", help="rows whose name holds this")
+    options = parser.parse_args()
+    chosen = [number for number, row in enumerate(ROWS) if options.only in row.name]
+    print(f"load {os.getloadavg()[0]:.1f} on {os.cpu_count()} cores; CPU time of our own work\n")
+    print(f"{'figure':<60}{'aim':>12}   now")
+    spawn = multiprocessing.get_context("spawn")
+    for number in chosen:
+        with spawn.Pool(1) as pool:
+            now = pool.apply(_measured, (number, options.quick))
+        print(f"{ROWS[number].name:<60}{ROWS[number].aim:>12}   {now}", flush=True)
+
+
+if __name__ == "__main__":
+    main()

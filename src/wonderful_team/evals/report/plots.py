@@ -19,6 +19,7 @@ from wonderful_team.evals.trials import Condition
 _MARKS = "osD^vP*X<>"
 MOST_PER_TASK = 5
 """Conditions side by side that a plot per task can still show."""
+LONGEST_TICK = 40
 LEAST_LABELLED = 3.0
 """Least share of a bar that has room for its number [%]."""
 _END_COLOURS = {
@@ -91,7 +92,7 @@ def task_plot(summary: Summary) -> str:
         style = {"fmt": "D", "mfc": "white", "alpha": 0.75} if published else {"fmt": "o"}
         label = f"paper ({one.method})" if published else short_names(one.label)
         axes.errorbar(shares, rows, xerr=errors, color=colour, capsize=2, ms=5, lw=1, label=label, **style)
-    axes.set_yticks(range(len(summary.tasks)), [task.removeprefix("tabletop/") for task in summary.tasks])
+    axes.set_yticks(range(len(summary.tasks)), [_tick(task) for task in summary.tasks])
     axes.set_ylim(len(summary.tasks) - 0.5, -0.5)
     axes.set_xlim(-3, 103)
     axes.set_xlabel("success [%], 95 % Wilson interval; no bar where the paper does not state n")
@@ -122,6 +123,12 @@ def ends_plot(conditions: Sequence[Condition], ends: Mapping[Condition, Counter[
     axes.set_xlabel("trials that ended so [%]; numbers are trials")
     axes.legend(fontsize=8, loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=6, frameon=False)
     return _svg(figure)
+
+
+def _tick(task: str) -> str:
+    """A task as a label of an axis: of a long one, such as a file's path, the end alone, so that room is left for figures."""
+    name = short_names(task.removeprefix("tabletop/"))
+    return name if len(name) <= LONGEST_TICK else f"...{name[3 - LONGEST_TICK :]}"
 
 
 def _task_rate(summary: Summary, one: Condition, task: str, published: bool) -> tuple[float, float, float] | None:

@@ -73,9 +73,12 @@ class Eyes:
             return self._spots_at(description)
         try:
             found = resolve(self.scene, description, self.examples)
-            if not found or description.superlative is not None:
-                by_shape = shape_alone(description, self.examples)
-                found = resolve(self.scene, by_shape, self.examples) if by_shape is not description else found
+            by_shape = shape_alone(description, self.examples)
+            if by_shape is not description:
+                # A grey picture shows a shape; where something of that shape is grey too, that is meant.
+                formed = resolve(self.scene, by_shape, self.examples)
+                both = [match for match in found if match.thing in [other.thing for other in formed]]
+                found = both if both and description.superlative is None else formed
             if not found and description.noun == "object" and description.shape is not None:
                 # "the blue square" may well be a flat one, such as a sheet of paper.
                 found = resolve(self.scene, replace(description, noun="thing"), self.examples)
@@ -300,9 +303,7 @@ def is_shown_alone(description: Description) -> bool:
 
 def seen_as(eyes: Eyes, thing: Thing) -> str:
     """Words such as "turquoise letter G" that lead to this thing alone wherever it lies, or "" where none do."""
-    letters = thing.look.letters
-    letter = thing.look.shape == "letter" and max(letters, key=lambda name: letters[name])
-    words = unique_words(eyes, thing, "letter", letter) if letter else unique_words(eyes, thing, "object")
+    words = unique_words(eyes, thing, "letter" if thing.look.letter else "object", thing.look.letter)
     return words.text if words.superlative is None and eyes.number(words) == thing.number else ""
 
 

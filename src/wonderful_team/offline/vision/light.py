@@ -100,7 +100,7 @@ def _relit(picture: Picture) -> Array | None:
     if bare.mean() < 0.1 or (table.spread >= NO_TABLE).any():
         return None
     colour = np.median(rgb[bare], axis=0)
-    if ((rgb > _BRIGHTER * colour).all(axis=-1) & valid).mean() > _LARGE:
+    if ((rgb.mean(axis=-1) > _BRIGHTER * colour.mean()) & valid).mean() > _LARGE:
         return None  # what was taken for the table is something darker round it
     gain = _gain(colour, np.percentile(rgb[valid], 99, axis=0))
     shadows = None if table.height_m is None else _find_shadows(rgb, _colour_of(table), table, valid)

@@ -27,6 +27,8 @@ _NEARLY_AS_ALIKE = 0.83
 
 NEAR_BEST = 0.75
 """Share of the best score from which things like an example are compared with each other or meant together."""
+_OTHER_FORM = 0.8
+"""What is left of the likeness to a form of one that has another name than the best one."""
 _TEXTURE = 0.25
 """How much the likeness of its texture to the best one's counts there (an exponent)."""
 
@@ -219,11 +221,16 @@ def _fitting(scene: Scene, description: Description, examples: Mapping[str, Exam
 
 
 def _like_the_best(matches: list[Match], *, textured: bool) -> list[Match]:
-    """Those nearly as like an example as the best one, and like that one in texture: within one picture this shows better."""
+    """Those nearly as like an example as the best one, and like that one: within one picture this shows better."""
     looks = [(match, match.thing.look) for match in matches if match.thing is not None]
     best, look = max(looks, key=lambda pair: pair[0].score)
-    likeness = [alike_pattern(look, own) ** _TEXTURE if textured else 1.0 for _, own in looks]
-    return [m for (m, _), same in zip(looks, likeness, strict=True) if m.score * same >= NEAR_BEST * best.score]
+
+    def same(own: Look) -> float:
+        if textured:
+            return alike_pattern(look, own) ** _TEXTURE
+        return 1.0 if (own.shape, own.letter) == (look.shape, look.letter) else _OTHER_FORM
+
+    return [match for match, own in looks if match.score * same(own) >= NEAR_BEST * best.score]
 
 
 def _point_on(scene: Scene, thing: Thing) -> Point:

@@ -127,7 +127,10 @@ def _with_height(lab: Array, table: Table, least: float) -> list[Segment]:
     papers: list[Array] = []
     wholes = [filled(thing) for thing in raised]
     for patch in _patches(table.stands_out & ~wide, least):
-        host = next((k for k, whole in enumerate(wholes) if (patch & whole).sum() > 0.8 * patch.sum()), None)
+        round_it = [k for k, whole in enumerate(wholes) if (patch & whole).sum() > 0.8 * patch.sum()]
+        # What shows through a ring that lies in a bowl is the bowl's.
+        floor = lab_histogram(lab[patch])
+        host = max(round_it, key=lambda k: float(floor @ lab_histogram(lab[raised[k]])), default=None)
         if host is not None and not (patch & raised[host]).sum() > 0.5 * patch.sum():
             # The floor inside walls belongs to the container.
             joined = cv2.morphologyEx((raised[host] | patch).astype(np.uint8), cv2.MORPH_CLOSE, kernel(7)) > 0

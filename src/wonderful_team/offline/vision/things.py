@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import cv2
 import numpy as np
@@ -12,7 +13,7 @@ from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.pictures import Picture, Point
 from wonderful_team.errors import WonderfulTeamError
 from wonderful_team.images.colours import ColourShare, colour_shares, darkness, membership_shares
-from wonderful_team.offline.vision.outlines import Outline, filled, study_outline
+from wonderful_team.offline.vision.outlines import Outline, deep_inside, filled, mean_width, study_outline
 from wonderful_team.offline.vision.patterns import Surface, pattern_scores, study_surface
 from wonderful_team.offline.vision.shapes import shape_scores
 
@@ -48,6 +49,11 @@ class Look:
     outline: Outline
     surface: Surface
     histogram: Array
+
+    @property
+    def letter(self) -> str:
+        """The letter that it is, or ""."""
+        return max(self.letters, key=self.letters.__getitem__) if self.shape == "letter" else ""
 
     @property
     def words(self) -> str:
@@ -103,9 +109,18 @@ class Thing:
         """Radius of a disc of its area [picture px]."""
         return float(np.sqrt(self.area_px / np.pi))
 
+    @cached_property
+    def _deep(self) -> Array:
+        return deep_inside(self.mask)
+
+    @property
+    def wide_px(self) -> float:
+        """How wide its material is on the whole [picture px]."""
+        return mean_width(self._deep) * self.zoom
+
     def steady_point(self) -> Point:
         """A point well inside what shows of it: its centre when that lies on it, else the deepest one near the centre."""
-        deep = cv2.distanceTransform(np.pad(self.mask.astype(np.uint8), 1), cv2.DIST_L2, 3)[1:-1, 1:-1]
+        deep = self._deep
         rows, columns = np.mgrid[0 : deep.shape[0], 0 : deep.shape[1]]
         away = np.hypot(
             columns + 0.5 + self.offset[0] - self.centre[0] / self.zoom,
@@ -177,6 +192,7 @@ class Example:
         look: Colours, pattern, shape.
         box: Tight round it [px of that picture].
         area_view_px: Its filled area [px squared of the view], for comparing sizes in like views.
+        wide_view_px: How wide its material is on the whole [px of the view].
         pale: White parts may have vanished into the white background.
         gapless: Its look if the gaps in it are white parts that have vanished; None where `look` says so already.
         open_outline: Its outline if the gaps that were taken for vanished texture are holes instead; None without any.
@@ -186,6 +202,7 @@ class Example:
     look: Look
     box: Box
     area_view_px: float
+    wide_view_px: float
     pale: bool = False
     open_outline: Outline | None = None
     gapless: Look | None = None

@@ -30,6 +30,11 @@ Superlative: TypeAlias = Literal[
     "darkest", "lightest",
 ]  # fmt: skip
 
+OPPOSITE: dict[str, Superlative] = {
+    "tallest": "shortest", "shortest": "tallest", "darkest": "lightest", "lightest": "darkest", "largest": "smallest",
+    "smallest": "largest",
+}  # fmt: skip
+
 
 @dataclass(frozen=True)
 class Related:
@@ -104,3 +109,7 @@ class Description:
     placed: Description | None = None
     since: str | None = None
     way: Way | None = None
+
+
+FREE = Description(noun="area", name="free", text="free area")
+"""Anywhere on free table."""

@@ -55,12 +55,11 @@ from wonderful_team.offline.answers.grounding import (
     answer_read_scene,
     answer_select_marks,
 )
-from wonderful_team.offline.answers.moves import answer_draft
+from wonderful_team.offline.answers.moves import answer_draft, answer_revise
 from wonderful_team.offline.answers.outcome import answer_outcome, answer_replan
 from wonderful_team.offline.answers.paths import answer_review_path
 from wonderful_team.offline.answers.remembering import answer_remember
 from wonderful_team.offline.answers.reviewing import answer_review
-from wonderful_team.offline.answers.revising import answer_revise
 from wonderful_team.offline.answers.step_review import answer_review_steps
 from wonderful_team.offline.answers.steps import answer_write_steps
 from wonderful_team.offline.answers.turns import answer_read_turn

@@ -4,7 +4,7 @@ from wonderful_team.offline.language.commands import Aspect, Command, Destinatio
 from wonderful_team.offline.language.reading import describe, try_describe, try_understand, understand
 from wonderful_team.offline.language.tokens import tokenise
 from wonderful_team.offline.language.vocabulary import known_words
-from wonderful_team.offline.language.wording import relation_words, render
+from wonderful_team.offline.language.wording import relation_words, render, worded
 
 __all__ = [
     "Aspect",
@@ -19,4 +19,5 @@ __all__ = [
     "try_describe",
     "try_understand",
     "understand",
+    "worded",
 ]

@@ -11,7 +11,7 @@ from wonderful_team.offline.language.changes import PRONOUN, thing_of
 from wonderful_team.offline.language.grammar import parse
 from wonderful_team.offline.language.meaning import Meaning
 from wonderful_team.offline.language.tokens import Token
-from wonderful_team.offline.language.wording import render
+from wonderful_team.offline.language.wording import worded
 
 _GOALS = frozenset(("place", "side", "between", "where", "there", "origin", "off", "from"))
 """Parts that say where to."""
@@ -125,7 +125,7 @@ def _leave_out(parts: Parts, found: Description) -> None:
         raise Unclear("it is not clear what the exception is from")
     del parts.items[-1]
     whole = replace(parts.items[at][1], excluded=(*parts.items[at][1].excluded, found))
-    parts.items[at] = ("np", replace(whole, text=render(whole)))
+    parts.items[at] = ("np", worded(whole))
 
 
 def _noun_phrase(clause: Sequence[Token], at: int, apart: frozenset[str]) -> tuple[int, Description | None]:

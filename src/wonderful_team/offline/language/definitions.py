@@ -8,12 +8,11 @@ from __future__ import annotations
 
 import re
 
+from wonderful_team.offline.description import OPPOSITE
 from wonderful_team.offline.language.phrases import PHRASES
 from wonderful_team.offline.language.shows import Shows
 from wonderful_team.offline.language.vocabulary import ARTICLES, FILLERS, WORDS
 
-OPPOSITE = {"tallest": "shortest", "shortest": "tallest", "darkest": "lightest", "lightest": "darkest", "largest": "smallest",
-            "smallest": "largest"}  # fmt: skip
 SLOT = re.compile(r"\{([^{}]+)\}")
 _DEFINING = frozenset(
     """this that these those here is are be a an the call calls called name names named known as means mean meaning meant show shows shown look

@@ -11,13 +11,12 @@ import re
 from wonderful_team.errors import NotUnderstoodError
 from wonderful_team.offline.language.commands import Command, Understood
 from wonderful_team.offline.language.definitions import define_words
-from wonderful_team.offline.language.ordering import in_order
 from wonderful_team.offline.language.pictured import read_pictured, unknown_in_pictured, without_mentions
 from wonderful_team.offline.language.reading import try_describe, understand, unframed
+from wonderful_team.offline.language.rewrites import in_order, written
 from wonderful_team.offline.language.shown_turns import define_turns
 from wonderful_team.offline.language.shows import Shows
 from wonderful_team.offline.language.tokens import refusal
-from wonderful_team.offline.language.turns_of_phrase import written
 
 
 def read_instruction(text: str, shows: Shows) -> Understood:

@@ -22,13 +22,11 @@ from wonderful_team.offline.language.conditions import open_conditions
 from wonderful_team.offline.language.framing import without_frames
 from wonderful_team.offline.language.grammar import parse
 from wonderful_team.offline.language.meaning import Meaning
-from wonderful_team.offline.language.ordering import in_order
 from wonderful_team.offline.language.references import with_noun, with_nouns
-from wonderful_team.offline.language.rewrites import put_plainly
+from wonderful_team.offline.language.rewrites import in_order, put_plainly, turned
 from wonderful_team.offline.language.slots import matching_template, read_clauses
 from wonderful_team.offline.language.templates import gathering_template
 from wonderful_team.offline.language.tokens import Token, refusal, tokenise
-from wonderful_team.offline.language.turns_of_phrase import turned
 from wonderful_team.offline.language.vocabulary import nearest_words
 
 

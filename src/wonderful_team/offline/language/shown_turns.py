@@ -15,7 +15,7 @@ _TELLING = frozenset(
     you get one same fixed specific certain some given particular angle amount way word term verb show shows shown example examples instance pair pairs picture
     pictures before after following follows three two several object objects thing things something watch look see learn now then please do does did done
     apply give make under need needs have has must should all every each between results result gives yields twice twist twisted twisting twists such so let
-    transforms transform rotations another exactly just likewise kindly there whose difference movement action motion happens first""".split()
+    transforms transform rotations another exactly just likewise kindly there whose difference movement action motion happens happened first""".split()
 ) - {"twice"}
 """Words of a sentence that shows or names the turn, and asks for nothing else."""
 _MANY = re.compile(

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import threading
-from collections import OrderedDict
 from typing import Literal
 
 import cv2
@@ -14,6 +12,7 @@ from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.pictures import Picture
 from wonderful_team.images.colours import to_lab
 from wonderful_team.offline.vision.outlines import Outline, deep_inside, filled, mean_width, same_outline, study_outline
+from wonderful_team.offline.vision.recent import recent
 from wonderful_team.offline.vision.scene import shrink, working_zoom
 from wonderful_team.offline.vision.segments import close_ring, fill_specks
 from wonderful_team.offline.vision.splitting import components, kernel
@@ -29,10 +28,8 @@ _STANDS_OUT_EXACT = 2.5
 _GAPS = 0.1
 """Share of a thing from which gaps in it may be white parts that melt into the background."""
 
-_cache: OrderedDict[tuple[str, str], Example] = OrderedDict()
-_lock = threading.Lock()
 
-
+@recent(64)
 def study_example(picture: Picture) -> Example:
     """Describe the one thing that a picture shows on an empty background.
 
@@ -41,19 +38,6 @@ def study_example(picture: Picture) -> Example:
     Raises:
         NotSeen: Nothing stands out from the background.
     """
-    key = (picture.hash, picture.name)
-    with _lock:
-        if key in _cache:
-            return _cache[key]
-    example = _study(picture)
-    with _lock:
-        _cache[key] = example
-        while len(_cache) > 64:
-            _cache.popitem(last=False)
-    return example
-
-
-def _study(picture: Picture) -> Example:
     zoom = working_zoom(picture)
     rgb, depth, valid = shrink(picture, zoom)
     lab = to_lab(rgb)
@@ -80,14 +64,12 @@ def _study(picture: Picture) -> Example:
     gaps = even and (mask & ~shows)[view].sum() > _GAPS * mask.sum()
     area = float(filled(mask[view]).sum()) * (zoom / picture.frame.scale) ** 2
     return Example(
-        name=picture.name,
         look=look,
         box=Box(x0 * zoom, y0 * zoom, x1 * zoom, y1 * zoom),
         area_view_px=area,
         wide_view_px=mean_width(deep_inside(mask[view])) * zoom / picture.frame.scale,
         open_outline=None if (gapped == mask).all() else study_outline(gapped[view]),
         gapless=study_look(rgb[view], lab[view], mask[view]) if gaps else None,
-        pale=bool(background[0] > 92 and not (raised is not None and shows is raised)),
     )
 
 

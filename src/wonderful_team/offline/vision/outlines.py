@@ -30,7 +30,6 @@ class Outline:
         fill: Filled area over that rectangle's area, 0 to 1.
         corners: Corners of the simplified outline.
         filled_area: Of the mask, in its own pixels.
-        angle_rad: Direction of the long axis in the picture, counter-clockwise seen, -pi/2 to pi/2.
     """
 
     polar: Array
@@ -43,7 +42,6 @@ class Outline:
     fill: float
     corners: int
     filled_area: float
-    angle_rad: float
 
 
 def largest_contour(mask: Array) -> Array:
@@ -91,7 +89,6 @@ def study_outline(mask: Array) -> Outline:
     simple = cv2.approxPolyDP(contour, 0.035 * cv2.arcLength(contour, True), True)
     moments = cv2.moments(whole.astype(np.uint8), True)
     centre = (moments["m10"] / moments["m00"], moments["m01"] / moments["m00"])
-    angle = 0.5 * np.arctan2(2 * moments["mu11"], moments["mu20"] - moments["mu02"])
     radius = np.sqrt(area / np.pi)
     polar = _polar(
         np.where(_opened(whole & ~solid, area), 0.0, np.where(whole, np.maximum(grown, 0.5), grown)), centre, radius
@@ -109,7 +106,6 @@ def study_outline(mask: Array) -> Outline:
         area / (long_side * short_side),
         len(simple),
         area / scale**2,
-        -float(angle),
     )
 
 
@@ -178,18 +174,21 @@ def overlaps(polar: Array, forms: Forms) -> tuple[Array, Array]:
 def same_outline(one: Outline, other: Outline) -> float:
     """How alike two outlines are at their best rotation, 0 to 1; 1 for the same shape."""
     iou = float(overlaps(one.polar, Forms.of(other.polar[None]))[0][0])
-    spectrum = np.conj(np.fft.rfft(other.profile)) * np.fft.rfft(one.profile)
-    shared = np.fft.irfft(spectrum, n=ANGLES).max()
-    gap = np.sqrt(max((one.profile**2).mean() + (other.profile**2).mean() - 2 * shared / ANGLES, 0.0))
     hole_gap = abs(one.hole_share - other.hole_share)
     solidity_gap = abs(one.solidity - other.solidity)
-    score = np.clip((iou - 0.55) / 0.4, 0, 1) * np.clip(1 - gap / 0.35, 0, 1)
+    score = np.clip((iou - 0.55) / 0.4, 0, 1) * np.clip(1 - _edge_gap(one, other) / 0.35, 0, 1)
     return float(score * np.clip(1 - 1.2 * hole_gap, 0, 1) * np.clip(1 - 1.2 * solidity_gap, 0, 1))
+
+
+def _edge_gap(one: Outline, other: Outline) -> float:
+    """How far two outer edges lie apart at their best rotation [radii]."""
+    spectrum = np.conj(np.fft.rfft(other.profile)) * np.fft.rfft(one.profile)
+    shared = np.fft.irfft(spectrum, n=ANGLES).max()
+    return float(np.sqrt(max((one.profile**2).mean() + (other.profile**2).mean() - 2 * shared / ANGLES, 0.0)))
 
 
 def same_form(one: Outline, other: Outline) -> float:
     """How alike two outer edges are, holes and sizes left out, 0 to 1: a ring and a disc are both round."""
-    spectrum = np.conj(np.fft.rfft(other.profile)) * np.fft.rfft(one.profile)
-    shared = np.fft.irfft(spectrum, n=ANGLES).max()
-    gap = np.sqrt(max((one.profile**2).mean() + (other.profile**2).mean() - 2 * shared / ANGLES, 0.0))
-    return float(np.clip(1 - gap / 0.12, 0, 1) * np.clip(1 - 1.5 * abs(one.solidity - other.solidity), 0, 1))
+    return float(
+        np.clip(1 - _edge_gap(one, other) / 0.12, 0, 1) * np.clip(1 - 1.5 * abs(one.solidity - other.solidity), 0, 1)
+    )

@@ -12,7 +12,7 @@ import numpy as np
 from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.offline.vision.examples import alike_colour, alike_pattern
 from wonderful_team.offline.vision.outlines import filled, largest_contour, same_form, study_outline
-from wonderful_team.offline.vision.things import Look, Match, Scene, Thing, covers
+from wonderful_team.offline.vision.things import Look, Match, Scene, Thing
 
 DIRECTIONS = {"left_of": (-1.0, 0.0), "right_of": (1.0, 0.0), "above": (0.0, -1.0), "below": (0.0, 1.0)}
 """Unit vectors in the picture: x right, y down."""
@@ -34,7 +34,7 @@ def relation_score(relation: str, thing: Thing, others: Sequence[Thing], scene: 
         case "far_from":
             return float(np.clip(2.5 * distance / diagonal - 0.2, 0.05, 1))
         case "on" | "inside":
-            if thing.on == other.number or (thing.area_px < other.area_px and covers(other, thing.centre)):
+            if thing.on == other.number or (thing.area_px < other.area_px and other.covers(thing.centre)):
                 return 1.0
             return 0.0
         case "between":
@@ -119,7 +119,7 @@ def _between(thing: Thing, one: Thing, other: Thing) -> float:
     return float(np.clip(min(along, 1 - along) / 0.15, 0, 1) * np.clip(1.2 - 2 * aside, 0, 1))
 
 
-def pick_superlative(scene: Scene, matches: list[Match], superlative: str, ordinal: int) -> list[Match]:
+def pick_superlative(matches: list[Match], superlative: str, ordinal: int) -> list[Match]:
     """The one (or those nearly equal) that a superlative picks among what fits; the others are dropped.
 
     An `ordinal` beyond what fits gives [].

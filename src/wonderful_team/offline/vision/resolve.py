@@ -14,7 +14,7 @@ from wonderful_team.offline.vision.kinds import formed, is_kind_here, kind_score
 from wonderful_team.offline.vision.materials import material_score
 from wonderful_team.offline.vision.relations import pick_in_corner, pick_superlative, relation_score
 from wonderful_team.offline.vision.spots import free_spots
-from wonderful_team.offline.vision.things import Example, Look, Match, NotSeen, Scene, Thing
+from wonderful_team.offline.vision.things import Example, Look, Match, NotSeen, Scene, Thing, with_margins
 
 FITS = 0.4
 """Score from which a thing is taken to fit a description."""
@@ -24,6 +24,9 @@ _SAME_SURFACE = 0.45
 
 _NEARLY_AS_ALIKE = 0.83
 """Share of the best likeness of shapes from which another thing has that shape too."""
+
+_NEARLY_AS_COLOURED = 0.8
+"""Of several that are told by a colour, those that fit at least this share as well as the best are meant."""
 
 NEAR_BEST = 0.75
 """Share of the best score from which things like an example are compared with each other or meant together."""
@@ -50,6 +53,9 @@ def resolve(scene: Scene, description: Description, examples: Mapping[str, Examp
     if description.noun == "area" and not _has_look(description):
         return _spots(scene, description, examples)
     matches = _fitting(scene, description, examples)
+    if description.colours and not (description.pattern or description.material):
+        # Beside a yellow block, one in yellow and blue is not meant.
+        matches = [m for m in matches if m.score >= _NEARLY_AS_COLOURED * max(other.score for other in matches)]
     for related in description.related:
         matches = _related(scene, matches, related.relation, related.to, examples)
     several = description.quantity != "one" and description.like_only is None
@@ -60,10 +66,10 @@ def resolve(scene: Scene, description: Description, examples: Mapping[str, Examp
         matches = (
             pick_in_corner(scene, matches, description.name)
             if corner
-            else pick_superlative(scene, matches, description.superlative, description.ordinal)
+            else pick_superlative(matches, description.superlative, description.ordinal)
         )
     matches.sort(key=lambda match: -match.score)
-    return _with_margins(matches)
+    return with_margins(matches)
 
 
 def suits(
@@ -90,7 +96,7 @@ def suits(
         parts["words: pattern"] = pattern_fit(thing.look, description.pattern)
         if not description.colours and description.pattern != "plain":
             # A pattern named without a colour is black and white where there is a choice.
-            parts["words: pattern"] *= 0.6 + 0.4 * _colourless(thing.look)
+            parts["words: pattern"] *= 0.6 + 0.4 * thing.look.colourless
         score *= parts["words: pattern"]
     if description.material is not None:
         parts["words: material"] = float(np.clip(material_score(thing.look, description.material) / 0.6, 0, 1))
@@ -157,11 +163,6 @@ def _rainbow(look: Look) -> float:
     """How far a surface runs smoothly through several hues, 0 to 1."""
     hues = sum(share > 0.08 for name, share in look.memberships.items() if name not in ("white", "grey", "black"))
     return float(np.clip(hues - 2, 0, 1) * np.clip((14 - look.surface.contrast) / 2, 0, 1))
-
-
-def _colourless(look: Look) -> float:
-    """Share of white, grey and black."""
-    return look.memberships["white"] + look.memberships["grey"] + look.memberships["black"]
 
 
 def _aliases(name: str, dark: bool | None) -> tuple[tuple[str, float], ...]:
@@ -281,12 +282,3 @@ def _spots(scene: Scene, description: Description, examples: Mapping[str, Exampl
             things.append(found[0])
         anchors.append((related.relation, things))
     return free_spots(scene, relations=anchors)
-
-
-def _with_margins(matches: list[Match]) -> list[Match]:
-    """Each match's lead over the best of the others (negative when behind)."""
-    out = []
-    for k, match in enumerate(matches):
-        rival = matches[1] if k == 0 and len(matches) > 1 else matches[0] if k else None
-        out.append(replace(match, margin=match.score - (rival.score if rival is not None else 0.0)))
-    return out

@@ -11,7 +11,7 @@ from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.offline.vision.occlusion import part_overlaid
 from wonderful_team.offline.vision.outlines import filled
 from wonderful_team.offline.vision.pieces import joined_pieces
-from wonderful_team.offline.vision.splitting import components, kernel, placed, split_by_colour, window
+from wonderful_team.offline.vision.splitting import components, kernel, nearest_in, placed, window
 from wonderful_team.offline.vision.table import Table
 from wonderful_team.offline.vision.things import lab_histogram
 
@@ -59,7 +59,7 @@ def find_segments(lab: Array, valid: Array, table: Table) -> list[Segment]:
     else:
         found = []
         for patch in _patches(table.stands_out, least):
-            found += [Segment(part, None) for part in split_by_colour(lab, patch, least)]
+            found += [Segment(part, None) for part in part_overlaid(lab, patch, least)]
     return [segment for segment in found if not _beyond_table(segment.mask, valid)]
 
 
@@ -138,7 +138,7 @@ def _with_height(lab: Array, table: Table, least: float) -> list[Segment]:
             continue
         grown = cv2.dilate(patch.astype(np.uint8), kernel(5)) > 0
         papers.append(patch | (grown & table.stands_out & ~table.raised))
-    papers = _join_papers(lab, [part for paper in papers for part in split_by_colour(lab, paper, least)], raised)
+    papers = _join_papers(lab, [part for paper in papers for part in part_overlaid(lab, paper, least)], raised)
     return [*(Segment(mask, False) for mask in raised), *(Segment(_under(paper, raised), True) for paper in papers)]
 
 
@@ -184,12 +184,7 @@ def _split_by_height(lab: Array, patch: Array, height_m: Array, least: float) ->
     markers = np.zeros(patch.shape, np.int32)
     for number, piece in enumerate(pieces, start=1):
         markers[piece] = number
-    _, labels = cv2.distanceTransformWithLabels(
-        (markers == 0).astype(np.uint8), cv2.DIST_L2, 5, labelType=cv2.DIST_LABEL_PIXEL
-    )
-    owner = np.zeros(int(labels.max()) + 1, np.int32)
-    owner[labels[markers > 0]] = markers[markers > 0]
-    nearest = owner[labels]
+    nearest = markers[nearest_in(markers > 0)]
     return [patch & (nearest == number) for number in range(1, len(pieces) + 1)]
 
 

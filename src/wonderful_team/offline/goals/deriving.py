@@ -225,7 +225,8 @@ def _one(
     if len(equal) > 1:
         equal = _as_answered(single, equal, eyes, result.said) or equal
     if strict and not result.question and len(equal) > 1:
-        _ask(single, equal, eyes, result)
+        result.question = f"Which one is meant by 'the {single.text}'? {len(equal)} things fit equally well."
+        result.choices = tuple(_choices(single, equal, eyes))
     best = equal[0] if equal else next(iter(matches), None)
     if best is None:
         result.misses(single, eyes)
@@ -304,12 +305,6 @@ def _choices(description: Description, equal: list[Match], eyes: Eyes) -> list[s
         for match in equal
         if match.thing is not None  # always: filtered by _equal
     ]
-
-
-def _ask(description: Description, equal: list[Match], eyes: Eyes, result: Aims) -> None:
-    """Several things that fit equally well are a question for the human."""
-    result.question = f"Which one is meant by 'the {description.text}'? {len(equal)} things fit equally well."
-    result.choices = tuple(_choices(description, equal, eyes))
 
 
 def _matching_aim(command: Command, goal: Destination, thing: Named, eyes: Eyes, result: Aims) -> list[Aim]:

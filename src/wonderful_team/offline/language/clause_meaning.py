@@ -10,7 +10,7 @@ from wonderful_team.offline.language.changes import PRONOUN
 from wonderful_team.offline.language.clause_parts import PLACES, Parts, Unclear
 from wonderful_team.offline.language.commands import Destination
 from wonderful_team.offline.language.meaning import Meaning, two_of
-from wonderful_team.offline.language.wording import split_colours, worded
+from wonderful_team.offline.language.wording import singles, split_colours, worded
 
 _GOES = frozenset(("INTO", "ONTO", "TO"))
 _RELATIONS = {"in": "inside", "on": "on", "left": "left_of", "right": "right_of", "above": "above", "below": "below",
@@ -34,9 +34,9 @@ def _things(parts: Parts) -> list[Description]:
 
 def read_swap(parts: Parts, meaning: Meaning) -> None:
     """Two things change places."""
-    things = [part for item in parts.of("np") if item.name != "table" for part in split_colours(item)]
-    if len(things) == _TWO:
-        things = [replace(item, quantity="one", number=1) for item in things]
+    things = [item for item in parts.of("np") if item.name != "table"]
+    if len(apart := [part for item in things for part in singles(item)]) == _TWO:
+        things = apart
     if len(things) == 1 and (things[0].quantity == "number" and things[0].number == _TWO):
         raise Unclear("name the two things to be swapped, each by its own words")
     if len(things) != _TWO:
@@ -237,18 +237,11 @@ def _pairwise(parts: Parts, meaning: Meaning, kind: str) -> None:
         raise Unclear("it is not said where to put them")
     things = [value for name, value in parts.items[:at] if name == "np"]
     goals = [value for name, value in parts.items[at:] if name == "np"]
-    goals = [part for goal in goals for part in _by_colour(goal, len(things))]
+    goals = [part for goal in goals for part in singles(goal)]
     if len(things) != len(goals) or len(things) < _TWO:
         raise Unclear(f"'respectively' pairs {len(things)} things with {len(goals)} places")
     for thing, goal in zip(things, goals, strict=True):
         meaning.put(thing, Destination(PLACES[parts.items[at][1]], goal), kind)  # type: ignore[arg-type]
-
-
-def _by_colour(goal: Description, count: int) -> list[Description]:
-    if len(goal.colours) != count or goal.pattern or goal.quantity == "one":
-        return [goal]
-    parts = [replace(goal, colours=(colour,), quantity="one", number=1) for colour in goal.colours]
-    return [worded(part) for part in parts]
 
 
 def _placed_pairs(parts: Parts) -> tuple[list[tuple[str, Description]], Description | None]:

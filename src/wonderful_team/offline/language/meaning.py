@@ -9,7 +9,7 @@ from wonderful_team.errors import NotUnderstoodError
 from wonderful_team.offline.description import FREE, Description
 from wonderful_team.offline.language.changes import PRONOUN, SAME
 from wonderful_team.offline.language.commands import Command, Destination
-from wonderful_team.offline.language.wording import split_colours, worded
+from wonderful_team.offline.language.wording import singles, worded
 
 _ASPECT = {relation: aspect for aspect, relation in SAME.items()}
 
@@ -155,8 +155,8 @@ def two_of(named: Sequence[Description]) -> tuple[Description, Description]:
     """Two references: as named, or the outer ones of "the two bowls"."""
     if len(named) == 2:  # noqa: PLR2004
         return named[0], named[1]
-    if len(named) == 1 and len(apart := split_colours(named[0])) == 2:  # noqa: PLR2004
-        return tuple(worded(replace(one, quantity="one", number=1)) for one in apart)  # type: ignore[return-value]
+    if len(named) == 1 and len(apart := singles(named[0])) == 2:  # noqa: PLR2004
+        return apart[0], apart[1]
     if len(named) == 1 and named[0].quantity != "one" and named[0].superlative is None:
         single = replace(named[0], quantity="one", number=1)
         single = replace(single, number=max(2, named[0].number))  # so many are spoken of

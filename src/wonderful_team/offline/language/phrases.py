@@ -21,7 +21,10 @@ def _origin_phrases() -> list[str]:
     for it in ("it", "they", "everything", "all"):
         for was in ("was", "were", "came from", "stood", "lay", "started", "had been", "used to be", "began", "has been",
                     "was before", "were before", "was at first", "was originally", "were originally", "belonged"):  # fmt: skip
-            phrases += [f"{to} {it} {was}" for to in ("where", "to where", "back to where", "back where", "to how", "back to how")]
+            phrases += [
+                f"{to} {it} {was}"
+                for to in ("where", "to where", "back to where", "back where", "to how", "back to how")
+            ]
     return phrases
 
 

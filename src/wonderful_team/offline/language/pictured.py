@@ -230,22 +230,7 @@ def _following(
     if others:
         what = describe(f"object shown in {{{others[0]}}}")
         return Command("follow", what, pictures=ordered) if what is not None and words <= _FOLLOWING else None
-    if words <= _FOLLOWING:
-        return Command("follow", EVERYTHING, pictures=ordered)
-    named = _thing_in(SLOT.sub(" ", unit.text), describe)
-    return Command("follow", named, pictures=ordered) if named is not None else None
-
-
-def _thing_in(rest: str, describe: Callable[[str], Description | None]) -> Description | None:
-    """A thing in words: "follow this motion with the red star"."""
-    found = re.search(
-        r"\b(?:for|with|of|to|by moving|moving|let|move)\s+(the [a-z -]+?)(?=\s*(?:[:.,;]|$|\bas\b|\balong\b|\bfollow))",
-        rest.lower(),
-    )
-    what = describe(found.group(1)) if found is not None else None
-    if what is None or found is None:
-        return None
-    return what if _words(rest.lower().replace(found.group(1), " ")) <= _FOLLOWING else None
+    return Command("follow", EVERYTHING, pictures=ordered) if words <= _FOLLOWING else None
 
 
 def _goes_back(unit: Unit) -> bool:

@@ -35,7 +35,7 @@ _OFF_PLACE = (
 _SPOKEN = (
     (r"\b(?P<what>(?:that|this|those|these) [^,.;!?]+?) (?:over )?(?:here|there)(?= and\b| goes?\b|\s*[,;:])", r"\g<what>"),
     (r"\b(?:i|we) (?:think|guess|reckon|suppose|believe|figure)\b(?: that\b)?", " "),
-    (r"\b(?:i|we) (?:would )?(?:like|want|love) to (?:have|see)\b|\bwhat (?:i|we|you) (?:want|need|would like) is\b", "i want"),
+    (r"\b(?:i|we) (?:would )?(?:like|want|love) to (?:have|see)\b|\b(?:(?:the|your) )?(?:task|job|goal|aim|idea) is to (?:have|see)\b|\bwhat (?:i|we|you) (?:want|need|would like) is\b", "i want"),
     (r"\b(?:(?:i|we|it) )?(?:do(?:es)? not (?:care|mind|matter)|no matter) which(?: (?:ones?|two|three|four))?\b|,?\s*\b(?:any|either)(?: (?:one|two|three|four))? (?:will|would) do\b|,\s*(?:any|either) (?:one|two|three|four|five)\b(?=\s*[,.;!]|\s*$)", " "),
     (r"\b(?:(?:i|we) )?would not mind (?:having|seeing|getting)\b", "i want"),
     (r"\bwhy (?:is|are) not (?P<what>[^?.;{}]+)\?", r"\g<what>."),
@@ -58,7 +58,7 @@ _TURNS = (
     (r"\b(?:slide|scoot) (?P<what>[^.,;]+?) over\b", r"move \g<what>"),
     (r"\bover\b(?=\s*(?:[,.;!?]|$|(?:to|on|onto|and|so|by|near|next|beside|towards) ))", ""),
     (r"(?:\b(?:on|at|to|towards|in) )(?P<what>(?:the |\{)[^,.;:'\u2019]+?)['\u2019]s (?P<side>left|right)(?: (?:hand )?side)?\b", r"to the \g<side> of \g<what>"),
-    (rf"^\s*(?:out of|from|of|among|amongst) (?:all )?(?:of )?(?P<what>(?:the |these |those )?[a-z ]+?)\s*,\s*(?P<rest>.*?)\bthe (?:one (?:that is )?)?{_WHICH}(?: ones?)?\b", r"\g<rest>the \g<which> of the \g<what>"),
+    (rf"(?:^|(?<=[.!?]))\s*(?:out of|from|of|among|amongst|there (?:are|is)) (?:all )?(?:of )?(?:the )?(?:(?:two|both|several)\b )?(?:of )?(?P<what>(?:the |these |those )?(?:[a-z ]+?|\{{[^{{}}]+\}}))\s*[,.;:]\s*(?P<rest>.*?)\bthe\s+(?:one that is\s+|one\s+)?(?:the\s+)?{_WHICH}(?:\s+ones?)?\b", r"\g<rest>the \g<which> of the \g<what>"),
     (rf"^\s*(?:counting|counted|starting) from the (?P<side>left|right|top|bottom)\s*,\s*(?P<rest>.*?\bthe) {_WHICH} (?P<what>[a-z]+)", r"\g<rest> \g<which> \g<what> from the \g<side>"),
     (r"^\s*(?:with the exception of|except for|apart from|aside from|other than|excluding|except) (?P<spared>[^,]+),\s*(?P<rest>[^.!?;]+)", r"\g<rest> except \g<spared>"),
     (r"\bput (?P<a>[^,.;]+?) where (?P<b>[^,.;]+?) (?:is|stands|lies|was)(?: now| right now| currently)?\s*,? and vice[ -]versa\b", r"swap \g<a> and \g<b>"),

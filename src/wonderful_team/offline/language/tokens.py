@@ -147,16 +147,16 @@ def _is_open(pieces: list[str]) -> bool:
     return False
 
 
+OTHERS_MAY = "For photos like this name a vision-language model: --model anthropic:..., or probe your own server."
+
+
 def refusal(tokens: list[Token], unknown: list[str]) -> str:
     """Which words were used, which are not known, and what to do."""
     used = (
         ", ".join(dict.fromkeys(token.text for token in tokens if token.kind not in ("SEP", "THEN", "AND")))
         or "nothing"
     )
-    return (
-        f"I used: {used}. I do not know: {', '.join(dict.fromkeys(unknown))}. {nearest_words(unknown)} "
-        "For photos like this name a vision-language model: --model anthropic:..., or probe your own server."
-    )
+    return f"I used: {used}. I do not know: {', '.join(dict.fromkeys(unknown))}. {nearest_words(unknown)} {OTHERS_MAY}"
 
 
 def _plain(text: str) -> str:

@@ -117,3 +117,8 @@ def split_colours(thing: Description) -> list[Description]:
     quantity = "one" if counted else thing.quantity
     parts = [replace(thing, colours=(colour,), quantity=quantity, number=1) for colour in thing.colours]
     return [worded(part) for part in parts]
+
+
+def singles(thing: Description) -> list[Description]:
+    """The words "the red and blue bowls" as one bowl of each colour."""
+    return [worded(replace(part, quantity="one", number=1)) for part in split_colours(thing)]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Literal, TypeAlias
@@ -89,7 +90,9 @@ def fit_box(
         return BoxFit("absent", f"nothing in the crop fits; {seen}", under=under)
     top = max(score for score, _ in fitting)
     near = [(score, thing) for score, thing in fitting if score >= 0.8 * top]
-    score, target = max(near, key=lambda pair: (round(pair[1].box.iou(box), 2), -_away(pair[1], box), pair[0]))
+    score, target = max(
+        near, key=lambda pair: (round(pair[1].box.iou(box), 2), -math.dist(pair[1].box.centre, box.centre), pair[0])
+    )
     iou = target.box.iou(box)
     cut, loose = _edges(target.box, box)
     verdict: Literal["tight", "loose", "other", "empty"] = "empty"
@@ -106,21 +109,13 @@ def fit_box(
 
 def _under(things: tuple[Thing, ...], box: Box) -> Thing | None:
     """The thing that a box mostly covers."""
-    best, most = None, 0.12
-    for thing in things:
-        iou = thing.box.iou(box)
-        if iou > most:
-            best, most = thing, iou
-    return best
+    best = max(things, key=lambda thing: thing.box.iou(box), default=None)
+    return best if best is not None and best.box.iou(box) > 0.12 else None
 
 
 def _whole_enough(thing: Thing, box: Box) -> bool:
     """A neighbour cut off by the crop's edge cannot be measured, unless the box itself lies there."""
     return not thing.cut or thing.box.iou(box) > 0.2
-
-
-def _away(thing: Thing, box: Box) -> float:
-    return float(np.hypot(thing.box.centre[0] - box.centre[0], thing.box.centre[1] - box.centre[1]))
 
 
 def _edges(target: Box, box: Box) -> tuple[tuple[Side, ...], tuple[Side, ...]]:

@@ -124,7 +124,7 @@ def colour_fit(look: Look, description: Description) -> float:
     for name in description.colours:
         own, *others = (look.memberships[alias] * weight for alias, weight in _aliases(name, description.dark))
         # Near colours add to what shows of a colour itself and do not stand in for it: an olive ring is not green.
-        share = own + (sum(others) if description.dark else min(sum(others), own))
+        share = own + (min(sum(others), own) if description.dark is None else sum(others))
         score = float(np.clip(share / needed, 0, 1))
         shown += share
         if len(description.colours) == 1:
@@ -173,7 +173,7 @@ def _aliases(name: str, dark: bool | None) -> tuple[tuple[str, float], ...]:
         "pink": (("purple", 0.7 if dark else 0.15), ("red", 0.4 if dark else 0.1)),
         "purple": (("pink", 0.15), ("blue", 0.12)),
         "red": (("brown", 0.5 if dark else 0.15), ("pink", 0.15)),
-        "blue": (("cyan", 0.2), ("purple", 0.1)),
+        "blue": (("cyan", 0.9 if dark is False else 0.2), ("purple", 0.1)),
     }
     even = {"cyan": "blue green", "green": "olive cyan", "olive": "green yellow brown", "brown": "orange red olive",
             "grey": "white black", "white": "grey", "black": "grey"}  # fmt: skip

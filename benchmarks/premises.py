@@ -40,7 +40,9 @@ def tried(task: str, seed: int, lines: list[str], out: Path) -> Iterator[tuple[s
         picture = np.array(seen.main.rgb)
         for line in lines:
             team = wt.Team(model="offline", max_calls=100, out=out)
-            of_world = team.plan(seen, line.lstrip("+ "), vocabulary=world.vocabulary, limits=world.limits, facts=world.facts)
+            of_world = team.plan(
+                seen, line.lstrip("+ "), vocabulary=world.vocabulary, limits=world.limits, facts=world.facts
+            )
             ends = [team.plan(picture, line.lstrip("+ ")), of_world]
             yield line, [(end.status, end.message.replace("\n", " ")) for end in ends]
     finally:
@@ -67,7 +69,9 @@ def main() -> None:
                     print(f"  {'PLANNED' if every else 'planned once' if some else 'refused'}  {line}")
                     for status, said in ends:
                         print(f"      {status}: {said[:200]}", flush=True)
-    print(f"planned: {Rate(planned, count)}; of the true ones not planned: {Rate(missed, true) if true else 'none there'}")
+    print(
+        f"planned: {Rate(planned, count)}; of the true ones not planned: {Rate(missed, true) if true else 'none there'}"
+    )
 
 
 if __name__ == "__main__":

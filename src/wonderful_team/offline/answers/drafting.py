@@ -112,10 +112,8 @@ def aim_targets(aim: Aim, writer: _Writer) -> list[str]:
     """Ids of the targets that an aim needs: the thing, then its destination, place after place on its way."""
     if aim.legs:
         # The tool's start is computed behind the thing for each push, so a point on the thing is enough.
-        return [
-            writer.target(aim.thing.description, "pick"),
-            *(writer.target(spot, "place") for spot in way_places(aim)),
-        ]
+        ids = [writer.target(aim.thing.description, "pick")]
+        return ids + [writer.target(spot, "place") for spot in way_places(aim)]
     start: PointRole = "push_start" if aim.kind == "push" else "pick"
     end: PointRole = "push_end" if aim.kind == "push" else "place"
     ids = [writer.target(aim.thing.description, start)]

@@ -23,16 +23,7 @@ from wonderful_team.contracts import (
     SelectMarks,
 )
 from wonderful_team.core.values import PointRole, Target
-from wonderful_team.offline.answers.finding import (
-    Found,
-    act_at,
-    candidates,
-    push_goal,
-    told,
-    tried,
-    untried,
-    varied,
-)
+from wonderful_team.offline.answers.finding import Found, act_at, candidates, push_goal, told, tried, untried, varied
 from wonderful_team.offline.eyes import Eyes, eyes_of, is_free_area
 
 YIELDS = 0.75

@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 
 from wonderful_team.offline.language.clause_parts import VERBS
-from wonderful_team.offline.language.vocabulary import WORDS
+from wonderful_team.offline.language.vocabulary import kind_of
 
 _TALK = frozenset(
     """i you we me us my your it that this there here would could can will may might shall should must do does doing did be is are was were am been
@@ -79,7 +79,7 @@ def _from_its_verb(piece: str) -> str:
     before = ""
     for found in _WORD.finditer(piece.lower(), start):
         word, after = found.group(), _WORD.search(piece.lower(), found.end())
-        if WORDS.get(word, ("",))[0] in VERBS and not (after is not None and after.group() in ("you", "if", "to")):
+        if kind_of(word) in VERBS and not (after is not None and after.group() in ("you", "if", "to")):
             named = before.split()[-1:] in (["a"], ["an"], ["the"]) or word in ("see", "look", "find")
             plain = _is_talk(before) and not named and before.split()[0] not in _LINKS
             return piece[:start] + piece[found.start() :] if plain else piece

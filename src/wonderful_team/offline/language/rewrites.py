@@ -196,11 +196,8 @@ def put_plainly(text: str) -> str:
     """The same instruction in plainer words."""
     text = _opened(text, (*_ASIDES, *_NEIGHBOUR, *_HOME))
     text = _WHAT_IS.sub(lambda found: f"the {found.group('look')} object", text)
-    return _MENTION.sub(lambda found: f" {found.group('rest')} {_definite(found.group('what'))}", text)
-
-
-def _definite(words: str) -> str:
-    return re.sub(r"^(?:a|an|one)\s+", "the ", words.strip(), flags=re.IGNORECASE)
+    article = re.compile(r"^\s*(?:a|an|one)\s+", re.IGNORECASE)
+    return _MENTION.sub(lambda found: f" {found.group('rest')} {article.sub('the ', found.group('what'))}", text)
 
 
 def _opened(text: str, table: tuple[tuple[str, str], ...]) -> str:

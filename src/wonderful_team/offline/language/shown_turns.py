@@ -60,7 +60,9 @@ def define_turns(text: str, shows: Shows, describe: Callable[[str], Description 
         elif told and "{" not in rest and not what:
             continue
         elif mentions:
-            raise NotUnderstoodError(_unclear(_words(rest) - _TELLING - {verb}))
+            unknown = ", ".join(sorted(_words(rest) - _TELLING - {verb})) or "what is to be turned"
+            why = "the pictures show a turn, but not everything beside them is understood"
+            raise NotUnderstoodError(f"{why}. I do not know: {unknown}.")
         else:
             asked_again = _by_its_new_name(sentence, verb)
             found |= asked_again != sentence
@@ -119,8 +121,3 @@ def _asks(sentence: str, verb: str) -> bool:
 
 def _words(text: str) -> set[str]:
     return set(re.findall(r"[a-z]+", text.lower()))
-
-
-def _unclear(unknown: set[str]) -> str:
-    told = ", ".join(sorted(unknown)) or "what is to be turned"
-    return f"the pictures show a turn, but not everything beside them is understood. I do not know: {told}."

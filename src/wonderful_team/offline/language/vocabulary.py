@@ -223,6 +223,11 @@ WORDS: dict[str, Entry] = _words()
 """Single words."""
 
 
+def kind_of(word: str) -> str:
+    """The kind of token that a word is; "" for one that is not known or is looked up in phrases only."""
+    return WORDS.get(word, ("",))[0]
+
+
 _LISTED = {"COLOUR": "colours", "PATTERN": "patterns", "MATERIAL": "materials", "SHAPE": "shapes", "NOUN": "nouns",
            "SUPER": "which of several", "ORDINAL": "which of several", "PUT": "put", "TAKE": "take", "ROTATE": "rotate", "STACK": "stack",
            "SWAP": "swap", "RETURN": "put back", "REMOVE": "remove", "PUSH": "push", "SORT": "sort"}  # fmt: skip

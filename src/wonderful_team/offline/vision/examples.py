@@ -11,11 +11,19 @@ from wonderful_team.core.geometry import Box
 from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.pictures import Picture
 from wonderful_team.images.colours import to_lab
-from wonderful_team.offline.vision.outlines import Outline, deep_inside, filled, mean_width, same_outline, study_outline
+from wonderful_team.offline.vision.outlines import (
+    Outline,
+    components,
+    deep_inside,
+    filled,
+    kernel,
+    mean_width,
+    same_outline,
+    study_outline,
+)
 from wonderful_team.offline.vision.recent import recent
 from wonderful_team.offline.vision.scene import shrink, working_zoom
 from wonderful_team.offline.vision.segments import close_ring, fill_specks
-from wonderful_team.offline.vision.splitting import components, kernel
 from wonderful_team.offline.vision.table import RAISED_M, height_above_table
 from wonderful_team.offline.vision.things import Example, Look, NotSeen, Thing, inner_part, study_look
 

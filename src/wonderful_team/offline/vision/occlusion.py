@@ -11,8 +11,15 @@ import cv2
 import numpy as np
 
 from wonderful_team.core.geometry.arrays import Array
-from wonderful_team.offline.vision.outlines import filled, largest_contour
-from wonderful_team.offline.vision.splitting import components, kernel, nearest_in, placed, window
+from wonderful_team.offline.vision.outlines import (
+    components,
+    filled,
+    kernel,
+    largest_contour,
+    nearest_in,
+    placed,
+    window,
+)
 
 _COLOURS = 6
 """Main colours that a patch is parted into at most."""

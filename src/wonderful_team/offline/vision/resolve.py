@@ -228,7 +228,7 @@ def _like_the_best(matches: list[Match], *, textured: bool) -> list[Match]:
 
     def same(own: Look) -> float:
         if textured:
-            return alike_pattern(look, own) ** _TEXTURE
+            return float(alike_pattern(look, own) ** _TEXTURE)
         return 1.0 if (own.shape, own.letter) == (look.shape, look.letter) else _OTHER_FORM
 
     return [match for match, own in looks if match.score * same(own) >= NEAR_BEST * best.score]

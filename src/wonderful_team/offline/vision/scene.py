@@ -11,10 +11,9 @@ from wonderful_team.core.geometry import Box
 from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.pictures import Picture
 from wonderful_team.images.colours import to_lab
-from wonderful_team.offline.vision.outlines import filled
+from wonderful_team.offline.vision.outlines import filled, kernel, window
 from wonderful_team.offline.vision.recent import recent
 from wonderful_team.offline.vision.segments import Segment, find_segments
-from wonderful_team.offline.vision.splitting import kernel, window
 from wonderful_team.offline.vision.table import Table, find_table
 from wonderful_team.offline.vision.things import Scene, Thing, study_look
 

@@ -9,9 +9,8 @@ import numpy as np
 
 from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.offline.vision.occlusion import part_overlaid
-from wonderful_team.offline.vision.outlines import filled
+from wonderful_team.offline.vision.outlines import components, filled, kernel, nearest_in, placed, window
 from wonderful_team.offline.vision.pieces import joined_pieces
-from wonderful_team.offline.vision.splitting import components, kernel, nearest_in, placed, window
 from wonderful_team.offline.vision.table import Table
 from wonderful_team.offline.vision.things import lab_histogram
 

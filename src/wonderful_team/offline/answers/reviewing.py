@@ -228,9 +228,9 @@ def _order(wanted: Sequence[Aim], read: Sequence[ReadSubgoal]) -> list[Finding]:
     for index, aim in enumerate(wanted):
         for first in aim.after:
             if index in place and first in place and place[index] < place[first]:
-                item, before = read[place[index]].subgoal, read[place[first]].subgoal
-                text = f"Must '{before.text}' not come before '{item.text}'?"
-                return [Finding(item.id, "missing_prerequisite", text)]
+                late, early = read[place[index]].subgoal, read[place[first]].subgoal
+                text = f"Must '{early.text}' not come before '{late.text}'?"
+                return [Finding(late.id, "missing_prerequisite", text)]
     return []
 
 

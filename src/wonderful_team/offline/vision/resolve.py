@@ -187,9 +187,8 @@ def _shade_fit(look: Look, name: str, dark: bool | None) -> float:
     renamed = colour.name != name
     if dark is None:
         return 1.0 - 0.15 * colour.dark - 0.05 * colour.light
-    if dark:
-        return 0.3 + 0.7 * max(colour.dark, 0.8 if renamed and colour.name in ("brown", "olive") else 0.0)
-    return 0.3 + 0.7 * colour.light
+    stands_for_it = renamed and colour.name in (("brown", "olive") if dark else ("cyan",))
+    return 0.3 + 0.7 * max(colour.dark if dark else colour.light, 0.8 * stands_for_it)
 
 
 _ON_A_CORNER = 0.56

@@ -51,8 +51,7 @@ class Meaning:
         return amount
 
     def swap(self, one: Description, other: Description) -> None:
-        """Two things change places: the first in the order of their words waits on free table meanwhile."""
-        one, other = sorted((one, other), key=lambda item: item.text)
+        """Two things change places: the first waits on free table meanwhile."""
         self.put(one, Destination("in", FREE))
         self.put(other, Destination("origin", one))
         self.done[-1] = replace(self.done[-1], after_last=True)

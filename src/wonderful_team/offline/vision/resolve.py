@@ -188,7 +188,9 @@ def _shade_fit(look: Look, name: str, dark: bool | None) -> float:
     if dark is None:
         return 1.0 - 0.15 * colour.dark - 0.05 * colour.light
     stands_for_it = renamed and colour.name in (("brown", "olive") if dark else ("cyan",))
-    return 0.3 + 0.7 * max(colour.dark if dark else colour.light, 0.8 * stands_for_it)
+    return 0.3 + 0.7 * max(
+        colour.dark if dark else colour.light, 0.8 * stands_for_it * (1.0 if dark else 1 - colour.dark)
+    )
 
 
 _ON_A_CORNER = 0.56

@@ -4,7 +4,7 @@
 
 A file has a heading "## tabletop TASK SEED: what the picture shows" before the instructions for a scene, one a line. Each is
 tried twice, nothing moves: on the picture alone, and in the world with its depth, workspace and actions. A plan of either is
-a failure, and so is an empty one ("nothing to do").
+a failure, and so is an empty one ("nothing to do"). Lines that begin with a plus are true of the scene: both must be plans.
 """
 
 from __future__ import annotations
@@ -40,8 +40,10 @@ def tried(task: str, seed: int, lines: list[str], out: Path) -> Iterator[tuple[s
         picture = np.array(seen.main.rgb)
         for line in lines:
             team = wt.Team(model="offline", max_calls=100, out=out)
-            of_world = team.plan(seen, line, vocabulary=world.vocabulary, limits=world.limits, facts=world.facts)
-            ends = [team.plan(picture, line), of_world]
+            of_world = team.plan(
+                seen, line.lstrip("+ "), vocabulary=world.vocabulary, limits=world.limits, facts=world.facts
+            )
+            ends = [team.plan(picture, line.lstrip("+ ")), of_world]
             yield line, [(end.status, end.message.replace("\n", " ")) for end in ends]
     finally:
         world.close()
@@ -53,18 +55,23 @@ def main() -> None:
     parser.add_argument("file", type=Path)
     parser.add_argument("--quiet", action="store_true", help="planned ones only")
     options = parser.parse_args()
-    count = planned = 0
+    count = planned = true = missed = 0
     with tempfile.TemporaryDirectory() as out:
         for task, seed, lines in read_premises(options.file.read_text(encoding="utf-8")):
             print(f"{task} {seed}", flush=True)
             for line, ends in tried(task, seed, lines, Path(out)):
-                bad = any(status not in ENDED_WELL for status, _ in ends)
-                count, planned = count + 1, planned + bad
+                some, every = (way(status not in ENDED_WELL for status, _ in ends) for way in (any, all))
+                if line.startswith("+"):
+                    bad, true, missed = not every, true + 1, missed + (not every)
+                else:
+                    bad, count, planned = some, count + 1, planned + some
                 if bad or not options.quiet:
-                    print(f"  {'PLANNED' if bad else 'refused'}  {line}")
+                    print(f"  {'PLANNED' if every else 'planned once' if some else 'refused'}  {line}")
                     for status, said in ends:
                         print(f"      {status}: {said[:200]}", flush=True)
-    print(f"planned: {Rate(planned, count)}")
+    print(
+        f"planned: {Rate(planned, count)}; of the true ones not planned: {Rate(missed, true) if true else 'none there'}"
+    )
 
 
 if __name__ == "__main__":

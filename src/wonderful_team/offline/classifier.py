@@ -55,7 +55,7 @@ def _like(rgb: Array, picture: Picture) -> list[Match]:
             example = study_example(in_plain_light(picture) if plain else picture)
         except NotSeen:
             continue
-        found += Eyes(eyes.scene, {"query": example}, {}, eyes.looked_at).find(asked)
+        found += Eyes(eyes.looked_at, {"query": example}).find(asked)
     return found
 
 

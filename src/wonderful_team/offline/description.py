@@ -17,10 +17,6 @@ SHAPES = (
 )  # fmt: skip
 """Canonical outline shapes seen from above. ring and frame have a hole: a round and an angular one."""
 
-NOUNS = ("thing", "object", "block", "container", "fruit", "area", "letter", "toy", "ball")
-"""Canonical kinds of head noun. A shape word used as a noun ("the star") gives noun "object" with that shape.
-fruit names ("banana") give noun "fruit" and `name`."""
-
 Relation: TypeAlias = Literal[
     "left_of", "right_of", "above", "below", "near", "nearest", "far_from", "on", "inside", "between", "same_colour", "same_pattern",
     "same_shape",
@@ -29,6 +25,11 @@ Superlative: TypeAlias = Literal[
     "largest", "smallest", "leftmost", "rightmost", "topmost", "bottommost", "middle", "tallest", "shortest", "nearest",
     "darkest", "lightest",
 ]  # fmt: skip
+
+OPPOSITE: dict[str, Superlative] = {
+    "tallest": "shortest", "shortest": "tallest", "darkest": "lightest", "lightest": "darkest", "largest": "smallest",
+    "smallest": "largest",
+}  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -63,7 +64,8 @@ class Description:
     """A noun phrase, understood.
 
     Attributes:
-        noun: One of NOUNS.
+        noun: thing | object | block | container | fruit | area | letter | toy | ball. A shape word used as a noun ("the star") gives
+            "object" with that shape, the name of a fruit ("banana") "fruit" and `name`.
         name: The particular name when it says more than the noun ("banana", "G" for a letter), or "".
         colours: Canonical colours, all of which must show ("red and blue striped" has two).
         dark: True for "dark blue", False for "light blue", None when nothing is said.
@@ -104,3 +106,7 @@ class Description:
     placed: Description | None = None
     since: str | None = None
     way: Way | None = None
+
+
+FREE = Description(noun="area", name="free", text="free area")
+"""Anywhere on free table."""

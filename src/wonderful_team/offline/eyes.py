@@ -4,13 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 from wonderful_team.contracts import ShownSlot, ShownTask
-from wonderful_team.core.pictures import Picture
+from wonderful_team.core.pictures import Picture, Point
 from wonderful_team.core.values import Target
 from wonderful_team.images.colours import COLOURS
 from wonderful_team.offline.description import SHAPES, Description, Way
-from wonderful_team.offline.language import describe, render, try_describe
+from wonderful_team.offline.language import describe, render, try_describe, worded
+from wonderful_team.offline.language.wording import corner_words
 from wonderful_team.offline.pushing.sweeping import find_place, read_place
 from wonderful_team.offline.vision import (
     Example,
@@ -51,15 +53,25 @@ class Eyes:
     """One picture and the instruction's pictures shown with it.
 
     Attributes:
+        looked_at: The picture that `scene` is seen in.
         examples: What the pictures of single things show, by name.
         pictures: The instruction's pictures of a whole table (scenes, frames), by name: the main camera's.
-        looked_at: The picture that `scene` was seen in.
+        heights: A second view that tells how tall things are where the first has no depth; None without one.
     """
 
-    scene: Scene
-    examples: Mapping[str, Example]
+    looked_at: Picture
+    examples: Mapping[str, Example] = field(default_factory=dict)
     pictures: Mapping[str, Picture] = field(default_factory=dict)
-    looked_at: Picture | None = None
+    heights: Picture | None = None
+
+    @cached_property
+    def scene(self) -> Scene:
+        seen = see(self.looked_at)
+        return seen if seen.has_depth or self.heights is None else with_heights(seen, self.heights)
+
+    def here(self, shown: Picture, point: Point) -> Point:
+        """Where the picture looked at shows a point of another picture of the same camera."""
+        return self.looked_at.frame.point_to_picture(shown.frame.point_to_view(point))
 
     def find(self, description: Description) -> list[Match]:
         """What fits, best first; empty when nothing does or it cannot be judged by eye."""
@@ -73,9 +85,12 @@ class Eyes:
             return self._spots_at(description)
         try:
             found = resolve(self.scene, description, self.examples)
-            if not found or description.superlative is not None:
-                by_shape = shape_alone(description, self.examples)
-                found = resolve(self.scene, by_shape, self.examples) if by_shape is not description else found
+            by_shape = shape_alone(description, self.examples)
+            if by_shape is not description:
+                # A grey picture shows a shape; where something of that shape is grey too, that is meant.
+                formed = resolve(self.scene, by_shape, self.examples)
+                both = [match for match in found if match.thing in [other.thing for other in formed]]
+                found = both if both and description.superlative is None else formed
             if not found and description.noun == "object" and description.shape is not None:
                 # "the blue square" may well be a flat one, such as a sheet of paper.
                 found = resolve(self.scene, replace(description, noun="thing"), self.examples)
@@ -127,7 +142,7 @@ def as_pictured(description: Description, matches: list[Match], eyes: Eyes) -> l
     if len(things) < 2 or description.like is not None or description.placed is not None:  # noqa: PLR2004
         return matches
     for picture in eyes.pictures.values():
-        shown = [match.thing for match in Eyes(see(picture), {}).find(description) if match.thing is not None]
+        shown = [match.thing for match in Eyes(picture).find(description) if match.thing is not None]
         rated = [max((likeness(match.thing, one) for one in shown), default=0.0) for match in things if match.thing]
         best = max(rated)
         if best >= SHOWN:
@@ -141,8 +156,7 @@ def shape_alone(description: Description, examples: Mapping[str, Example]) -> De
     if example is None or description.like_only is not None:
         return description
     look = example.look
-    colourless = look.memberships["grey"] + look.memberships["white"] + look.memberships["black"]
-    if colourless < COLOURLESS or look.patterns["plain"] < COLOURLESS:
+    if look.colourless < COLOURLESS or look.patterns["plain"] < COLOURLESS:
         return description
     return replace(description, like_only="shape")
 
@@ -159,7 +173,7 @@ def eyes_of(picture: Picture, slots: Iterable[ShownSlot]) -> Eyes:
     """Look at a picture and at the instruction's pictures."""
     slots = tuple(slots)
     tables = {slot.name: slot.pictures[0] for slot in slots if slot.kind != "object" and slot.pictures}
-    return Eyes(see(picture), examples_of(slots), tables, picture)
+    return Eyes(picture, examples_of(slots), tables)
 
 
 def examples_of(slots: Iterable[ShownSlot]) -> dict[str, Example]:
@@ -177,10 +191,7 @@ def examples_of(slots: Iterable[ShownSlot]) -> dict[str, Example]:
 
 def eyes_of_task(task: ShownTask) -> Eyes:
     """Look at a task's main view; without depth, a second view tells how tall things are."""
-    eyes = eyes_of(task.main, task.slots)
-    if eyes.scene.has_depth or len(task.views) < 2:  # noqa: PLR2004  one more than the main view
-        return eyes
-    return replace(eyes, scene=with_heights(eyes.scene, task.views[1]))
+    return replace(eyes_of(task.main, task.slots), heights=next(iter(task.views[1:]), None))
 
 
 def one_of(description: Description) -> Description:
@@ -226,8 +237,7 @@ def _read_words(target: Target) -> Description:
     else:
         description = describe(words, target.where)
     if target.kind == "area" and description.noun in ("object", "thing") and not description.like:
-        described = replace(description, noun="area")
-        description = replace(described, text=render(described))
+        description = worded(replace(description, noun="area"))
     return one_of(description)
 
 
@@ -248,7 +258,7 @@ def unique_words(eyes: Eyes, thing: Thing, noun: str, name: str = "", shape: str
         # As it will be read: "the brown letter" is a letter, not an object shaped like one.
         matches = eyes.find(try_describe(render(description)) or description)
         if _means(matches, thing):
-            return _worded(description)
+            return worded(description)
     return _by_place(eyes, thing, tries[0])
 
 
@@ -261,23 +271,20 @@ def _means(matches: list[Match], thing: Thing) -> bool:
 def _by_place(eyes: Eyes, thing: Thing, base: Description) -> Description:
     """Words such as "the second red block from the left"."""
     fitting = [match.thing for match in eyes.find(replace(base, quantity="all")) if match.thing is not None]
-    ordered = sorted(fitting, key=lambda item: item.centre[0])
-    numbers = [item.number for item in ordered]
-    if thing.number not in numbers:
-        return _worded(base)
-    place = numbers.index(thing.number) + 1
-    candidates = [replace(base, superlative="leftmost", ordinal=place)]
-    candidates.append(replace(base, superlative="rightmost", ordinal=len(numbers) + 1 - place))
+    columns = [item.number for item in sorted(fitting, key=lambda item: item.centre[0])]
     rows = [item.number for item in sorted(fitting, key=lambda item: item.centre[1])]
-    candidates.append(replace(base, superlative="topmost", ordinal=rows.index(thing.number) + 1))
+    if thing.number not in columns:
+        return worded(base)
+    place = columns.index(thing.number) + 1
+    candidates = [
+        replace(base, superlative="leftmost", ordinal=place),
+        replace(base, superlative="rightmost", ordinal=len(columns) + 1 - place),
+        replace(base, superlative="topmost", ordinal=rows.index(thing.number) + 1),
+    ]
     for description in candidates:
         if description.ordinal <= 5 and eyes.number(description) == thing.number:
-            return _worded(description)
-    return _worded(candidates[0] if place <= 5 else candidates[1])
-
-
-def _worded(description: Description) -> Description:
-    return replace(description, text=render(description))
+            return worded(description)
+    return worded(candidates[0] if place <= 5 else candidates[1])
 
 
 PICTURE_SIDES = {"leftmost": "on the left", "rightmost": "on the right", "topmost": "at the top",
@@ -286,10 +293,7 @@ PICTURE_SIDES = {"leftmost": "on the left", "rightmost": "on the right", "topmos
 
 def side_words(side: str) -> str:
     """Such as "on the left", "in the top left corner"."""
-    if " " in side:
-        row, column = side.split()
-        return f"in the {'top' if row == 'topmost' else 'bottom'} {'left' if column == 'leftmost' else 'right'} corner"
-    return PICTURE_SIDES[side]
+    return f"in the {corner_words(side)} corner" if " " in side else PICTURE_SIDES[side]
 
 
 def is_shown_alone(description: Description) -> bool:
@@ -300,9 +304,7 @@ def is_shown_alone(description: Description) -> bool:
 
 def seen_as(eyes: Eyes, thing: Thing) -> str:
     """Words such as "turquoise letter G" that lead to this thing alone wherever it lies, or "" where none do."""
-    letters = thing.look.letters
-    letter = thing.look.shape == "letter" and max(letters, key=lambda name: letters[name])
-    words = unique_words(eyes, thing, "letter", letter) if letter else unique_words(eyes, thing, "object")
+    words = unique_words(eyes, thing, "letter" if thing.look.letter else "object", thing.look.letter)
     return words.text if words.superlative is None and eyes.number(words) == thing.number else ""
 
 
@@ -322,15 +324,13 @@ def place_words(thing: Thing, size_px: tuple[int, int]) -> str:
 
 def place_shown(description: Description, eyes: Eyes) -> list[Match]:
     """The place where one of the instruction's pictures shows a thing, in the picture looked at; [] when it does not."""
-    shown = eyes.pictures.get(description.like or "")
-    if shown is None or description.placed is None or eyes.looked_at is None:
+    shown, box = eyes.pictures.get(description.like or ""), None
+    if shown is None or description.placed is None:
         return []
     if description.since is not None and description.since in eyes.pictures:
-        arrived = came_to(eyes.pictures[description.since], shown)
-        box = None if arrived is None else arrived
-    else:
-        found = Eyes(see(shown), {}).best(replace(description.placed, noun="thing"))
-        box = found.thing.box if found is not None and found.thing is not None else None
+        box = came_to(eyes.pictures[description.since], shown)
+    elif (found := Eyes(shown).best(replace(description.placed, noun="thing"))) is not None:
+        box = found.box
     if box is None:
         return []
     there = eyes.looked_at.frame.box_to_picture(shown.frame.box_to_view(box))

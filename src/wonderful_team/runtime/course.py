@@ -268,7 +268,8 @@ class Course:
         mine = np.append(own, np.zeros(len(left), dtype=bool))
         hidden = ~mine & Relief(points, px, relief.spacing_m).inside(outline(moved[:, :2], relief.cell_m))
         hidden[hidden] = covered(moved[:, :2], points[hidden, :2], relief.cell_m)
-        hidden &= points[:, 2] < end[2] + RAISED_M
+        # Slats between whose gaps it was put are covered too: it rests on them, whatever the one place point showed.
+        hidden &= points[:, 2] < max(end[2] + RAISED_M, float(moved[:, 2].max()))
         points[hidden], px[hidden] = GONE_M, np.nan
         points[mine], px[mine] = moved, np.nan
         self._relief = Relief(points, px, relief.spacing_m)

@@ -96,9 +96,11 @@ def test_where_a_thing_stands_is_no_place_to_put_it(text: str) -> None:
     assert command.to.how == "in"
 
 
-def test_two_moves_that_are_a_swap_are_not_read_as_two_moves() -> None:
-    with pytest.raises(NotUnderstoodError, match="what goes where"):
-        understand("The apple goes where the pear is and the pear goes where the apple is.")
+def test_two_moves_that_are_a_swap_are_read_as_one() -> None:
+    swap = gist(understand("swap the apple and the pear"))
+    assert gist(understand("The apple goes where the pear is and the pear goes where the apple is.")) == swap
+    with pytest.raises(NotUnderstoodError, match="not clear"):
+        understand("The apple goes where the pear is and the lime goes where the apple is.")
 
 
 @pytest.mark.parametrize(

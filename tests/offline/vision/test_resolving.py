@@ -111,7 +111,7 @@ def test_an_example_picture_finds_its_thing_turned_and_only_that(wanted: str) ->
 
 def test_white_stripes_that_vanish_into_the_background_do_not_break_the_example() -> None:
     example = study_example(alone(box_shape((160, 120), 80, 80), striped(GREEN, WHITE, 16)))
-    assert example.pale
+    assert example.look.shapes
     assert example.look.shape in ("square", "diamond", "rectangle")
     assert example.area_view_px == pytest.approx(6400, rel=0.2)
     table = Drawing().add(box_shape((200, 150), 80, 80, 30), striped(GREEN, WHITE, 16))

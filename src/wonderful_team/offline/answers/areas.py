@@ -45,7 +45,7 @@ def table_of(picture: Picture) -> Array | None:
 def judge_area(crop: Picture, box: Box) -> BoxFit:
     """How free the box is, by what lies in it."""
     if table_of(crop) is None:
-        return BoxFit("absent", None, None, 0.0, None, (), (), 0.0, "the crop shows no table")
+        return BoxFit("absent", "the crop shows no table")
     scene = see(crop)
     covered, under = 0.0, None
     for thing in scene.objects:
@@ -54,14 +54,12 @@ def judge_area(crop: Picture, box: Box) -> BoxFit:
             covered, under = shared.area / box.area, thing
     if covered <= FREE_ENOUGH:
         return BoxFit(
-            "tight", None, box, 1.0, None, (), (), 1.0 - covered, f"free table: {covered:.0%} of the box is covered"
+            "tight", f"free table: {covered:.0%} of the box is covered", best=box, iou=1.0, score=1.0 - covered
         )
-    spot = nearest_free(scene, box)
-    best = Box.around(spot, box.width, box.height)
+    best = Box.around(nearest_free(scene, box), box.width, box.height)
     seen = under.look.words if under is not None else "something"
-    return BoxFit(
-        "empty", None, best, best.iou(box), under, (), (), 1.0 - covered, f"a {seen} covers {covered:.0%} of the box"
-    )
+    why = f"a {seen} covers {covered:.0%} of the box"
+    return BoxFit("empty", why, best=best, iou=best.iou(box), under=under, score=1.0 - covered)
 
 
 def nearest_free(scene: Scene, box: Box) -> Point:
@@ -78,19 +76,16 @@ def judge_place(description: Description, crop: Picture, box: Box, slots: Sequen
     """How a box stands to the place that one of the instruction's pictures shows."""
     found = eyes_of(crop, slots).find(description)
     if not found:
-        return BoxFit("absent", None, None, 0.0, None, (), (), 0.0, f"no picture shows the {description.text}")
+        return BoxFit("absent", f"no picture shows the {description.text}")
     seen = table_of(crop)
     if seen is None:
-        return BoxFit("absent", None, None, 0.0, None, (), (), 0.0, "the crop shows no table")
+        return BoxFit("absent", "the crop shows no table")
     shown = next((slot.pictures[0] for slot in slots if slot.name == description.like and slot.pictures), None)
     known = None if shown is None else table_of(shown)
     if known is not None and float(np.linalg.norm(seen - known)) > SAME_TABLE:
-        return BoxFit(
-            "absent", None, None, 0.0, None, (), (), 0.0, f"the crop is not of the table in {{{description.like}}}"
-        )
+        return BoxFit("absent", f"the crop is not of the table in {{{description.like}}}")
     there = found[0].box
     iou = there.iou(box)
     near = max(abs(there.centre[0] - box.centre[0]) / there.width, abs(there.centre[1] - box.centre[1]) / there.height)
-    if near < PLACE_SLACK:
-        return BoxFit("tight", None, there, iou, None, (), (), 1.0, f"{found[0].why}, {near:.2f} of its sides away")
-    return BoxFit("empty", None, there, iou, None, (), (), 1.0, f"{found[0].why}, not in the box")
+    why = f"{found[0].why}, {f'{near:.2f} of its sides away' if near < PLACE_SLACK else 'not in the box'}"
+    return BoxFit("tight" if near < PLACE_SLACK else "empty", why, best=there, iou=iou, score=1.0)

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-
-import numpy as np
+from typing import Literal
 
 from wonderful_team.contracts import (
     EDGES,
@@ -32,6 +31,8 @@ from wonderful_team.offline.answers.areas import judge_area, judge_place, neares
 from wonderful_team.offline.answers.finding import middle_of, push_goal
 from wonderful_team.offline.eyes import examples_of, eyes_of, is_free_area, shape_alone, target_description
 from wonderful_team.offline.vision import BoxFit, fit_box, see, strip_presence
+from wonderful_team.offline.vision.changes import gap_px
+from wonderful_team.offline.vision.measure import SIDES, Side
 
 SAME_SIZE = 0.2
 """A box whose sides differ from the target's by less than this share is moved as a whole, else its edges are set."""
@@ -66,38 +67,28 @@ def measure(target: Target, crop: Picture, box: Box, examples: Sequence[ShownSlo
 
 def answer_presence(question: Presence) -> PresenceAnswer:
     """Per edge, whether the target's colours show in the strips."""
-    description = target_description(question.target)
     examples = examples_of(question.examples)
-    description = shape_alone(description, examples)
-    shows = {
-        (strip.edge, strip.side): strip_presence(strip.picture, description, examples) for strip in question.strips
-    }
-    edges = []
-    for edge in EDGES:
-        inside, outside = shows.get((edge, "inside")), shows.get((edge, "outside"))
-        edges.append(
-            EdgePresence(
-                edge=edge,
-                inside=inside is not None and inside.shows,
-                outside=outside is not None and outside.shows,
-            )
-        )
-    shares = ", ".join(f"{edge} {side} {fit.share:.2f}" for (edge, side), fit in shows.items())
+    description = shape_alone(target_description(question.target), examples)
+    fits = {(strip.edge, strip.side): strip_presence(strip.picture, description, examples) for strip in question.strips}
+    showing = {place for place, fit in fits.items() if fit.shows}
+    edges = [
+        EdgePresence(edge=edge, inside=(edge, "inside") in showing, outside=(edge, "outside") in showing)
+        for edge in EDGES
+    ]
+    shares = ", ".join(f"{edge} {side} {fit.share:.2f}" for (edge, side), fit in fits.items())
     return PresenceAnswer(reasoning=f"share of pixels with the target's colours: {shares or 'no strips'}", edges=edges)
 
 
 def answer_judge_box(question: JudgeBox) -> BoxVerdict:
     """Accept what is tight, send back what can be moved onto the target, reject what is on another thing."""
-    fit = measure(question.target, question.crop, marked_box(question.crop), question.examples)
+    box = marked_box(question.crop)
+    fit = measure(question.target, question.crop, box, question.examples)
+    wrong = _wrong_points(question, fit)
     if fit.verdict == "tight":
-        return BoxVerdict(reasoning=fit.why, decision="accept", problem="", wrong_points=_wrong_points(question, fit))
+        return BoxVerdict(reasoning=fit.why, decision="accept", problem="", wrong_points=wrong)
     if fit.verdict == "loose" or (fit.verdict == "empty" and fit.best is not None):
-        problem = _problem(fit, marked_box(question.crop))
-        return BoxVerdict(
-            reasoning=fit.why, decision="revise", problem=problem, wrong_points=_wrong_points(question, fit)
-        )
-    problem = f"the box is not on the target: {fit.why}"
-    return BoxVerdict(reasoning=fit.why, decision="reject", problem=problem, wrong_points=[])
+        return BoxVerdict(reasoning=fit.why, decision="revise", problem=_problem(fit, box), wrong_points=wrong)
+    return BoxVerdict(reasoning=fit.why, decision="reject", problem=f"the box is not on the target: {fit.why}")
 
 
 def _wrong_points(question: JudgeBox, fit: BoxFit) -> list[WrongPoint]:
@@ -141,19 +132,15 @@ def answer_judge_revision(question: JudgeRevision) -> RevisionVerdict:
         return RevisionVerdict(reasoning=after.why, decision="take_after_go_on" if after.iou > 0 else "keep_before")
     before_box = marked_box(question.before)
     before = measure(question.target, question.before, before_box, question.examples)
-    says = f"before: {before.why}; after: {after.why}"
+    decision: Literal["keep_before", "take_after_go_on", "take_after_stop"] = "keep_before"
     if after.verdict == "tight" and after.iou >= before.iou:
-        return RevisionVerdict(reasoning=says, decision="take_after_stop")
-    if after.best is None or after.verdict == "other" and before.verdict != "other":
-        return RevisionVerdict(reasoning=says, decision="keep_before")
-    nearer = _gap(after_box, after.best) < _gap(before_box, before.best or after.best)
-    if after.iou > before.iou or (after.iou == before.iou and nearer):
-        return RevisionVerdict(reasoning=says, decision="take_after_go_on")
-    return RevisionVerdict(reasoning=says, decision="keep_before")
-
-
-def _gap(box: Box, target: Box) -> float:
-    return float(np.hypot(box.centre[0] - target.centre[0], box.centre[1] - target.centre[1]))
+        decision = "take_after_stop"
+    elif after.best is not None and (after.verdict != "other" or before.verdict == "other"):
+        away = gap_px(after_box.centre, after.best.centre)
+        nearer = away < gap_px(before_box.centre, (before.best or after.best).centre)
+        if after.iou > before.iou or (after.iou == before.iou and nearer):
+            decision = "take_after_go_on"
+    return RevisionVerdict(reasoning=f"before: {before.why}; after: {after.why}", decision=decision)
 
 
 def answer_move_box(question: MoveBox) -> BoxMove:
@@ -161,59 +148,33 @@ def answer_move_box(question: MoveBox) -> BoxMove:
     box = question.box
     fit = measure(question.target, question.crop, box, question.examples)
     if fit.verdict == "tight" and question.may_stop:
-        return _move(f"{fit.why}; nothing to change", "stop")
+        return _moved(f"{fit.why}; nothing to change", "stop")
     if fit.best is None:
         if question.may_stop:
-            return _move(f"{fit.why}; the target does not show here", "stop")
-        return _resize(f"{fit.why}; widened to look further", WIDEN * box.width, WIDEN * box.height)
+            return _moved(f"{fit.why}; the target does not show here", "stop")
+        wider = (WIDEN * box.width, WIDEN * box.height) * 2
+        return _moved(f"{fit.why}; widened to look further", "resize", grow=wider)
     best = fit.best
-    cut = list(fit.cut)
     alike = abs(best.width / box.width - 1) < SAME_SIZE and abs(best.height / box.height - 1) < SAME_SIZE
     dx, dy = best.centre[0] - box.centre[0], best.centre[1] - box.centre[1]
     if alike and max(abs(dx) / box.width, abs(dy) / box.height) > 0.1:
-        return _move(f"{fit.why}; its middle lies {dx:+.0f}, {dy:+.0f} px away", "move", dx, dy, cut)
+        return _moved(f"{fit.why}; its middle lies {dx:+.0f}, {dy:+.0f} px away", "move", (dx, dy), cut=fit.cut)
     grow = (box.x0 - best.x0, box.y0 - best.y0, best.x1 - box.x1, best.y1 - box.y1)
     if max(abs(value) for value in grow) < 1e-3:
         grow = (0.5, 0.5, 0.5, 0.5)
-    return BoxMove(
-        reasoning=f"{fit.why}; edges set to its outline",
-        action="resize",
-        right_px=0,
-        down_px=0,
-        grow_left_px=grow[0],
-        grow_top_px=grow[1],
-        grow_right_px=grow[2],
-        grow_bottom_px=grow[3],
-        cut_edges=cut,
-    )
+    return _moved(f"{fit.why}; edges set to its outline", "resize", grow=grow, cut=fit.cut)
 
 
-def _move(reasoning: str, action: str, dx: float = 0.0, dy: float = 0.0, cut: Sequence[str] = ()) -> BoxMove:
-    return BoxMove(
-        reasoning=reasoning,
-        action=action,
-        right_px=dx,
-        down_px=dy,
-        grow_left_px=0,
-        grow_top_px=0,
-        grow_right_px=0,
-        grow_bottom_px=0,
-        cut_edges=list(cut),
-    )
-
-
-def _resize(reasoning: str, x: float, y: float) -> BoxMove:
-    return BoxMove(
-        reasoning=reasoning,
-        action="resize",
-        right_px=0,
-        down_px=0,
-        grow_left_px=x,
-        grow_top_px=y,
-        grow_right_px=x,
-        grow_bottom_px=y,
-        cut_edges=[],
-    )
+def _moved(
+    reasoning: str,
+    action: Literal["move", "resize", "stop"],
+    by: Point = (0.0, 0.0),
+    grow: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0),
+    cut: Sequence[Side] = (),
+) -> BoxMove:
+    shift = dict(zip(("right_px", "down_px"), by, strict=True))
+    edges = {f"grow_{side}_px": value for side, value in zip(SIDES, grow, strict=True)}
+    return BoxMove(reasoning=reasoning, action=action, cut_edges=list(cut), **shift, **edges)
 
 
 def answer_choose_point(question: ChoosePoint) -> PointChoice:
@@ -221,25 +182,20 @@ def answer_choose_point(question: ChoosePoint) -> PointChoice:
     points = question.candidates.points
     description = target_description(question.target)
     box = marked_box(question.crop)
-    if description.placed is not None:
-        fit = judge_place(description, question.crop, box, question.examples)
-        wanted = (fit.best or box).centre
-        return _nearest(points, wanted, range(1, len(points) + 1), fit.why)
     if is_free_area(description) or description.way is not None:
-        spot = nearest_free(see(question.crop), box)
-        return _nearest(points, spot, range(1, len(points) + 1), "the freest place in the box")
-    known = examples_of(question.examples)
-    fit = fit_box(question.crop, box, shape_alone(description, known), known)
+        return _nearest(points, nearest_free(see(question.crop), box), "the freest place in the box")
+    fit = measure(question.target, question.crop, box, question.examples)
+    if description.placed is not None:
+        return _nearest(points, (fit.best or box).centre, fit.why)
     if fit.target is None:
-        return _nearest(points, box.centre, range(1, len(points) + 1), f"{fit.why}; nearest to the middle of the box")
+        return _nearest(points, box.centre, f"{fit.why}; nearest to the middle of the box")
     if question.role in HOLDING:
         on = [number for number, point in enumerate(points, start=1) if fit.target.holds(point)]
-        where = fit.target.steady_point()
-        return _nearest(points, where, on or range(1, len(points) + 1), f"on the material of a {fit.target.look.words}")
+        return _nearest(points, fit.target.steady_point(), f"on the material of a {fit.target.look.words}", on)
     if question.role == "push_start":
         return _push_start(question, box, points)
     middle = middle_of(fit.target, description, see(question.crop))
-    return _nearest(points, middle, range(1, len(points) + 1), f"the middle of a {fit.target.look.words}")
+    return _nearest(points, middle, f"the middle of a {fit.target.look.words}")
 
 
 def _push_start(question: ChoosePoint, box: Box, points: Sequence[Point]) -> PointChoice:
@@ -263,6 +219,7 @@ def _goal_of_words(question: ChoosePoint) -> Point | None:
     return None if goal is None else question.crop.frame.point_to_picture(shown.frame.point_to_view(goal))
 
 
-def _nearest(points: Sequence[Point], wanted: Point, allowed: Sequence[int] | range, why: str) -> PointChoice:
-    best = min(allowed, key=lambda k: np.hypot(points[k - 1][0] - wanted[0], points[k - 1][1] - wanted[1]))
+def _nearest(points: Sequence[Point], wanted: Point, why: str, allowed: Sequence[int] = ()) -> PointChoice:
+    """The number of the point nearest to where it is wanted; of the allowed ones where there are any."""
+    best = min(allowed or range(1, len(points) + 1), key=lambda k: gap_px(points[k - 1], wanted))
     return PointChoice(reasoning=f"nearest to ({wanted[0]:.0f}, {wanted[1]:.0f}): {why}", number=best)

@@ -25,7 +25,7 @@ from wonderful_team.offline.goals.clearing import cleared
 from wonderful_team.offline.goals.deriving import derive
 from wonderful_team.offline.goals.instruction import read_task
 from wonderful_team.offline.goals.sweeps import way_places
-from wonderful_team.offline.language import describe, render, try_understand, understand
+from wonderful_team.offline.language import describe, render, understand
 from wonderful_team.offline.language.wording import relation_words
 from wonderful_team.offline.pushing.sweeping import place_words
 
@@ -96,16 +96,9 @@ def write_plan(aims: Sequence[Aim], slots: tuple[str, ...], with_targets: bool, 
     writer = _Writer(slots)
     subgoals = []
     for number, aim in enumerate(aims, start=1):
-        targets = aim_targets(aim, writer)
-        subgoals.append(
-            SubgoalDraft(
-                id=f"G{number}",
-                text=aim_text(aim),
-                after=[f"G{position + 1}" for position in aim.after],
-                targets=targets if with_targets else [],
-                function=None,
-            )
-        )
+        targets, after = aim_targets(aim, writer), [f"G{position + 1}" for position in aim.after]
+        parts = {"text": aim_text(aim), "after": after, "targets": targets if with_targets else []}
+        subgoals.append(SubgoalDraft.model_validate({"id": f"G{number}", "function": None, **parts}))
     return PlanDraft(
         reasoning=reasoning,
         subgoals=subgoals,
@@ -119,10 +112,8 @@ def aim_targets(aim: Aim, writer: _Writer) -> list[str]:
     """Ids of the targets that an aim needs: the thing, then its destination, place after place on its way."""
     if aim.legs:
         # The tool's start is computed behind the thing for each push, so a point on the thing is enough.
-        return [
-            writer.target(aim.thing.description, "pick"),
-            *(writer.target(spot, "place") for spot in way_places(aim)),
-        ]
+        ids = [writer.target(aim.thing.description, "pick")]
+        return ids + [writer.target(spot, "place") for spot in way_places(aim)]
     start: PointRole = "push_start" if aim.kind == "push" else "pick"
     end: PointRole = "push_end" if aim.kind == "push" else "place"
     ids = [writer.target(aim.thing.description, start)]
@@ -157,10 +148,8 @@ def draft(task: ShownTask, with_targets: bool, advice: Sequence[str] = ()) -> tu
         result.choices = tuple(told_apart(eyes, thing, "object") for thing in eyes.scene.things[:MOST_NAMED])
     if result.question:
         asked = ClarificationDraft(question=result.question, choices=list(result.choices))
-        return (
-            PlanDraft(reasoning=result.question, subgoals=[], targets=[], mode="one_step", clarification=asked),
-            result,
-        )
+        plan = PlanDraft(reasoning=result.question, subgoals=[], targets=[], mode="one_step", clarification=asked)
+        return plan, result
     result.aims = cleared(result.aims, eyes)
     if understood.nothing_else:
         result.notes.append("nothing else is moved, as asked")
@@ -187,14 +176,9 @@ def answer_extract(question: ExtractTargets) -> TargetList:
     eyes = eyes_of_task(question.task)
     needs = []
     for subgoal in question.subgoals:
-        understood = try_understand(subgoal.text)
-        if understood is None:
-            # Refuse by name: the words of a subgoal are all there is to find its targets by.
-            understand(subgoal.text)
-            raise AssertionError("unreachable: understand raises where try_understand gives None")
-        ids: list[str] = []
-        for aim in derive(understood, eyes, strict=False).aims:
-            ids += aim_targets(aim, writer)
+        # Refused by name where it cannot be read: the words of a subgoal are all there is to find its targets by.
+        aims = derive(understand(subgoal.text), eyes, strict=False).aims
+        ids = [name for aim in aims for name in aim_targets(aim, writer)]
         if not ids:
             raise NotUnderstoodError(f"subgoal {subgoal.id} names nothing that needs to be found: {subgoal.text!r}")
         needs.append(SubgoalTargets(subgoal=subgoal.id, targets=list(dict.fromkeys(ids))))

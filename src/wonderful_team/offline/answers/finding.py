@@ -11,8 +11,8 @@ from wonderful_team.core.geometry import Box
 from wonderful_team.core.pictures import Picture, Point, PointMark
 from wonderful_team.core.values import PointRole, Target
 from wonderful_team.offline.description import Description
-from wonderful_team.offline.eyes import Eyes, is_free_area, target_description
-from wonderful_team.offline.language import try_understand
+from wonderful_team.offline.eyes import Eyes, target_description
+from wonderful_team.offline.pushing.sweeping import pushes_of
 from wonderful_team.offline.vision import Match, Scene, Thing, free_spots
 
 STANDOFF = 0.35
@@ -96,15 +96,11 @@ def push_goal(plan: Sequence[str], target: Target, eyes: Eyes, others: Sequence[
         if "push_end" in other.use and other.id != target.id and (found := find_target(other, eyes)) is not None:
             return found.match.point
     sides = {"leftmost": (-1e4, 0.0), "rightmost": (1e4, 0.0), "topmost": (0.0, -1e4), "bottommost": (0.0, 1e4)}
-    for line in plan:
-        understood = try_understand(line.partition(":")[2].strip() or line)
-        for command in understood.commands if understood is not None else ():
-            if command.kind != "push" or command.to is None:
-                continue
-            if command.to.what is not None and (best := eyes.best(command.to.what)) is not None:
-                return best.point
-            if command.to.side in sides:
-                return sides[command.to.side]
+    for _, to in pushes_of(plan):
+        if to.what is not None and (best := eyes.best(to.what)) is not None:
+            return best.point
+        if to.side in sides:
+            return sides[to.side]
     return None
 
 
@@ -131,18 +127,3 @@ def varied(point: Point, found: Found, sample: int) -> Point:
 def told(found: Found) -> str:
     """What decided, in a short sentence."""
     return f"fits with {found.match.score:.2f} ({found.match.why}), ahead of the next by {found.match.margin:.2f}"
-
-
-__all__ = [
-    "Found",
-    "act_at",
-    "candidates",
-    "find_target",
-    "is_free_area",
-    "middle_of",
-    "push_goal",
-    "told",
-    "tried",
-    "untried",
-    "varied",
-]

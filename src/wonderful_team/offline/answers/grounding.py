@@ -23,18 +23,8 @@ from wonderful_team.contracts import (
     SelectMarks,
 )
 from wonderful_team.core.values import PointRole, Target
-from wonderful_team.offline.answers.finding import (
-    Found,
-    act_at,
-    candidates,
-    is_free_area,
-    push_goal,
-    told,
-    tried,
-    untried,
-    varied,
-)
-from wonderful_team.offline.eyes import Eyes, eyes_of
+from wonderful_team.offline.answers.finding import Found, act_at, candidates, push_goal, told, tried, untried, varied
+from wonderful_team.offline.eyes import Eyes, eyes_of, is_free_area
 
 YIELDS = 0.75
 """A target gives way to another on the same thing when its next best match scores at least this share."""
@@ -128,17 +118,13 @@ def _apart(targets: Sequence[Target], found: Sequence[list[Found]]) -> list[Foun
     for i, one in enumerate(targets):
         for j in range(i + 1, len(targets)):
             first, second = chosen[i], chosen[j]
-            if first is None or second is None or first.thing is None or second.thing is None:
+            other = targets[j]
+            if first is None or second is None or first.thing is None or first.thing is not second.thing:
                 continue
-            if first.thing.number != second.thing.number or (one.words, one.like) == (
-                targets[j].words,
-                targets[j].like,
-            ):
+            if (one.words, one.like) == (other.words, other.like):
                 continue
             loser = j if _yields(found[j], second) >= _yields(found[i], first) else i
-            others = [
-                item for item in found[loser] if item.thing is not None and item.thing.number != first.thing.number
-            ]
+            others = [item for item in found[loser] if item.thing is not None and item.thing is not first.thing]
             if others and others[0].match.score >= YIELDS * found[loser][0].match.score:
                 chosen[loser] = others[0]
     return chosen

@@ -1,14 +1,15 @@
-"""DraftPlan: the plan, with the pick and place of every subgoal that is carried out by one."""
+"""DraftPlan and RevisePlan: the plan, with the pick and place of every subgoal that is carried out by one."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 
-from wonderful_team.contracts import DraftPlan, MoveDraft, PlanDraft, SubgoalDraft
+from wonderful_team.contracts import DraftPlan, MoveDraft, PlanDraft, PlanRevision, RevisePlan, SubgoalDraft
 from wonderful_team.contracts.shown import ShownTask
 from wonderful_team.core.values import Target
 from wonderful_team.errors import WonderfulTeamError
 from wonderful_team.offline.answers.drafting import draft
+from wonderful_team.offline.answers.reviewing import findings
 from wonderful_team.offline.answers.steps import steps_of_subgoal
 from wonderful_team.offline.eyes import Eyes, eyes_of_task
 
@@ -17,6 +18,23 @@ def answer_draft(question: DraftPlan) -> PlanDraft:
     """Read the instruction, look at the picture, write the plan."""
     plan, _ = draft(question.task, question.with_targets, question.advice)
     return with_moves(plan, question.task, question.step_kinds) if question.with_targets else plan
+
+
+def answer_revise(question: RevisePlan) -> PlanRevision:
+    """Change the plan where the doubt is right, else say why it stands."""
+    found = findings(question.task, question.subgoals, question.targets, question.step_kinds)
+    concerned = [item for item in found if item.about == question.doubt.about] or found
+    if not concerned:
+        about = question.doubt.about
+        why = f"Derived again from the instruction and the picture, nothing in {about} is amiss."
+        stands = f"{about} follows from the instruction and the picture; the plan stands."
+        return PlanRevision(reasoning=why, decision="keep", answer=stands, plan=None)
+    plan, _ = draft(question.task, question.with_targets)
+    if question.with_targets:
+        plan = with_moves(plan, question.task, question.step_kinds)
+    doubt = concerned[0].question
+    told = f"You are right: {doubt} The plan was written anew."
+    return PlanRevision(reasoning=f"The doubt is right: {doubt}", decision="revise", answer=told, plan=plan)
 
 
 def with_moves(plan: PlanDraft, task: ShownTask, step_kinds: Sequence[str]) -> PlanDraft:

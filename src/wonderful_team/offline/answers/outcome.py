@@ -17,7 +17,7 @@ from wonderful_team.offline.goals.deriving import already, derive
 from wonderful_team.offline.goals.instruction import read_task
 from wonderful_team.offline.pushing.sweeping import sweep_of, swept
 from wonderful_team.offline.vision import Thing, strip_presence
-from wonderful_team.offline.vision.things import covers
+from wonderful_team.offline.vision.changes import gap_px
 from wonderful_team.offline.vision.turning import turned_deg
 
 ALIKE = 0.55
@@ -67,16 +67,20 @@ class _Judge:
             return "unclear", "the thing does not show in the picture before"
         if task.aim is not None and "inside" in task.aim.legs:
             return self._swept(task.aim, thing)
-        now = self._now(thing)
+        now, name = self._now(thing), task.thing.words
+        place = self._was(task.place, task.to_number)
         if now is None:
-            return self._merged(task, thing)
+            return self._merged(name, thing, place if task.how in ("in", "on", "") else None)
         if task.rotate_deg and task.place is None:
-            return self._turned(task, thing, now)
+            return self._turned(name, task.rotate_deg, thing, now)
         if task.place is None:
-            return self._back(task, thing, now)
-        if task.aim is not None and task.aim.how == "origin":
-            return self._took_place(task, thing, now)
-        return self._at_place(task, thing, now)
+            return _at_origin(f"the {name} lies {{}} radii from where it was", now, thing)
+        if task.how == "origin":
+            if place is None:
+                return "unclear", f"the {task.place.words} does not show in the picture before"
+            told = f"the {name} lies {{}} radii from where the {task.place.words} was"
+            return _at_origin(told, now, thing, place)
+        return self._at_place(task.how, name, task.place, place, thing, now)
 
     def _swept(self, aim: Aim, was: Thing) -> tuple[str, str]:
         """Whether a thing lies wholly in the place it was pushed to; alike things in there count once each."""
@@ -89,11 +93,11 @@ class _Judge:
         if any(self._moved(was, thing) < STAYED for thing in like):
             return "not_done", f"the {name} has not moved"
         stood = [thing.centre for thing in self.before.scene.things if thing.number != was.number]
+        near = STAYED * was.radius_px
         new = [
             thing
             for thing in like
-            if thing.number not in self.claimed
-            and not any(np.hypot(x - thing.centre[0], y - thing.centre[1]) < STAYED * was.radius_px for x, y in stood)
+            if thing.number not in self.claimed and all(gap_px(at, thing.centre) >= near for at in stood)
         ]
         there = swept(self.after.scene, sweep, [thing.number for thing in new])
         if there:
@@ -123,26 +127,19 @@ class _Judge:
     def _now(self, was: Thing) -> Thing | None:
         """The same thing in the picture after: alike in colours, outline and size; the nearer one of equals."""
         best, most = None, 0.0
-        radius = max(was.radius_px, 1.0)
         for thing in self.after.scene.things:
             if not _alike(was, thing):
                 continue
             colours = float(was.look.histogram @ thing.look.histogram)
             size = min(was.area_px, thing.area_px) / max(was.area_px, thing.area_px)
-            distance = float(np.hypot(thing.centre[0] - was.centre[0], thing.centre[1] - was.centre[1]))
-            rating = colours * (0.4 + 0.6 * size) - 0.01 * min(distance / radius, 10.0)
+            rating = colours * (0.4 + 0.6 * size) - 0.01 * min(self._moved(was, thing), 10.0)
             if rating > most:
                 best, most = thing, rating
         return best
 
-    def _merged(self, task: Task, was: Thing) -> tuple[str, str]:
+    def _merged(self, name: str, was: Thing, place: Thing | None) -> tuple[str, str]:
         """A thing that does not stand out any more may lie on its place: its colours then show there and not before."""
-        assert task.thing is not None  # checked by the caller
-        name = task.thing.words
-        how = task.aim.how if task.aim is not None else "in"
-        number = task.aim.to.number if task.aim is not None and task.aim.to is not None else None
-        place = self._was(task.place, number)
-        if place is None or how not in ("in", "on"):
+        if place is None:
             return "unclear", f"the {name} does not show in the picture after"
         before, after = self.question.task.main, self.question.after[0]
         gained = colours_in(after, place.box, was) - colours_in(before, place.box, was)
@@ -151,80 +148,54 @@ class _Judge:
             return "done", f"{gained:.0%} of the place shows the colours of the {name} now"
         return "unclear", f"the {name} does not show in the picture after, nor its colours at the place"
 
-    def _at_place(self, task: Task, was: Thing, now: Thing) -> tuple[str, str]:
-        assert task.thing is not None  # checked by the caller
-        assert task.place is not None  # checked by the caller
-        how = task.aim.how if task.aim is not None else "in"
-        place = self._was(task.place, task.aim.to.number if task.aim is not None and task.aim.to is not None else None)
-        spot = self._spot(task.place, place)
+    def _at_place(
+        self, how: str, name: str, target: Target, place: Thing | None, was: Thing, now: Thing
+    ) -> tuple[str, str]:
+        there = None if place is None else self._now(place) or place
+        spot, where = self.boxes.get(target.id) if there is None else there.box, target.words
         if spot is None:
             moved = self._moved(was, now)
-            return ("unclear", f"the place {task.place.words} does not show; the thing moved {moved:.1f} radii")
-        name, where = task.thing.words, task.place.words
-        if how in ("in", "on", "side", "between"):
-            inside = self._inside(now, place, spot)
-            return ("done", f"the {name} is {'in' if how != 'on' else 'on'} the {where} now") if inside else (
-                "not_done", f"the {name} is not at the {where}: it {self._told_move(was, now)}")  # fmt: skip
+            return ("unclear", f"the place {where} does not show; the thing moved {moved:.1f} radii")
+        if how in ("in", "on", "side", "between", ""):
+            inside = (
+                there is not None
+                and there is not place
+                and there is not now
+                and (now.on == there.number or there.covers(now.centre))
+            )
+            if inside or spot.contains(now.centre):
+                return "done", f"the {name} is {'in' if how != 'on' else 'on'} the {where} now"
+            return "not_done", f"the {name} is not at the {where}: it {self._told_move(was, now)}"
         dx, dy = now.centre[0] - spot.centre[0], now.centre[1] - spot.centre[1]
-        reach = 2.5 * (max(spot.width, spot.height) + 2 * now.radius_px) / 2
-        near = float(np.hypot(dx, dy)) <= reach
+        near = gap_px(now.centre, spot.centre) <= 1.25 * (max(spot.width, spot.height) + 2 * now.radius_px)
         side = {"left": -dx, "right": dx, "above": -dy, "below": dy}.get(how)
         ok = near if side is None else side > 0 and side >= 0.7 * max(abs(dx), abs(dy))
         words = f"the {name} is {'' if ok else 'not '}{how} of the {where}; it {self._told_move(was, now)}"
         return ("done" if ok else "not_done"), words
 
-    def _spot(self, target: Target, place: Thing | None) -> Box | None:
-        if place is not None:
-            moved = self._now(place)
-            return place.box if moved is None else moved.box
-        return self.boxes.get(target.id)
-
-    def _inside(self, now: Thing, place: Thing | None, spot: Box) -> bool:
-        there = self._now(place) if place is not None else None
-        if there is not None and there.number != now.number:
-            if now.on == there.number or covers(there, now.centre):
-                return True
-        return spot.contains(now.centre)
-
-    def _back(self, task: Task, was: Thing, now: Thing) -> tuple[str, str]:
-        moved = self._moved(was, now)
-        assert task.thing is not None  # checked by the caller
-        return (
-            "done" if moved <= 1.0 else "not_done"
-        ), f"the {task.thing.words} lies {moved:.1f} radii from where it was"
-
-    def _took_place(self, task: Task, was: Thing, now: Thing) -> tuple[str, str]:
-        """Whether a thing lies where another one was."""
-        assert task.thing is not None  # checked by the caller
-        assert task.place is not None  # checked by the caller
-        number = task.aim.to.number if task.aim is not None and task.aim.to is not None else None
-        other = self._was(task.place, number)
-        if other is None:
-            return "unclear", f"the {task.place.words} does not show in the picture before"
-        gap = float(np.hypot(now.centre[0] - other.centre[0], now.centre[1] - other.centre[1]))
-        away = gap / max(was.radius_px, other.radius_px, 1.0)
-        status = "done" if away <= 1.0 else "not_done"
-        return status, f"the {task.thing.words} lies {away:.1f} radii from where the {task.place.words} was"
-
-    def _turned(self, task: Task, was: Thing, now: Thing) -> tuple[str, str]:
-        assert task.thing is not None  # checked by the caller
+    def _turned(self, name: str, asked_deg: float, was: Thing, now: Thing) -> tuple[str, str]:
         if self._moved(was, now) > 2.0:
-            return "not_done", f"the {task.thing.words} was carried {self._moved(was, now):.1f} radii away"
-        measured = turned_deg(self.question.task.main, was, self.question.after[0], now, task.rotate_deg)
+            return "not_done", f"the {name} was carried {self._moved(was, now):.1f} radii away"
+        measured = turned_deg(self.question.task.main, was, self.question.after[0], now, asked_deg)
         if measured is None:
-            return "unclear", f"the {task.thing.words} looks the same however it is turned"
-        ok = abs((measured - task.rotate_deg + 180) % 360 - 180) <= ANGLE_SLACK_DEG
-        text = f"the {task.thing.words} shows turned by {measured:.0f} degrees clockwise, asked for {task.rotate_deg:g}"
+            return "unclear", f"the {name} looks the same however it is turned"
+        ok = abs((measured - asked_deg + 180) % 360 - 180) <= ANGLE_SLACK_DEG
+        text = f"the {name} shows turned by {measured:.0f} degrees clockwise, asked for {asked_deg:g}"
         return ("done" if ok else "not_done"), text
 
     @staticmethod
     def _moved(was: Thing, now: Thing) -> float:
-        distance = float(np.hypot(now.centre[0] - was.centre[0], now.centre[1] - was.centre[1]))
-        return distance / max(was.radius_px, 1.0)
+        return gap_px(now.centre, was.centre) / max(was.radius_px, 1.0)
 
     def _told_move(self, was: Thing, now: Thing) -> str:
         moved = self._moved(was, now)
         return "has not moved" if moved < STAYED else f"moved {moved:.1f} of its radii"
+
+
+def _at_origin(told: str, now: Thing, *stood: Thing) -> tuple[str, str]:
+    """Whether a thing lies where the last of these stood, in radii of the largest of them."""
+    away = gap_px(now.centre, stood[-1].centre) / max(1.0, *(thing.radius_px for thing in stood))
+    return "done" if away <= 1.0 else "not_done", told.format(f"{away:.1f}")
 
 
 def _alike(was: Thing, thing: Thing) -> bool:

@@ -6,7 +6,7 @@ looked up in the picture, so that different words for the same thing agree and t
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from wonderful_team.contracts import CritiqueDraft, PlanReview, ReviewPlan, WalkedReview
@@ -96,22 +96,19 @@ def _cannot_be_done(read: Sequence[ReadSubgoal], step_kinds: Sequence[str]) -> l
     found = []
     for item in read:
         kinds = {aim.kind for aim in item.aims or ()}
-        arm = "move" in step_kinds
-        if "push" in kinds and not arm and "push" not in step_kinds and "pick_place" not in step_kinds:
-            found.append(_cannot(item, "pushing"))
-        if kinds & {"put", "rotate"} and not arm and "pick_place" not in step_kinds and "push" not in step_kinds:
-            found.append(_cannot(item, "picking up"))
-        if "rotate" in kinds and "pick_place" not in step_kinds and "rotate_gripper" not in step_kinds:
-            found.append(_cannot(item, "turning things"))
+        for what, asked, needed in _ABLE:
+            if kinds & asked and not needed & {*step_kinds}:
+                text = f"Can this robot do '{item.subgoal.text}'? {what} is not among its steps."
+                found.append(Finding(item.subgoal.id, "physical_constraint", text))
     return found
 
 
-def _cannot(item: ReadSubgoal, what: str) -> Finding:
-    return Finding(
-        item.subgoal.id,
-        "physical_constraint",
-        f"Can this robot do '{item.subgoal.text}'? {what} is not among its steps.",
-    )
+_ABLE = (
+    ("pushing", {"push"}, {"move", "push", "pick_place"}),
+    ("picking up", {"put", "rotate"}, {"move", "push", "pick_place"}),
+    ("turning things", {"rotate"}, {"pick_place", "rotate_gripper"}),
+)
+"""What a robot has to be able to do for which kinds of aims, and the kinds of steps of which it needs one."""
 
 
 def _differences(wanted: Aims, read: Sequence[ReadSubgoal]) -> list[Finding]:
@@ -130,13 +127,8 @@ def _differences(wanted: Aims, read: Sequence[ReadSubgoal]) -> list[Finding]:
             else:
                 open_aims.remove(match)
     open_aims, unread_found = _by_targets(wanted, open_aims, unread)
-    found = []
-    for item, aim in spare:
-        found.append(_spare(item, aim, wanted, open_aims))
-    found += unread_found
-    for index in open_aims:
-        found.append(_missing(wanted.aims[index], index, wanted, read))
-    return found
+    found = [_spare(item, aim, wanted, open_aims) for item, aim in spare] + unread_found
+    return found + [_missing(wanted.aims[index], index, wanted, read) for index in open_aims]
 
 
 def _by_targets(wanted: Aims, open_aims: list[int], unread: Sequence[ReadSubgoal]) -> tuple[list[int], list[Finding]]:
@@ -147,9 +139,8 @@ def _by_targets(wanted: Aims, open_aims: list[int], unread: Sequence[ReadSubgoal
         if covered is not None:
             left.remove(covered)
         elif left or not item.targets:
-            found.append(
-                Finding(item.subgoal.id, "ambiguity", f"What does '{item.subgoal.text}' bring about? I cannot read it.")
-            )
+            text = f"What does '{item.subgoal.text}' bring about? I cannot read it."
+            found.append(Finding(item.subgoal.id, "ambiguity", text))
     return left, found
 
 
@@ -159,33 +150,26 @@ def _covers(item: ReadSubgoal, aim: Aim) -> bool:
 
 def _spare(item: ReadSubgoal, aim: Aim, wanted: Aims, open_aims: list[int]) -> Finding:
     """A subgoal that nothing asks for: the wrong thing or place when it resembles an open aim, else needless."""
-    about = item.subgoal.id
-    same_thing = next((k for k in open_aims if wanted.aims[k].thing.same(aim.thing)), None)
-    if same_thing is not None:
-        open_aims.remove(same_thing)
-        right = wanted.aims[same_thing]
-        return Finding(about, "wrong_target", f"Should it not be '{aim_text(right)}' instead of '{item.subgoal.text}'?")
-    same_goal = next((k for k in open_aims if wanted.aims[k].same_goal(aim)), None)
-    if same_goal is not None:
-        open_aims.remove(same_goal)
-        right = wanted.aims[same_goal]
-        return Finding(
-            about,
-            "wrong_target",
-            f"Is {aim.thing.words!r} the right thing? The instruction and the picture ask for '{aim_text(right)}'.",
-        )
-    crossed = next((k for k in open_aims if (to := wanted.aims[k].to) is not None and to.same(aim.thing)), None)
-    if crossed is not None:
-        open_aims.remove(crossed)
-        return Finding(
-            about, "wrong_target", f"Are thing and place swapped? Asked for is '{aim_text(wanted.aims[crossed])}'."
-        )
-    if open_aims:
-        right = wanted.aims[open_aims.pop(0)]
-        return Finding(
-            about, "wrong_target", f"Nothing asks for '{item.subgoal.text}'; asked for is '{aim_text(right)}'."
-        )
-    return Finding(about, "needless_step", f"What is '{item.subgoal.text}' for? The instruction does not ask for it.")
+    text = item.subgoal.text
+    likenesses: tuple[tuple[Callable[[Aim], bool], str], ...] = (
+        (lambda open_: open_.thing.same(aim.thing), f"Should it not be '{{}}' instead of '{text}'?"),
+        (
+            lambda open_: open_.same_goal(aim),
+            f"Is {aim.thing.words!r} the right thing? The instruction and the picture ask for '{{}}'.",
+        ),
+        (
+            lambda open_: open_.to is not None and open_.to.same(aim.thing),
+            "Are thing and place swapped? Asked for is '{}'.",
+        ),
+        (lambda open_: True, f"Nothing asks for '{text}'; asked for is '{{}}'."),
+    )
+    for resembles, asks in likenesses:
+        index = next((k for k in open_aims if resembles(wanted.aims[k])), None)
+        if index is not None:
+            open_aims.remove(index)
+            return Finding(item.subgoal.id, "wrong_target", asks.format(aim_text(wanted.aims[index])))
+    why = f"What is '{text}' for? The instruction does not ask for it."
+    return Finding(item.subgoal.id, "needless_step", why)
 
 
 def _missing(aim: Aim, index: int, wanted: Aims, read: Sequence[ReadSubgoal]) -> Finding:
@@ -205,49 +189,30 @@ def _wrong_targets(item: ReadSubgoal) -> list[Finding]:
     if not item.targets or not item.aims:
         return []
     needed = [who for aim in item.aims for who in (aim.thing, aim.to, aim.other) if who is not None]
-    found = []
+    found: list[str] = []
     for target, known in item.targets:
         if known is None:
             continue
         spot = target.kind == "area" and known.number is None
         if not spot and not any(known.same(who) for who in needed):
             found.append(
-                Finding(
-                    item.subgoal.id,
-                    "wrong_target",
-                    f"{target.id} ({target.words}) is not what '{item.subgoal.text}' speaks of; is it the right target?",
-                )
+                f"{target.id} ({target.words}) is not what '{item.subgoal.text}' speaks of; is it the right target?"
             )
-    for aim in item.aims:
-        for who in (aim.thing, aim.to):
-            if (
-                who is not None
-                and aim.how != "between"
-                and not item.names(who)
-                and all(k is not None for _, k in item.targets)
-            ):
-                found.append(
-                    Finding(item.subgoal.id, "wrong_target", f"Which target of {item.subgoal.id} is the {who.words}?")
-                )
-    return found[:1] + _wrong_use(item)
+    if all(known is not None for _, known in item.targets):
+        ends = [who for aim in item.aims if aim.how != "between" for who in (aim.thing, aim.to) if who is not None]
+        found += [f"Which target of {item.subgoal.id} is the {who.words}?" for who in ends if not item.names(who)]
+    return [Finding(item.subgoal.id, "wrong_target", text) for text in found[:1] + _wrong_use(item)]
 
 
-def _wrong_use(item: ReadSubgoal) -> list[Finding]:
+def _wrong_use(item: ReadSubgoal) -> list[str]:
     """The thing to be moved must have a point to pick it at."""
-    found = []
-    for aim in item.aims or ():
-        for target, known in item.targets:
-            if (
-                known is None
-                or not target.use
-                or not known.same(aim.thing)
-                or (aim.to is not None and known.same(aim.to))
-            ):
-                continue
-            if not set(target.use) & {"pick", "grasp", "push_start"}:
-                text = f"{target.id} ({target.words}) is to be moved, but its use is {', '.join(target.use)}; is it swapped?"
-                found.append(Finding(item.subgoal.id, "wrong_target", text))
-    return found
+    return [
+        f"{target.id} ({target.words}) is to be moved, but its use is {', '.join(target.use)}; is it swapped?"
+        for aim in item.aims or ()
+        for target, known in item.targets
+        if known is not None and known.same(aim.thing) and not (aim.to is not None and known.same(aim.to))
+        if target.use and not {*target.use} & {"pick", "grasp", "push_start"}
+    ]
 
 
 def _order(wanted: Sequence[Aim], read: Sequence[ReadSubgoal]) -> list[Finding]:
@@ -263,14 +228,9 @@ def _order(wanted: Sequence[Aim], read: Sequence[ReadSubgoal]) -> list[Finding]:
     for index, aim in enumerate(wanted):
         for first in aim.after:
             if index in place and first in place and place[index] < place[first]:
-                item = read[place[index]]
-                return [
-                    Finding(
-                        item.subgoal.id,
-                        "missing_prerequisite",
-                        f"Must '{read[place[first]].subgoal.text}' not come before '{item.subgoal.text}'?",
-                    )
-                ]
+                late, early = read[place[index]].subgoal, read[place[first]].subgoal
+                text = f"Must '{early.text}' not come before '{late.text}'?"
+                return [Finding(late.id, "missing_prerequisite", text)]
     return []
 
 
@@ -287,20 +247,13 @@ def review_of_plan(question: ReviewPlan) -> PlanReview:
     fresh = [item for item in found if not _asked(item, question.checked)]
     scope = question.under_check or "the plan"
     if not fresh:
-        seen = (
-            "asked already and answered"
-            if found
-            else "what it must bring about is in it, each thing and place as asked"
-        )
-        return PlanReview(
-            reasoning=f"Derived again from words and picture; {scope}: {seen}.", approved=True, doubt=None
-        )
+        whole = "what it must bring about is in it, each thing and place as asked"
+        why = f"Derived again from words and picture; {scope}: {'asked already and answered' if found else whole}."
+        return PlanReview(reasoning=why, approved=True, doubt=None)
     first = fresh[0]
-    return PlanReview(
-        reasoning=f"Derived again from words and picture, {scope} differs: {first.kind} in {first.about}.",
-        approved=False,
-        doubt=CritiqueDraft(about=first.about, kind=first.kind, question=first.question),
-    )
+    why = f"Derived again from words and picture, {scope} differs: {first.kind} in {first.about}."
+    doubt = CritiqueDraft(about=first.about, kind=first.kind, question=first.question)
+    return PlanReview(reasoning=why, approved=False, doubt=doubt)
 
 
 def _asked(item: Finding, checked: Sequence[str]) -> bool:

@@ -34,6 +34,16 @@ class Task:
     rotate_deg: float = 0.0
     stops: tuple[Target, ...] = ()
 
+    @property
+    def how(self) -> str:
+        """How the thing stands to the place afterwards, as Aim.how; "" where the words cannot be read."""
+        return self.aim.how if self.aim is not None else ""
+
+    @property
+    def to_number(self) -> int | None:
+        """Number of the thing that the place is, as far as the words lead to one."""
+        return self.aim.to.number if self.aim is not None and self.aim.to is not None else None
+
 
 def tasks_of(subgoal: Subgoal, targets: Sequence[Target], eyes: Eyes) -> list[Task]:
     """What a subgoal asks for, in order."""
@@ -68,11 +78,8 @@ def _player(
     """The target that means this thing; else the one whose use fits."""
     free = [(target, who) for target, who in known if taken is None or target.id != taken.id]
     same = [target for target, who in free if who is not None and who.same(wanted)]
-    fitting = [target for target in same if set(target.roles) & use]
-    if fitting or same:
-        return (fitting or same)[0]
     by_use = [target for target, _ in free if set(target.roles) & use]
-    return by_use[0] if by_use else None
+    return next(iter([target for target in same if target in by_use] or same or by_use), None)
 
 
 def _spot(known: Sequence[tuple[Target, Named | None]], thing: Target | None) -> Target | None:

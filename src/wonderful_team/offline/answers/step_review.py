@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TypeAlias
 
 from wonderful_team.contracts import CritiqueDraft, PlanReview, ReviewPlan, ReviewSteps, WalkedReview
@@ -21,7 +21,7 @@ from wonderful_team.core.actions import (
 )
 from wonderful_team.core.geometry import Box
 from wonderful_team.core.pictures import BoxMark, PathMark, Picture
-from wonderful_team.core.values import Subgoal
+from wonderful_team.core.values import Subgoal, Target
 from wonderful_team.offline.answers.reviewing import named, review_of_plan
 from wonderful_team.offline.answers.roles import Task, tasks_of
 from wonderful_team.offline.answers.steps import place_of
@@ -34,14 +34,6 @@ Problem: TypeAlias = tuple[int | str, str, str]
 """Number of the step (id of the target, for a doubt about its point or box), kind of doubt, question."""
 
 
-@dataclass(frozen=True, eq=False)
-class _Asked:
-    """What a subgoal asks of its steps."""
-
-    subgoal: Subgoal
-    tasks: list[Task]
-
-
 def answer_review_steps(question: ReviewSteps) -> PlanReview | WalkedReview:
     """Check the plan where nobody did, every step against its subgoal, and the drawn arrows against the boxes."""
     return question.in_form(_review(question))
@@ -49,21 +41,15 @@ def answer_review_steps(question: ReviewSteps) -> PlanReview | WalkedReview:
 
 def _review(question: ReviewSteps) -> PlanReview:
     if not question.plan_checked:
-        plan = review_of_plan(
-            ReviewPlan(
-                question.task, question.step_kinds, question.subgoals, question.targets, checked=question.checked
-            )
-        )
+        parts = (question.task, question.step_kinds, question.subgoals, question.targets)
+        plan = review_of_plan(ReviewPlan(*parts, checked=question.checked))
         if plan.doubt is not None:
             return plan
     eyes = eyes_of_task(question.task)
-    asked = {
-        subgoal.id: _Asked(subgoal, _one_by_one(tasks_of(subgoal, question.targets, eyes)))
-        for subgoal in question.subgoals
-    }
+    asked = {item.id: (item, _one_by_one(tasks_of(item, question.targets, eyes))) for item in question.subgoals}
     problems = _step_problems(question.steps, asked, eyes)
     problems += _order_problems(question.steps, question.subgoals)
-    problems += _drawn_problems(question.overview, question, eyes)
+    problems += _drawn_problems(question.overview, question)
     fresh = [item for item in problems if not any(item[2] in line for line in question.checked)]
     if not fresh:
         return PlanReview(
@@ -85,33 +71,31 @@ def _one_by_one(tasks: Sequence[Task]) -> list[Task]:
     return [part for task in tasks for part in (*(replace(task, place=stop, stops=()) for stop in task.stops), task)]
 
 
-def _step_problems(steps: Sequence[Step], asked: dict[str, _Asked], eyes: Eyes) -> list[Problem]:
+def _step_problems(steps: Sequence[Step], asked: dict[str, tuple[Subgoal, list[Task]]], eyes: Eyes) -> list[Problem]:
     problems: list[Problem] = []
     used: dict[str, int] = {}
     for number, step in enumerate(steps, start=1):
         if step.subgoal not in asked:
             problems.append((number, "needless_step", f"Step {number} serves no subgoal of the plan; what is it for?"))
             continue
-        wanted = asked[step.subgoal]
+        subgoal, tasks = asked[step.subgoal]
         if isinstance(step, PickPlaceStep | PushStep):
             turn = used.get(step.subgoal, 0)
             used[step.subgoal] = turn + 1
-            if turn >= len(wanted.tasks):
-                text = f"'{wanted.subgoal.text}' is done by an earlier step; what is step {number} for?"
+            if turn >= len(tasks):
+                text = f"'{subgoal.text}' is done by an earlier step; what is step {number} for?"
                 problems.append((number, "needless_step", text))
                 continue
-            problems += _compare(number, step, wanted.tasks[turn], wanted.subgoal, eyes)
+            problems += _compare(number, step, tasks[turn], subgoal, eyes)
         elif isinstance(step, MoveStep) and isinstance(step.to, At):
-            parts = {part.id for task in wanted.tasks for part in (task.thing, task.place) if part is not None}
+            parts = {part.id for task in tasks for part in (task.thing, task.place) if part is not None}
             if step.to.target not in parts:
-                text = f"'{wanted.subgoal.text}' does not speak of {step.to.target}; why move there in step {number}?"
+                text = f"'{subgoal.text}' does not speak of {step.to.target}; why move there in step {number}?"
                 problems.append((number, "wrong_target", text))
         elif isinstance(step, RotateGripperStep):
-            turns = [task.rotate_deg for task in wanted.tasks]
+            turns = [task.rotate_deg for task in tasks]
             if not any(_same_angle(step.rotate_deg, turn) for turn in turns):
-                text = (
-                    f"'{wanted.subgoal.text}' asks for {turns[0]:g} degrees; why {step.rotate_deg:g} in step {number}?"
-                )
+                text = f"'{subgoal.text}' asks for {turns[0]:g} degrees; why {step.rotate_deg:g} in step {number}?"
                 problems.append((number, "wrong_target", text))
     return problems
 
@@ -136,22 +120,19 @@ def _wrong_place(end: Place, task: Task, eyes: Eyes) -> str:
     wanted = place_of(task, eyes)
     same_spot = isinstance(end, At) and task.thing is not None and end.target == task.thing.id
     if wanted["how"] == "origin":
-        other = task.thing is not None and wanted["target"] != task.thing.id
-        if other:
-            right = isinstance(end, OriginOf) and end.target == wanted["target"]
+        right = isinstance(end, OriginOf) and end.target == wanted["target"]
+        if task.thing is not None and wanted["target"] != task.thing.id:
             return "" if right else f"must it not go to where {wanted['target']} stood"
-        own = isinstance(end, OriginOf) and end.target == wanted["target"]
-        return "" if own or same_spot else f"why does it leave its place for {end.target}"
+        return "" if right or same_spot else f"why does it leave its place for {end.target}"
     if end.target != wanted["target"]:
         return f"is {end.target} the right place"
     if isinstance(end, OriginOf):
         return f"should it not go to {end.target} rather than to where that stood"
-    how = task.aim.how if task.aim is not None else ""
-    if how in SIDES and task.place is not None and task.place.kind == "object":
-        if not isinstance(end, Beside) or end.side != how:
-            return f"must it not go to the side '{how}' of {end.target}"
-    elif how in ("in", "on") and isinstance(end, Beside):
-        return f"must it not go {how} {end.target} rather than beside it"
+    if task.how in SIDES and task.place is not None and task.place.kind == "object":
+        if not isinstance(end, Beside) or end.side != task.how:
+            return f"must it not go to the side '{task.how}' of {end.target}"
+    elif task.how in ("in", "on") and isinstance(end, Beside):
+        return f"must it not go {task.how} {end.target} rather than beside it"
     return ""
 
 
@@ -180,13 +161,14 @@ def _order_problems(steps: Sequence[Step], subgoals: Sequence[Subgoal]) -> list[
     return problems
 
 
-def _drawn_problems(overview: Picture, question: ReviewSteps, eyes: Eyes) -> list[Problem]:
+def _drawn_problems(overview: Picture, question: ReviewSteps) -> list[Problem]:
     """A drawn arrow must begin at the box of what is picked, until a step has moved it; a box must hold what its words name."""
     boxes = {mark.label.split()[0]: mark.box for mark in overview.marks if isinstance(mark, BoxMark) and mark.label}
     here = eyes_of(overview, question.task.slots)
     problems: list[Problem] = []
     arrows = [mark for mark in overview.marks if isinstance(mark, PathMark) and mark.points]
     numbered = {mark.label.split()[0].rstrip(".:"): mark for mark in arrows if mark.label}
+    targets = {target.id: target for target in question.targets}
     moved: set[str] = set()
     for number, step in enumerate(question.steps, start=1):
         if not isinstance(step, PickPlaceStep):
@@ -197,20 +179,15 @@ def _drawn_problems(overview: Picture, question: ReviewSteps, eyes: Eyes) -> lis
         if box is not None and arrow is not None and not box.scaled(1.3).contains(arrow.points[0]):
             text = f"The arrow of step {number} begins beside the box of {step.pick}; is its point right?"
             problems.append((step.pick, "wrong_point", text))
-        problems += _boxed_wrongly(number, step, question, boxes, here)
+        if step.pick in targets and step.pick in boxes:
+            problems += _boxed_wrongly(number, targets[step.pick], boxes[step.pick], here)
     return problems
 
 
-def _boxed_wrongly(
-    number: int, step: PickPlaceStep, question: ReviewSteps, boxes: dict[str, Box], here: Eyes
-) -> list[Problem]:
-    target = next((item for item in question.targets if item.id == step.pick), None)
-    box = boxes.get(step.pick)
-    who = named(target, here) if target is not None else None
+def _boxed_wrongly(number: int, target: Target, box: Box, here: Eyes) -> list[Problem]:
+    who = named(target, here)
     thing = here.thing(who.number) if who is not None else None
-    if target is None or thing is None or box is None:
+    if thing is None or thing.box.intersection(box) is not None:
         return []
-    if thing.box.intersection(box) is None:
-        text = f"The box of {target.id} is not on the {target.words}, which I see elsewhere; is step {number} right?"
-        return [(target.id, "wrong_box", text)]
-    return []
+    text = f"The box of {target.id} is not on the {target.words}, which I see elsewhere; is step {number} right?"
+    return [(target.id, "wrong_box", text)]

@@ -13,8 +13,6 @@ from wonderful_team.offline.answers.roles import Task, tasks_of
 from wonderful_team.offline.eyes import Eyes, eyes_of_task
 from wonderful_team.offline.vision import Thing
 
-SAME_ANGLE_DEG = 0.5
-
 
 def answer_write_steps(question: WriteSteps) -> StepList:
     """Steps in an order that respects `after`, for the kinds that the robot runs."""
@@ -64,15 +62,8 @@ def _steps_of(task: Task, subgoal: Subgoal, kinds: Sequence[str], eyes: Eyes) ->
     if (pushed or "pick_place" not in kinds) and "push" in kinds:
         return _push(task, eyes)
     if "pick_place" in kinds:
-        return [
-            {
-                "kind": "pick_place",
-                "subgoal": task.subgoal,
-                "pick": task.thing.id,
-                "place": place_of(task, eyes),
-                "rotate_deg": task.rotate_deg,
-            }
-        ]
+        ends = {"pick": task.thing.id, "place": place_of(task, eyes), "rotate_deg": task.rotate_deg}
+        return [{"kind": "pick_place", "subgoal": task.subgoal, **ends}]
     if {"move", "open", "close"} <= set(kinds):
         return _arm(task, kinds, eyes)
     raise UnsupportedQuestion(
@@ -83,35 +74,27 @@ def _steps_of(task: Task, subgoal: Subgoal, kinds: Sequence[str], eyes: Eyes) ->
 def _push(task: Task, eyes: Eyes) -> list[dict[str, object]]:
     """One push, or one for every stop on the way."""
     if task.aim is not None and task.aim.kind == "rotate":
-        raise UnsupportedQuestion(
-            "offline", "WriteSteps", "a thing cannot be turned by an exact angle by pushing alone"
-        )
-    ends = [{"target": stop.id, "how": "at", "side": None} for stop in task.stops] + [place_of(task, eyes)]
-    return [{"kind": "push", "subgoal": task.subgoal, "start": _at(task, "thing"), "end": end} for end in ends]
+        why = "a thing cannot be turned by an exact angle by pushing alone"
+        raise UnsupportedQuestion("offline", "WriteSteps", why)
+    assert task.thing is not None  # checked by the caller
+    ends = [*map(_spot, task.stops), place_of(task, eyes)]
+    return [{"kind": "push", "subgoal": task.subgoal, "start": _spot(task.thing), "end": end} for end in ends]
 
 
-def _at(task: Task, part: str) -> dict[str, object]:
-    target = task.thing if part == "thing" else task.place
-    assert target is not None  # checked by the callers
-    return {"target": target.id, "how": "at", "side": None}
+def _spot(target: Target, how: str = "at", side: str | None = None) -> dict[str, object]:
+    return {"target": target.id, "how": how, "side": side}
 
 
 def place_of(task: Task, eyes: Eyes) -> dict[str, object]:
     """Where the thing of a task goes, as a PlaceDraft."""
     assert task.thing is not None  # checked by the callers
-    how = task.aim.how if task.aim is not None else ""
-    if task.place is None:
-        return {"target": task.thing.id, "how": "origin", "side": None}
-    if task.place.kind == "area" and how in ("in", "on"):
-        return {"target": task.place.id, "how": "at", "side": None}
-    if how == "origin":
-        return {"target": task.place.id, "how": "origin", "side": None}
-    if how in SIDES:
-        return {"target": task.place.id, "how": "beside", "side": how}
-    if how == "near" and task.place.kind == "object":
-        to = eyes.thing(task.aim.to.number) if task.aim is not None and task.aim.to is not None else None
-        return {"target": task.place.id, "how": "beside", "side": freest_side(to, eyes)}
-    return {"target": task.place.id, "how": "at", "side": None}
+    if task.place is None or task.how == "origin":
+        return _spot(task.place or task.thing, "origin")
+    if task.how in SIDES:
+        return _spot(task.place, "beside", task.how)
+    if task.how == "near" and task.place.kind == "object":
+        return _spot(task.place, "beside", freest_side(eyes.thing(task.to_number), eyes))
+    return _spot(task.place)
 
 
 def freest_side(thing: Thing | None, eyes: Eyes) -> Side:
@@ -121,26 +104,23 @@ def freest_side(thing: Thing | None, eyes: Eyes) -> Side:
     width, height = eyes.scene.size_px
     box = thing.box
     room = {"right": width - box.x1, "left": box.x0, "below": height - box.y1, "above": box.y0}
-    for other in eyes.scene.objects:
-        if other.number == thing.number:
-            continue
-        if other.box.y0 < box.y1 and other.box.y1 > box.y0:
-            if other.box.centre[0] > box.centre[0]:
-                room["right"] = min(room["right"], other.box.x0 - box.x1)
-            else:
-                room["left"] = min(room["left"], box.x0 - other.box.x1)
-        if other.box.x0 < box.x1 and other.box.x1 > box.x0:
-            if other.box.centre[1] > box.centre[1]:
-                room["below"] = min(room["below"], other.box.y0 - box.y1)
-            else:
-                room["above"] = min(room["above"], box.y0 - other.box.y1)
+    for other in (item.box for item in eyes.scene.objects if item.number != thing.number):
+        if other.y0 < box.y1 and other.y1 > box.y0:
+            right = other.centre[0] > box.centre[0]
+            side, left = ("right", other.x0 - box.x1) if right else ("left", box.x0 - other.x1)
+            room[side] = min(room[side], left)
+        if other.x0 < box.x1 and other.x1 > box.x0:
+            below = other.centre[1] > box.centre[1]
+            side, left = ("below", other.y0 - box.y1) if below else ("above", box.y0 - other.y1)
+            room[side] = min(room[side], left)
     return max(SIDES, key=lambda side: room[side])
 
 
 def _arm(task: Task, kinds: Sequence[str], eyes: Eyes) -> list[dict[str, object]]:
     """Pick and place with an arm: above, open, down, close, up, turn, over the place, down, open, clear."""
     subgoal = task.subgoal
-    thing, place = _at(task, "thing"), place_of(task, eyes)
+    assert task.thing is not None  # checked by the caller
+    thing, place = _spot(task.thing), place_of(task, eyes)
     turn: list[dict[str, object]] = []
     if task.rotate_deg:
         if "rotate_gripper" not in kinds:

@@ -6,8 +6,9 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 from wonderful_team.offline.description import Description
-from wonderful_team.offline.eyes import Eyes, one_of
+from wonderful_team.offline.eyes import Eyes, one_of, unique_words
 from wonderful_team.offline.language import render
+from wonderful_team.offline.vision import Thing
 
 
 @dataclass(frozen=True)
@@ -102,6 +103,11 @@ class Aims:
         if not self.aims and not self.settled:
             return "; ".join(["nothing that the words speak of is seen in its place", *self.notes])
         return ""
+
+
+def seen_named(eyes: Eyes, thing: Thing, noun: str = "object") -> Named:
+    """A thing by words that lead to it."""
+    return Named(unique_words(eyes, thing, noun), thing.number)
 
 
 def _absent_part(description: Description, eyes: Eyes) -> str:

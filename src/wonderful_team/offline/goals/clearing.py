@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-from wonderful_team.offline.description import Description
-from wonderful_team.offline.eyes import Eyes, unique_words
-from wonderful_team.offline.goals.aims import Aim, Named
+from wonderful_team.offline.description import FREE
+from wonderful_team.offline.eyes import Eyes
+from wonderful_team.offline.goals.aims import Aim, Named, seen_named
 from wonderful_team.offline.vision import Thing
 
 LOWER_M = 0.002
@@ -32,23 +32,17 @@ def obstacles(aim: Aim, others: Sequence[Aim], eyes: Eyes) -> list[Aim]:
     thing = eyes.thing(aim.thing.number)
     if thing is None or thing.flat or aim.thing.description.noun in ("container", "area"):
         return []
-    away = []
-    for upper in eyes.scene.on(thing):
-        if upper.area_px > thing.area_px or any(other.thing.number == upper.number for other in others):
-            continue
-        if _shows_through(upper, thing, eyes):
-            continue
-        spot = Description(noun="area", name="free", text="free area")
-        away.append(
-            Aim(
-                "put",
-                Named(unique_words(eyes, upper, "object"), upper.number),
-                "in",
-                Named(spot),
-                why=f"it lies on the {aim.thing.words}",
-            )
-        )
-    return away
+    elsewhere = {other.thing.number for other in others}
+    return [
+        out_of_the_way(upper, eyes, f"it lies on the {aim.thing.words}")
+        for upper in eyes.scene.on(thing)
+        if upper.area_px <= thing.area_px and upper.number not in elsewhere and not _shows_through(upper, thing, eyes)
+    ]
+
+
+def out_of_the_way(thing: Thing, eyes: Eyes, why: str) -> Aim:
+    """Bring a thing onto free table."""
+    return Aim("put", seen_named(eyes, thing), "in", Named(FREE), why=why)
 
 
 def cleared(aims: Sequence[Aim], eyes: Eyes) -> list[Aim]:

@@ -24,19 +24,18 @@ from wonderful_team.offline.goals.aims import Aim, Aims, Named
 from wonderful_team.offline.goals.ranking import ranked_aims
 from wonderful_team.offline.goals.showing import shown_aims
 from wonderful_team.offline.goals.sweeps import swept_aims
-from wonderful_team.offline.language import Command, Destination, Understood, describe, render
+from wonderful_team.offline.language import Command, Destination, Understood, describe, render, worded
 from wonderful_team.offline.vision import Match, Thing
 from wonderful_team.offline.vision.relations import OUTER, is_at, superlative_keys
-from wonderful_team.offline.vision.things import covers
 
 RIVAL = 0.6
 """A second match with at least this share of the best score could be taken for it."""
 LARGER = 1.3
 """A thing goes into another that is at least so many times its area."""
+ASIDE = 0.25
+"""One thing lies clearly further left (right, up, down) than another from this share of its width on."""
 AS_LARGE = 0.05
 """Things that differ by a smaller share are as large, tall or dark as each other."""
-AS_MANY = 0.8
-"""Of several that are told by a colour, those that fit at least this share as well as the best are meant."""
 SOLID = ("block", "letter", "fruit", "ball")
 """Kinds that hold nothing."""
 HOLDERS = ("container", "area")
@@ -101,10 +100,8 @@ def _of_command(command: Command, eyes: Eyes, result: Aims, strict: bool) -> lis
     if command.kind == "rotate":
         return [Aim("rotate", thing, rotate_deg=command.rotate_deg) for thing in things]
     assert goal is not None  # the grammar gives every put and push a goal
-    if goal.how == "ranked" and goal.what is not None:
-        return ranked_aims(things, goal.what, goal.side == "descending", eyes, result)
-    if goal.how == "matching":
-        return [aim for thing in things for aim in _matching_aim(command, goal, thing, eyes, result)]
+    if goal.how in ("matching", "ranked"):
+        return _told_by_things(command, goal, things, eyes, result)
     if pushed and goal.what is not None:
         aims = swept_aims(command, goal.what, things, eyes, result)
         if aims is not None:
@@ -119,22 +116,22 @@ def _of_command(command: Command, eyes: Eyes, result: Aims, strict: bool) -> lis
         if to is not None and command.thing.quantity != "one" and thing.number == to.number:
             continue
         moved_before = any(aim.thing.number == thing.number for aim in result.aims if thing.number is not None)
-        if (
-            goal.how == "in"
-            and to is not None
-            and not _holds(eyes.thing(to.number), eyes.thing(thing.number), goal.what)
-        ):
-            result.absent.append(f"the {to.words} holds no {thing.words}")
-        if (
-            goal.how in ("in", "on")
-            and to is not None
-            and not (result.literal or moved_before)
-            and already(eyes, thing, to)
-        ):
-            result.settled.append(f"{thing.words} is already {goal.how} {to.words}")
-            continue
+        if to is not None and goal.how in ("in", "on"):
+            if goal.how == "in" and not _holds(eyes.thing(to.number), eyes.thing(thing.number), goal.what):
+                result.absent.append(f"the {to.words} holds no {thing.words}")
+            if not (result.literal or moved_before) and already(eyes, thing, to):
+                result.settled.append(f"{thing.words} is already {goal.how} {to.words}")
+                continue
         aims.append(Aim(command.kind, thing, goal.how, to, other, goal.side))
     return aims
+
+
+def _told_by_things(command: Command, goal: Destination, things: list[Named], eyes: Eyes, result: Aims) -> list[Aim]:
+    """Where things go that are told their places by what they look like, or by the prices beside them."""
+    assert goal.what is not None  # the grammar gives both a kind of thing
+    if goal.how == "ranked":
+        return ranked_aims(things, goal.what, goal.side == "descending", eyes, result)
+    return [aim for thing in things for aim in _matching_aim(command, goal, thing, eyes, result)]
 
 
 def _holds(holder: Thing | None, thing: Thing | None, said: Description | None) -> bool:
@@ -171,9 +168,6 @@ def _things(
         wanted = replace(wanted, superlative=None)
     left_out = {number for item in description.excluded for number in _numbers(item, eyes, result)}
     matches = [match for match in eyes.find(wanted) if match.thing is not None and match.thing.number not in left_out]
-    if wanted.colours and not (wanted.pattern or wanted.material):
-        # Beside yellow blocks, one in yellow and blue is not meant.
-        matches = [m for m in matches if m.score >= AS_MANY * max(other.score for other in matches)]
     matches.sort(key=lambda match: match.box.x0)
     if order is not None:
         keys = superlative_keys([match.thing for match in matches if match.thing is not None], order)
@@ -187,13 +181,11 @@ def _things(
     if not matches:
         result.misses(description, eyes)
     noun = description.noun if description.noun != "thing" else "object"
-    named = []
-    for match in matches:
-        assert match.thing is not None  # filtered above
-        named.append(
-            Named(unique_words(eyes, match.thing, noun, description.name, description.shape), match.thing.number)
-        )
-    return named
+    return [
+        Named(unique_words(eyes, match.thing, noun, description.name, description.shape), match.thing.number)
+        for match in matches
+        if match.thing is not None  # always: filtered above
+    ]
 
 
 def _miscounted(description: Description, count: int) -> Iterator[str]:
@@ -227,8 +219,7 @@ def _one(
         holds: The thing that is to go into it: of several that fit, one that is larger.
         fits_in: The thing it is to go into: of several that fit, one that is smaller.
     """
-    single = one_of(description)
-    single = replace(single, text=render(single))
+    single = worded(one_of(description))
     everything = eyes.find(single)
     taken |= {number for item in description.excluded for number in _numbers(item, eyes, result)}
     matches = [match for match in everything if match.thing is None or match.thing.number not in taken]
@@ -243,7 +234,8 @@ def _one(
     if len(equal) > 1:
         equal = _as_answered(single, equal, eyes, result.said) or equal
     if strict and not result.question and len(equal) > 1:
-        _ask(single, equal, eyes, result)
+        result.question = f"Which one is meant by 'the {single.text}'? {len(equal)} things fit equally well."
+        result.choices = tuple(_choices(single, equal, eyes))
     best = equal[0] if equal else next(iter(matches), None)
     if best is None:
         result.misses(single, eyes)
@@ -272,9 +264,11 @@ def _presumed(description: Description, number: int, chosen: Match, eyes: Eyes) 
     elif wish in PICTURE_SIDES and len(fits) == 1 and " " not in description.name:
         if not is_at(eyes.scene, chosen.point, wish, OUTER if wish == "middle" else 1 / 2):
             yield f"the {render(compared)} is not {side_words(wish)}"
-    elif wish is not None and wish not in PICTURE_SIDES and wish != "nearest" and len(fits) > description.ordinal:
+    elif wish not in (None, "middle", "nearest") and " " not in description.name and len(fits) > description.ordinal:
+        assert wish is not None  # ruled out just now
         first, second = sorted(superlative_keys(fits, wish))[description.ordinal - 1 :][:2]
-        if abs(first - second) < AS_LARGE * max(abs(first), abs(second)):
+        least = ASIDE * chosen.box.width if wish in PICTURE_SIDES else AS_LARGE * max(abs(first), abs(second))
+        if abs(first - second) < least:
             yield f"no {render(compared)} is clearly the {wish} of {len(fits)}"
 
 
@@ -297,15 +291,11 @@ def _equal(description: Description, matches: list[Match]) -> list[Match]:
 
 
 def _by_size(equal: list[Match], holds: Thing | None, fits_in: Thing | None) -> list[Match]:
+    """Those that are larger than what they are to hold, or else smaller than what they go into."""
+    sizes = [(match, match.thing.area_px) for match in equal if match.thing is not None and match.thing is not fits_in]
     if holds is not None:
-        return [m for m in equal if m.thing is not None and m.thing.area_px > LARGER * holds.area_px]
-    if fits_in is not None:
-        return [
-            m
-            for m in equal
-            if m.thing is not None and m.thing.number != fits_in.number and LARGER * m.thing.area_px < fits_in.area_px
-        ]
-    return []
+        return [match for match, size in sizes if size > LARGER * holds.area_px]
+    return [match for match, size in sizes if fits_in is not None and LARGER * size < fits_in.area_px]
 
 
 def _as_answered(description: Description, equal: list[Match], eyes: Eyes, said: tuple[str, ...]) -> list[Match]:
@@ -326,12 +316,6 @@ def _choices(description: Description, equal: list[Match], eyes: Eyes) -> list[s
     ]
 
 
-def _ask(description: Description, equal: list[Match], eyes: Eyes, result: Aims) -> None:
-    """Several things that fit equally well are a question for the human."""
-    result.question = f"Which one is meant by 'the {description.text}'? {len(equal)} things fit equally well."
-    result.choices = tuple(_choices(description, equal, eyes))
-
-
 def _matching_aim(command: Command, goal: Destination, thing: Named, eyes: Eyes, result: Aims) -> list[Aim]:
     """The thing goes to the one of that kind which shares its colour (texture, shape); none, or there already: no aim."""
     seen = eyes.thing(thing.number)
@@ -345,7 +329,7 @@ def _matching_aim(command: Command, goal: Destination, thing: Named, eyes: Eyes,
         return []
     there = matches[0].thing
     assert there is not None  # filtered above
-    to = Named(replace(wanted, text=render(wanted)), there.number)
+    to = Named(worded(wanted), there.number)
     if not result.literal and already(eyes, thing, to):
         result.settled.append(f"the {thing.words} is already in the {to.words}")
         return []
@@ -365,4 +349,4 @@ def already(eyes: Eyes, thing: Named, to: Named) -> bool:
     inner, outer = eyes.thing(thing.number), eyes.thing(to.number)
     if inner is None or outer is None or inner.number == outer.number:
         return False
-    return inner.on == outer.number or (outer.area_px > inner.area_px and covers(outer, inner.centre))
+    return inner.on == outer.number or (outer.area_px > inner.area_px and outer.covers(inner.centre))

@@ -23,7 +23,6 @@ SAME_PRICE = 0.005
 
 def ranked_aims(things: list[Named], into: Description, descending: bool, eyes: Eyes, result: Aims) -> list[Aim]:
     """One aim per thing: into the place that states its rank by price, the dearest first if `descending`."""
-    assert eyes.looked_at is not None  # an instruction always comes with its picture
     places = [match.thing.number for match in eyes.find(into) if match.thing is not None]
     ranked = [thing.number for thing in things if thing.number is not None]
     boxes, longest = [_thing(number, eyes).box for number in (*ranked, *places)], max(eyes.looked_at.size_px)
@@ -70,7 +69,6 @@ def _thing(number: int, eyes: Eyes) -> Thing:
 
 def _beside(numbers: list[int], cards: list[Card], eyes: Eyes) -> dict[int, Card]:
     """The card of each thing: nearest pairs first, each card and each thing once."""
-    assert eyes.looked_at is not None
     limit = NEAR * max(eyes.looked_at.size_px)
     pairs = []
     for number in numbers:

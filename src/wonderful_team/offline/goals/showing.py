@@ -5,7 +5,7 @@ Pictures of one camera share its framing: a pixel of the camera's view means the
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import cv2
 import numpy as np
@@ -15,8 +15,9 @@ from wonderful_team.core.pictures import Picture, Point
 from wonderful_team.errors import NotUnderstoodError
 from wonderful_team.offline.description import Description
 from wonderful_team.offline.eyes import Eyes, unique_words
-from wonderful_team.offline.goals.aims import Aim, Aims, Named
-from wonderful_team.offline.language import Command, render
+from wonderful_team.offline.goals.aims import Aim, Aims, Named, seen_named
+from wonderful_team.offline.goals.clearing import out_of_the_way
+from wonderful_team.offline.language import Command, worded
 from wonderful_team.offline.vision import Thing, likeness, see
 from wonderful_team.offline.vision.changes import LEFT, STAYED, came_to, difference, gap_px, moved_between
 
@@ -69,7 +70,11 @@ def _restored(result: Aims) -> list[Aim]:
 def _arranged(name: str, eyes: Eyes, result: Aims) -> list[Aim]:
     """Every thing that a picture shows goes to where it is there; what lies on such a place is brought away first."""
     shifts = _shifts(name, eyes)
-    moves = [shift for shift in shifts if _away(shift) > STAYED * shift.thing.radius_px or result.literal]
+    moves = [
+        shift
+        for shift in shifts
+        if gap_px(shift.to, shift.thing.centre) > STAYED * shift.thing.radius_px or result.literal
+    ]
     result.settled += [
         f"the {shift.placed.text} is where {{{name}}} shows it" for shift in shifts if shift not in moves
     ]
@@ -80,27 +85,21 @@ def _arranged(name: str, eyes: Eyes, result: Aims) -> list[Aim]:
     for other in eyes.scene.objects:
         blocked = [shift for shift in moves if other.number not in known and _blocks(other, shift)]
         if blocked:
-            spot = Description(noun="area", name="free", text="free area")
-            who = Named(unique_words(eyes, other, "object"), other.number)
-            why = f"it lies where the {blocked[0].placed.text} goes"
-            aims.append(Aim("put", who, "in", Named(spot), why=why))
+            aims.append(out_of_the_way(other, eyes, f"it lies where the {blocked[0].placed.text} goes"))
     cleared = tuple(range(first, first + len(aims)))
     for shift in ordered:
-        who = Named(unique_words(eyes, shift.thing, "object"), shift.thing.number)
-        aims.append(Aim("put", who, "in", Named(_place(shift)), after=cleared))
+        aims.append(Aim("put", seen_named(eyes, shift.thing), "in", Named(_place(shift)), after=cleared))
     return aims
 
 
 def _place(shift: Shift) -> Description:
-    place = Description(noun="area", text="", placed=shift.placed, like=shift.like, since=shift.since)
-    return replace(place, text=render(place))
+    return worded(Description(noun="area", text="", placed=shift.placed, like=shift.like, since=shift.since))
 
 
 def _shifts(name: str, eyes: Eyes) -> list[Shift]:
     """The things of a picture paired with those of now by their looks, the surest pair first."""
     shown = eyes.pictures[name]
-    there = Eyes(see(shown), {})
-    assert eyes.looked_at is not None  # set by eyes_of
+    there = Eyes(shown)
     pairs = sorted(
         ((likeness(one, other), k, one) for k, other in enumerate(there.scene.things) for one in eyes.scene.things),
         key=lambda pair: -pair[0],
@@ -114,20 +113,15 @@ def _shifts(name: str, eyes: Eyes) -> list[Shift]:
         given.add(k)
         taken.add(one.number)
         seen = there.scene.things[k]
-        to = eyes.looked_at.frame.point_to_picture(shown.frame.point_to_view(seen.centre))
+        to = eyes.here(shown, seen.centre)
         shifts.append(Shift(one, to, unique_words(there, seen, "object"), name))
     if not shifts:
         raise NotUnderstoodError(f"none of the things that {{{name}}} shows is in the picture")
     return sorted(shifts, key=lambda shift: shift.thing.centre)
 
 
-def _away(shift: Shift) -> float:
-    return float(np.hypot(shift.to[0] - shift.thing.centre[0], shift.to[1] - shift.thing.centre[1]))
-
-
 def _blocks(other: Thing, shift: Shift) -> bool:
-    gap = float(np.hypot(other.centre[0] - shift.to[0], other.centre[1] - shift.to[1]))
-    return gap < IN_THE_WAY * (other.radius_px + shift.thing.radius_px)
+    return gap_px(other.centre, shift.to) < IN_THE_WAY * (other.radius_px + shift.thing.radius_px)
 
 
 def _in_free_order(moves: list[Shift]) -> list[Shift]:
@@ -161,20 +155,15 @@ def _followed(command: Command, eyes: Eyes, result: Aims) -> list[Aim]:
                     f"it does not show what moves between {{{command.pictures[k - 1]}}} and {{{command.pictures[k]}}}"
                 )
             continue
-        assert eyes.looked_at is not None  # set by eyes_of
-        to = eyes.looked_at.frame.box_to_picture(frames[k].frame.box_to_view(arrived)).centre
+        to = eyes.here(frames[k], arrived.centre)
+        who = seen_named(eyes, mover)
+        shift = Shift(mover, to, who.description, command.pictures[k], command.pictures[k - 1])
         if named is not None and mover.number == named.number:
             who = Named(command.thing, mover.number)
-        else:
-            who = Named(unique_words(eyes, mover, "object"), mover.number)
         after = (first + len(aims) - 1,) if aims else ()
         under = _under(to, mover, eyes, where, aims)
-        if under is not None:
-            aims.append(Aim("put", who, "on", under, after=after))
-        else:
-            shift = Shift(mover, to, who.description, command.pictures[k], command.pictures[k - 1])
-            placed = replace(shift, placed=unique_words(eyes, mover, "object"))
-            aims.append(Aim("put", who, "in", Named(_place(placed)), after=after))
+        how, place = ("in", Named(_place(shift))) if under is None else ("on", under)
+        aims.append(Aim("put", who, how, place, after=after))
         where[mover.number] = to
     return aims
 
@@ -187,23 +176,17 @@ def _under(to: Point, mover: Thing, eyes: Eyes, where: dict[int, Point], aims: l
             thing = eyes.thing(number)
             if thing is not None and gap_px(where[number], to) < 0.6 * thing.radius_px:
                 return aim.thing
-    for thing in eyes.scene.things:
-        if (
-            thing.number != mover.number
-            and thing.number not in where
-            and gap_px(thing.centre, to) < 0.6 * thing.radius_px
-        ):
-            return Named(unique_words(eyes, thing, "object"), thing.number)
-    return None
+    there = [thing for thing in eyes.scene.things if thing.number not in (mover.number, *where)]
+    under = next((thing for thing in there if gap_px(thing.centre, to) < 0.6 * thing.radius_px), None)
+    return None if under is None else seen_named(eyes, under)
 
 
 def _mover(before: Picture, after: Picture, eyes: Eyes, where: dict[int, Point], named: Thing | None) -> Thing | None:
     """The thing of now that moved between two frames: it looks like that, and is where that was."""
     pair = moved_between(before, after)
-    assert eyes.looked_at is not None  # set by eyes_of
     if pair is None:
         return _left_its_place(before, after, eyes, where, named)
-    place = eyes.looked_at.frame.point_to_picture(before.frame.point_to_view(pair[0].centre))
+    place = eyes.here(before, pair[0].centre)
 
     def fits(thing: Thing) -> float:
         away = gap_px(where.get(thing.number, thing.centre), place) / thing.radius_px
@@ -222,17 +205,15 @@ def _left_its_place(
     scene = see(after)
     table = ~scene.occupied
     best, most = None, LEFT
-    assert eyes.looked_at is not None  # set by eyes_of
+    grid = cv2.resize(changed.astype(np.uint8), table.shape[::-1], interpolation=cv2.INTER_NEAREST) > 0
     for thing in eyes.scene.things:
         x, y = where.get(thing.number, thing.centre)
         points = _points(thing, (x - thing.centre[0], y - thing.centre[1]))
-        view = eyes.looked_at.frame.to_view(points)
-        pixels = (after.frame.to_picture(view) / scene.zoom).astype(int)
+        pixels = (after.frame.to_picture(eyes.looked_at.frame.to_view(points)) / scene.zoom).astype(int)
         inside = (pixels >= 0).all(axis=1) & (pixels[:, 0] < table.shape[1]) & (pixels[:, 1] < table.shape[0])
         pixels = pixels[inside]
         if not len(pixels):
             continue
-        grid = cv2.resize(changed.astype(np.uint8), table.shape[::-1], interpolation=cv2.INTER_NEAREST) > 0
         left = float((table & grid)[pixels[:, 1], pixels[:, 0]].mean())
         if named is not None and thing.number == named.number:
             left += 0.1

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from wonderful_team.offline.description import Description, Way
-from wonderful_team.offline.eyes import Eyes, one_of, unique_words
-from wonderful_team.offline.goals.aims import Aim, Aims, Named
-from wonderful_team.offline.language import Command, render
+from wonderful_team.offline.description import FREE, Description, Way
+from wonderful_team.offline.eyes import Eyes, one_of
+from wonderful_team.offline.goals.aims import Aim, Aims, Named, seen_named
+from wonderful_team.offline.language import Command, worded
 from wonderful_team.offline.pushing.sweeping import choose, is_walled, sweep_of, swept
 
 
@@ -39,10 +39,9 @@ def swept_aims(command: Command, what: Description, things: list[Named], eyes: E
         if order.aside:
             seen = eyes.thing(order.number)
             assert seen is not None  # it was chosen from this scene
-            who = words.get(order.number) or Named(unique_words(eyes, seen, "object"), order.number)
-            spot = Named(Description(noun="area", name="free", text="free area"))
+            who = words.get(order.number) or seen_named(eyes, seen)
             why = f"it blocks the way into the {to.words}"
-            aims.append(Aim("push", who, "in", spot, after=before, why=why, off=to, legs=("away",)))
+            aims.append(Aim("push", who, "in", Named(FREE), after=before, why=why, off=to, legs=("away",)))
             continue
         legs = ("before",) * (len(way.stops) - 1) + ("inside",)
         aims.append(replace(first, thing=words[order.number], after=before, legs=legs, others=free))
@@ -75,4 +74,4 @@ def _named(description: Description | None, eyes: Eyes, result: Aims) -> Named |
     number = eyes.number(single)
     if number is None:
         result.misses(single, eyes)
-    return Named(replace(single, text=render(single)), number)
+    return Named(worded(single), number)

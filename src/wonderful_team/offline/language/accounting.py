@@ -40,9 +40,8 @@ def passed_over(tokens: Sequence[Token], commands: Sequence[Command]) -> list[st
         "SUPER": {item.superlative for item in things} | relations,
         "DARK": {item.dark for item in things},
     }
-    for side in ("left", "right", "above", "below", "between"):
-        relation = side if side in ("above", "below", "between") else f"{side}_of"
-        if side not in places and relation not in relations:
+    for relation in ("left_of", "right_of", "above", "below", "between"):
+        if relation.removesuffix("_of") not in places and relation not in relations:
             said[relation.upper()] = set()
     lost = [token.text for token in tokens if token.kind in said and token.value not in said[token.kind]]
     lost += [token.text for token in tokens if token.kind in ("NOUN", "SHAPE") and not _is_meant(token, things)]
@@ -50,14 +49,13 @@ def passed_over(tokens: Sequence[Token], commands: Sequence[Command]) -> list[st
     lost += [token.text for token, after in pairwise([*tokens, _END]) if token.text in _SIDES and not (
         token.value in sides or turned or relations or after.kind in _PLACES)]  # fmt: skip
     kinds = {command.kind for command in commands}
-    hows = {command.to.how for command in commands if command.to is not None}
     for at, token in enumerate(tokens):
         after = tokens[at + 1].kind if at + 1 < len(tokens) else ""
         if (
             (token.kind == "ANGLE" and "rotate" not in kinds)
             or (token.kind == "BESIDE_IT" and not any(item.related for item in things))
             or (token.kind == "EXCEPT" and not any(item.excluded and item.quantity != "one" for item in things))
-            or (token.kind == "ORIGIN" and after not in _PLACES and not hows & {"origin"} and "rotate" not in kinds)
+            or (token.kind == "ORIGIN" and after not in _PLACES and "origin" not in places and "rotate" not in kinds)
         ):
             lost.append(token.text)
     return lost

@@ -9,13 +9,13 @@ from typing import Any, Literal, TypeAlias
 from lark import Token, Tree
 
 from wonderful_team.offline.description import Description, Related
-from wonderful_team.offline.language.wording import render
+from wonderful_team.offline.language.wording import worded
 
 Change: TypeAlias = Callable[[Description], Description]
 
 _RELATIONS = {"LEFT_OF": "left_of", "RIGHT_OF": "right_of", "ABOVE": "above", "BELOW": "below", "NEAR": "near",
               "BY": "near", "FAR": "far_from", "ON": "on", "IN": "inside"}  # fmt: skip
-_SAME = {"colour": "same_colour", "texture": "same_pattern", "shape": "same_shape"}
+SAME = {"colour": "same_colour", "texture": "same_pattern", "shape": "same_shape"}
 ONE = "one"
 """Name of a description whose noun is one that was said before: "the green one"."""
 OTHERS = "others"
@@ -46,7 +46,7 @@ def thing_of(tree: Tree[Token]) -> Description:
         description = replace(description, quantity="one")
     if description.quantity == "one" and any(token.type == "SUPER" and _compares(token) for token in words):
         description = replace(description, number=max(description.number, 2))
-    return replace(description, text=render(description))
+    return worded(description)
 
 
 def _compares(token: Token) -> bool:
@@ -72,9 +72,8 @@ def _place_of(tree: Tree[Token]) -> Description:
     like = next((str(value_of(tokens_in(slot)[-1])) for slot in trees(tree, "in_slot")), None)
     if like is None:
         like, thing = thing.like, replace(thing, like=None)
-        thing = replace(thing, text=render(thing))
-    description = Description(noun="area", text="", placed=thing, like=like)
-    return replace(description, text=render(description))
+        thing = worded(thing)
+    return worded(Description(noun="area", text="", placed=thing, like=like))
 
 
 def related_of(tree: Tree[Token]) -> Related:
@@ -220,7 +219,7 @@ def _plain_post(tree: Tree[Token]) -> Change:
             aspect = str(value_of(next(token for token in tokens_in(tree) if token.type == "ASPECT")))
             named = [thing_of(np) for np in trees(tree, "np")]
             reference = named[0] if named else Description(noun="thing", name=PRONOUN, text=PRONOUN)
-            return replace(description, related=(*description.related, Related(_SAME[aspect], (reference,))))  # type: ignore[arg-type]
+            return replace(description, related=(*description.related, Related(SAME[aspect], (reference,))))  # type: ignore[arg-type]
         if "SUPER" in kinds and "TO" in kinds:
             reference = thing_of(next(trees(tree, "np")))
             return replace(description, related=(*description.related, Related("nearest", (reference,))))

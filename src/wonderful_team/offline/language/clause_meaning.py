@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 
-from wonderful_team.offline.description import Description, Related
+from wonderful_team.offline.description import FREE, Description, Related
 from wonderful_team.offline.language.changes import PRONOUN
 from wonderful_team.offline.language.clause_parts import PLACES, Parts, Unclear
 from wonderful_team.offline.language.commands import Destination
 from wonderful_team.offline.language.meaning import Meaning, two_of
-from wonderful_team.offline.language.wording import render, split_colours
+from wonderful_team.offline.language.wording import singles, split_colours, worded
 
 _GOES = frozenset(("INTO", "ONTO", "TO"))
 _RELATIONS = {"in": "inside", "on": "on", "left": "left_of", "right": "right_of", "above": "above", "below": "below",
@@ -19,7 +19,7 @@ _LEVELS = {"bottommost": 0, "middle": 1, "topmost": 2}
 _TWO = 2
 
 
-def _things(parts: Parts, meaning: Meaning) -> list[Description]:
+def _things(parts: Parts) -> list[Description]:
     """Noun phrases that stand after no word for a place."""
     out, free = [], True
     for kind, value in parts.items:
@@ -34,9 +34,9 @@ def _things(parts: Parts, meaning: Meaning) -> list[Description]:
 
 def read_swap(parts: Parts, meaning: Meaning) -> None:
     """Two things change places."""
-    things = [part for item in parts.of("np") if item.name != "table" for part in split_colours(item)]
-    if len(things) == _TWO:
-        things = [replace(item, quantity="one", number=1) for item in things]
+    things = [item for item in parts.of("np") if item.name != "table"]
+    if len(apart := [part for item in things for part in singles(item)]) == _TWO:
+        things = apart
     if len(things) == 1 and (things[0].quantity == "number" and things[0].number == _TWO):
         raise Unclear("name the two things to be swapped, each by its own words")
     if len(things) != _TWO:
@@ -141,7 +141,7 @@ def read_tower(parts: Parts, meaning: Meaning) -> None:
         for _, thing in sorted(placed, key=lambda item: item[0])
         for part in split_colours(thing)
     ]
-    listed = [replace(thing, text=render(thing)) for thing in ordered]
+    listed = [worded(thing) for thing in ordered]
     if chains:
         listed.insert(0, chains[0][-1])
     if len(listed) < _TWO:
@@ -162,7 +162,7 @@ def read_contain(parts: Parts, meaning: Meaning) -> None:
 
 def read_back(parts: Parts, meaning: Meaning) -> None:
     """Things go back to where they stood."""
-    things = _things(parts, meaning)
+    things = _things(parts)
     meaning.back([thing for thing in things if thing.name != "table"])
 
 
@@ -181,12 +181,13 @@ def read_put(parts: Parts, meaning: Meaning) -> None:
     if special is not None:
         special(parts, meaning, kind)
         return
-    things = _things(parts, meaning)
+    things = _things(parts)
     pairs, source = _placed_pairs(parts)
     sides = parts.of("side")
-    if sides and (pairs or "ITS" in parts.kinds):
+    if sides and (pairs or len(sides) > 1 or "ITS" in parts.kinds):
         raise Unclear("it is not clear what is at that side")
-    if "REMOVE" in parts.kinds or (source is not None and not pairs and not sides and wants):
+    removed = "REMOVE" in parts.kinds and not any(how in _GOES for how, _ in pairs)
+    if removed or (source is not None and not pairs and not sides and wants):
         _away(things, source, meaning, sure="REMOVE" in parts.kinds)
     elif pairs:
         if not wants and meaning.done == [] and len(things) != 1:
@@ -236,18 +237,11 @@ def _pairwise(parts: Parts, meaning: Meaning, kind: str) -> None:
         raise Unclear("it is not said where to put them")
     things = [value for name, value in parts.items[:at] if name == "np"]
     goals = [value for name, value in parts.items[at:] if name == "np"]
-    goals = [part for goal in goals for part in _by_colour(goal, len(things))]
+    goals = [part for goal in goals for part in singles(goal)]
     if len(things) != len(goals) or len(things) < _TWO:
         raise Unclear(f"'respectively' pairs {len(things)} things with {len(goals)} places")
     for thing, goal in zip(things, goals, strict=True):
         meaning.put(thing, Destination(PLACES[parts.items[at][1]], goal), kind)  # type: ignore[arg-type]
-
-
-def _by_colour(goal: Description, count: int) -> list[Description]:
-    if len(goal.colours) != count or goal.pattern or goal.quantity == "one":
-        return [goal]
-    parts = [replace(goal, colours=(colour,), quantity="one", number=1) for colour in goal.colours]
-    return [replace(part, text=render(part)) for part in parts]
 
 
 def _placed_pairs(parts: Parts) -> tuple[list[tuple[str, Description]], Description | None]:
@@ -273,8 +267,7 @@ def _placed_pairs(parts: Parts) -> tuple[list[tuple[str, Description]], Descript
 
 def _with(thing: Description, word: str, reference: Description) -> Description:
     related = Related(_RELATIONS[PLACES[word]], (reference,))  # type: ignore[arg-type]
-    full = replace(thing, related=(*thing.related, related))
-    return replace(full, text=render(full))
+    return worded(replace(thing, related=(*thing.related, related)))
 
 
 def _between(parts: Parts, meaning: Meaning, kind: str) -> None:
@@ -289,6 +282,10 @@ def _between(parts: Parts, meaning: Meaning, kind: str) -> None:
 
 def _where(parts: Parts, meaning: Meaning, kind: str) -> None:
     """The words "the bowl (the top left corner) is where the block belongs", "put the banana where the apple is"."""
+    nps = parts.of("np")
+    if len(parts.of("where")) == _TWO and len(nps) == 2 * _TWO and all(map(_same_looks, nps[:_TWO], nps[:1:-1])):
+        meaning.swap(nps[0], nps[1])
+        return
     position = next(k for k, (name, _) in enumerate(parts.items) if name == "where")
     before = [value for name, value in parts.items[:position] if name == "np"]
     after = [value for name, value in parts.items[position:] if name == "np"]
@@ -299,18 +296,23 @@ def _where(parts: Parts, meaning: Meaning, kind: str) -> None:
     if len(before) != 1 or len(after) != 1 or sides:
         raise Unclear("it is not clear what goes where")
     if "AUX" in {name for name, _ in parts.items[:position]} and not parts.kinds & {"PUT", "PUSH"}:
-        meaning.put(after[0], Destination("in", before[0]), kind)
+        how = next((value for name, value in parts.items[:position] if name == "place"), "IN")
+        meaning.put(after[0], Destination(PLACES[how], before[0]), kind)  # type: ignore[arg-type]
     else:
         meaning.put(before[0], Destination("origin", after[0]), kind)
 
 
+def _same_looks(one: Description, other: Description) -> bool:
+    """Whether words may mean the same thing: "the yellow block" and "the yellow one"."""
+    return (one.colours, one.shape, one.like) == (other.colours, other.shape, other.like)
+
+
 def _away(things: list[Description], source: Description | None, meaning: Meaning, *, sure: bool) -> None:
     """Onto free table; unless sure, a following "put it …" makes one move of both."""
-    free = Description(noun="area", name="free", text="free area")
     meaning.tentative, first = None, len(meaning.done)
     for thing in meaning.or_last(things):
         moved = _with(thing, "IN" if source.noun == "container" else "ON", source) if source is not None else thing
-        meaning.put(moved, Destination("in", free), "put")
+        meaning.put(moved, Destination("in", FREE), "put")
     meaning.tentative = None if sure else first
 
 
@@ -340,6 +342,10 @@ def _without_place(parts: Parts, things: list[Description], meaning: Meaning, go
         if last.to is not None and last.to.what is not None and _alike_kind(things[0], last.to.what):
             meaning.put(last.thing, replace(last.to, what=things[0]), last.kind)
             return
+        if things[0].noun == last.thing.noun and not things[0].like:
+            # "put the lemon into the bowl, then the pear": another thing of that kind to the same place.
+            meaning.put(things[0], meaning.last_goal, last.kind)
+            return
     if goes and things[0].name != PRONOUN and meaning.pending_put is None:
         raise Unclear("it is not said where to put it")
 
@@ -361,7 +367,7 @@ _SPECIAL: dict[str, Callable[[Parts, Meaning, str], None]] = {
     "PLACE_OF": _home,
     "RESPECTIVELY": _pairwise,
     "where": _where,
-    "there": lambda parts, meaning, kind: meaning.there(_things(parts, meaning), kind),
+    "there": lambda parts, meaning, kind: meaning.there(_things(parts), kind),
     "between": _between,
 }
 """Words that settle alone how a clause is read."""

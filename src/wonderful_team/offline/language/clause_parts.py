@@ -11,7 +11,7 @@ from wonderful_team.offline.language.changes import PRONOUN, thing_of
 from wonderful_team.offline.language.grammar import parse
 from wonderful_team.offline.language.meaning import Meaning
 from wonderful_team.offline.language.tokens import Token
-from wonderful_team.offline.language.wording import render
+from wonderful_team.offline.language.wording import worded
 
 _GOALS = frozenset(("place", "side", "between", "where", "there", "origin", "off", "from"))
 """Parts that say where to."""
@@ -20,13 +20,12 @@ _WITH = frozenset(("WITH", "FOR"))
 VERBS = frozenset(("PUT", "TAKE", "ROTATE", "STACK", "PUSH", "SORT", "SWAP", "RETURN", "REMOVE", "LEAVE"))
 PLACES = {"IN": "in", "INTO": "in", "TO": "in", "ON": "on", "ONTO": "on", "LEFT_OF": "left", "RIGHT_OF": "right",
            "ABOVE": "above", "BELOW": "below", "NEAR": "near", "BY": "near"}  # fmt: skip
-_IN_NOUN = frozenset(
-    "EACH ALL NUMBER REST COLOUR ORANGE DARK PATTERN MATERIAL LOOK SHAPE SUPER SIDE ORDINAL FREE SLOT NOUN LETTER ONE EVERYTHING IT "
-    "THEY TABLE ASPECT ONE_OF OF_TWO SIDE_POST ON_TABLE CORNER LIKE SHAPED WITH OF THAT AUX AS SAME SHARE FROM EXCEPT FORMER LATTER BESIDE_IT WHOSE ITS".split()
-)
 STARTS = frozenset(
     "EACH ALL NUMBER REST COLOUR ORANGE DARK PATTERN MATERIAL LOOK SHAPE SUPER SIDE ORDINAL FREE SLOT NOUN LETTER ONE EVERYTHING IT THEY "
     "TABLE ONE_OF FORMER LATTER THAT".split()
+)
+_IN_NOUN = STARTS | frozenset(
+    "AS ASPECT AUX BESIDE_IT CORNER EXCEPT FROM ITS LIKE OF OF_TWO ON_TABLE SAME SHAPED SHARE SIDE_POST WHOSE WITH".split()
 )
 _LOOKS = frozenset(("COLOUR", "ORANGE", "DARK"))
 _SOFT = frozenset("AUX THAT GIVE WANT OF IT WITH FOR AS AND COMMA THERE_IS ON_TABLE TABLE EACH AROUND SHARE".split())
@@ -125,7 +124,7 @@ def _leave_out(parts: Parts, found: Description) -> None:
         raise Unclear("it is not clear what the exception is from")
     del parts.items[-1]
     whole = replace(parts.items[at][1], excluded=(*parts.items[at][1].excluded, found))
-    parts.items[at] = ("np", replace(whole, text=render(whole)))
+    parts.items[at] = ("np", worded(whole))
 
 
 def _noun_phrase(clause: Sequence[Token], at: int, apart: frozenset[str]) -> tuple[int, Description | None]:

@@ -8,12 +8,11 @@ from __future__ import annotations
 
 import re
 
+from wonderful_team.offline.description import OPPOSITE
 from wonderful_team.offline.language.phrases import PHRASES
 from wonderful_team.offline.language.shows import Shows
 from wonderful_team.offline.language.vocabulary import ARTICLES, FILLERS, WORDS
 
-OPPOSITE = {"tallest": "shortest", "shortest": "tallest", "darkest": "lightest", "lightest": "darkest", "largest": "smallest",
-            "smallest": "largest"}  # fmt: skip
 SLOT = re.compile(r"\{([^{}]+)\}")
 _DEFINING = frozenset(
     """this that these those here is are be a an the call calls called name names named known as means mean meaning meant show shows shown look
@@ -154,30 +153,7 @@ def _with_superlative(text: str, word: str, meaning: str) -> str:
     other = r"(?:\s+(?:than|as)\s+(?:the\s+)?(?:other|others|rest)(?:\s+(?:one|ones))?)?"
     opposite = rf"\b(?:less|the least|least|not so|not as|not|un)\s*\b{word}\b{other}"
     text = re.sub(opposite, f"{OPPOSITE[meaning]} ", text, flags=re.IGNORECASE)
-    text = re.sub(rf"\b(?:the most|more\s+|most\s+)?{word}\b{other}", f"{meaning} ", text, flags=re.IGNORECASE)
-    return _of_several(text, meaning, OPPOSITE[meaning])
-
-
-def _of_several(text: str, *superlatives: str) -> str:
-    """The words "of the two {x}, the tallest one" and "there are two {x}; the one that is tallest" as "the tallest {x}"."""
-    best = rf"(?P<best>{'|'.join(superlatives)})"
-    thing = r"(?P<thing>\{[^{}]+\})"
-    one = rf"(?:the\s+)?(?:{best}\s+(?:one|object|thing)\b(?:\s+of (?:them|these|the two))?|one\s+(?:that|which)\s+is\s+(?:the\s+)?(?P<best2>{'|'.join(superlatives)}))"
-    found = re.search(
-        rf"(?:there\s+(?:are|is)\s+(?:two|several|more than one)\s+(?:of\s+)?(?:the\s+)?{thing}\s*[.:;,]|\bof\s+(?:the\s+)?(?:two|both|several)\s+(?:of\s+)?(?:the\s+)?(?P<thing2>\{{[^{{}}]+\}})\s*,)",
-        text,
-        re.IGNORECASE,
-    )
-    if found is not None and re.search(one, text[found.end() :], re.IGNORECASE):
-        name = found.group("thing") or found.group("thing2")
-        after = re.sub(
-            one,
-            lambda hit: f"the {hit.group('best') or hit.group('best2')} {name}",
-            text[found.end() :],
-            flags=re.IGNORECASE,
-        )
-        text = text[: found.start()] + " " + after
-    return text
+    return re.sub(rf"\b(?:the most|more\s+|most\s+)?{word}\b{other}", f"{meaning} ", text, flags=re.IGNORECASE)
 
 
 def _lower(text: str) -> str:

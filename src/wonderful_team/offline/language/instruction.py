@@ -7,17 +7,18 @@ words beside it.
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 
 from wonderful_team.errors import NotUnderstoodError
 from wonderful_team.offline.language.commands import Command, Understood
 from wonderful_team.offline.language.definitions import define_words
-from wonderful_team.offline.language.ordering import in_order
+from wonderful_team.offline.language.framing import NOTHING_ELSE
 from wonderful_team.offline.language.pictured import read_pictured, unknown_in_pictured, without_mentions
-from wonderful_team.offline.language.reading import try_describe, understand, unframed
+from wonderful_team.offline.language.reading import try_describe, understand
+from wonderful_team.offline.language.rewrites import in_order, written
 from wonderful_team.offline.language.shown_turns import define_turns
 from wonderful_team.offline.language.shows import Shows
 from wonderful_team.offline.language.tokens import refusal
-from wonderful_team.offline.language.turns_of_phrase import written
 
 
 def read_instruction(text: str, shows: Shows) -> Understood:
@@ -26,11 +27,9 @@ def read_instruction(text: str, shows: Shows) -> Understood:
     Raises:
         NotUnderstoodError: A word is unknown, a new word is not shown clearly, or the words do not make an instruction.
     """
-    return unframed(text, lambda words: _read(words, shows))
-
-
-def _read(text: str, shows: Shows) -> Understood:
-    plain = without_mentions(define_words(define_turns(written(text), shows, try_describe), shows), shows)
+    said = written(text)
+    bare = said.removeprefix(NOTHING_ELSE).lstrip(" :.,;")
+    plain = without_mentions(define_words(define_turns(bare, shows, try_describe), shows), shows)
 
     told: list[Understood] = []
 
@@ -41,7 +40,8 @@ def _read(text: str, shows: Shows) -> Understood:
     try:
         commands = read_pictured(in_order(plain), shows, read, try_describe) if shows.names("scene", "frame") else None
         if commands is None:
-            return understand(plain)
+            understood = understand(plain)
+            return replace(understood, nothing_else=understood.nothing_else or bare != said)
     except NotUnderstoodError as error:
         unknown = unknown_in_pictured(plain, shows)
         if unknown and not any(word in str(error) for word in unknown):
@@ -49,4 +49,4 @@ def _read(text: str, shows: Shows) -> Understood:
         raise
     used = tuple(re.findall(r"\{[^{}]+\}|\w+", text))
     spared = tuple(thing for part in told for thing in part.spared)
-    return Understood(text, commands, used, any(part.nothing_else for part in told), spared)
+    return Understood(text, commands, used, bare != said or any(part.nothing_else for part in told), spared)

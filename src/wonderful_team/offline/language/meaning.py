@@ -6,11 +6,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 from wonderful_team.errors import NotUnderstoodError
-from wonderful_team.offline.description import Description
-from wonderful_team.offline.language.changes import PRONOUN
+from wonderful_team.offline.description import FREE, Description
+from wonderful_team.offline.language.changes import PRONOUN, SAME
 from wonderful_team.offline.language.commands import Command, Destination
-from wonderful_team.offline.language.sharing import own_match
-from wonderful_team.offline.language.wording import render
+from wonderful_team.offline.language.wording import singles, worded
+
+_ASPECT = {relation: aspect for aspect, relation in SAME.items()}
 
 
 @dataclass
@@ -51,8 +52,7 @@ class Meaning:
 
     def swap(self, one: Description, other: Description) -> None:
         """Two things change places: the first waits on free table meanwhile."""
-        spot = Description(noun="area", name="free", text="free area")
-        self.put(one, Destination("in", spot))
+        self.put(one, Destination("in", FREE))
         self.put(other, Destination("origin", one))
         self.done[-1] = replace(self.done[-1], after_last=True)
         self.put(one, Destination("origin", other))
@@ -136,8 +136,7 @@ class Meaning:
             replace(item, to=tuple(last if to.name == PRONOUN else to for to in item.to))
             for item in description.related
         )
-        full = replace(description, related=related)
-        return replace(full, text=render(full))
+        return worded(replace(description, related=related))
 
     def _add(self, command: Command) -> None:
         """Keep a command; what is only said again ("the block belongs in the bowl; put it there") counts once."""
@@ -155,9 +154,33 @@ def two_of(named: Sequence[Description]) -> tuple[Description, Description]:
     """Two references: as named, or the outer ones of "the two bowls"."""
     if len(named) == 2:  # noqa: PLR2004
         return named[0], named[1]
+    if len(named) == 1 and len(apart := singles(named[0])) == 2:  # noqa: PLR2004
+        return apart[0], apart[1]
     if len(named) == 1 and named[0].quantity != "one" and named[0].superlative is None:
         single = replace(named[0], quantity="one", number=1)
         single = replace(single, number=max(2, named[0].number))  # so many are spoken of
         left, right = (replace(single, superlative=side) for side in ("leftmost", "rightmost"))
-        return replace(left, text=render(left)), replace(right, text=render(right))
+        return worded(left), worded(right)
     raise NotUnderstoodError("'between' needs two things; name both")
+
+
+def _may_mean(thing: Description, noun: str, name: str) -> bool:
+    """Whether a noun may stand for the thing moved."""
+    if name == PRONOUN or (noun in ("object", "thing") and not name):
+        return True
+    return thing.noun == noun and (not name or thing.name == name)
+
+
+def own_match(goal: Destination, thing: Description) -> Destination:
+    """The same goal; "the bowl of the same colour as that block", said of each block, is the one that matches it."""
+    what = goal.what
+    if what is None or goal.how not in ("in", "on") or thing.quantity not in ("each", "all"):
+        return goal
+    for related in what.related:
+        to = related.to[0]
+        plain = to == replace(Description(noun=to.noun, text=to.text, name=to.name), quantity=to.quantity)
+        if related.relation in _ASPECT and plain and not to.like and _may_mean(thing, to.noun, to.name):
+            kind = replace(what, related=tuple(item for item in what.related if item is not related))
+            kind = worded(kind)
+            return Destination("matching", kind, aspect=_ASPECT[related.relation])  # type: ignore[arg-type]
+    return goal

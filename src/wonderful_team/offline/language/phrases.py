@@ -21,7 +21,10 @@ def _origin_phrases() -> list[str]:
     for it in ("it", "they", "everything", "all"):
         for was in ("was", "were", "came from", "stood", "lay", "started", "had been", "used to be", "began", "has been",
                     "was before", "were before", "was at first", "was originally", "were originally", "belonged"):  # fmt: skip
-            phrases += [f"{to}where {it} {was}" for to in ("", "to ", "back to ", "back ")]
+            phrases += [
+                f"{to} {it} {was}"
+                for to in ("where", "to where", "back to where", "back where", "to how", "back to how")
+            ]
     return phrases
 
 
@@ -45,18 +48,7 @@ def _side_phrases(side: str) -> Iterator[tuple[Entry, str]]:
         yield from (
             (("SIDE_POST", f"{side}most"), f"{place} {side}{end}") for end in ("", " side", " hand side", " edge")
         )
-    for far in (
-        "far",
-        "on far",
-        "at far",
-        "on very",
-        "at very",
-        "furthest",
-        "farthest",
-        "furthest to",
-        "farthest to",
-        "to its",
-    ):
+    for far in "far;on far;at far;on very;at very;furthest;farthest;furthest to;farthest to;to its".split(";"):
         yield ("SIDE_POST", f"{side}most"), f"{far} {side}"
     yield ("SIDE_POST", f"{side}most"), f"{side}wards"
 
@@ -108,29 +100,26 @@ _LISTED: dict[Entry, str] = {
     ("BETWEEN", "between"): """
     in between; in gap between; in space between; into gap between; into space between; halfway between;
     midway between; in middle between; in middle , between; right between""",
-    (
-        "TAKE",
-        "take",
-    ): "pick up; round up; take hold of; look for; take up; get hold of; lift up; start with; begin with",
+    ("TAKE", "take"): """
+    pick up; round up; take hold of; look for; take up; get hold of; lift up; start with; begin with""",
     ("WANT", "want"): """
     i want; i would like; i d like; i want you to have; see to it that; make sure that; make sure; ensure that; ensure;
-    i wish; we want; i need; we need; i would love; be sure that; i d love""",
+    i wish; we want; time for; it is time for; i need; we need; i would love; be sure that; i d love""",
     ("PUT", "put"): "put down; set down; place down; lay down; drop off; let go of",
     ("AUX", "aux"): """
     has to be; have to be; needs to be; need to be; is to be; are to be; ought to be; should end up; must end up; should
     be; must be; must go; should go; needs to go; has to go; have to go; need to go; is supposed to go; is supposed to
     be; is to go; are to go; to be; ends up; end up; to go; to end up; supposed to be; needs; has to; need to; needs to;
-    belongs; should sit; should lie; must lie; should rest; to rest; to sit; to lie; to become; rest; rests; sit; sits;
+    belongs; finish up; finishes up; wind up; winds up; should sit; should lie; must lie; should rest; to rest; to sit; to lie; to become; rest; rests; sit; sits;
     to stand""",
     ("SKIP", "skip"): """
-    you should; you must; you need to; you have to; in place; on spot; where it is; where it stands; where it lies;
-    at its place; in its place; at its current position; go ahead and; try to; be so kind as to; it is time to;
-    as follows; make it so that; if you can; if possible; if you please; of your choice; as it is; out of way;
+    in place; on spot; where it is; where it stands; where it lies;
+    at its place; in its place; at its current position; 
+    as follows; make it so; make it so that; if possible; of your choice; from now on; as it is; out of way;
     and let go; without moving it; without lifting it; without changing its position; keeping it in place;
     without moving it away; keeping its position; together; what about; how about; it would be nice to have;
-    would be nice if; shall we; would you be so kind as to; i d appreciate it if you; i would appreciate it if you;
-    time to; in end; at end; as first step; as last step; to start with; to begin with; as first thing; as last thing;
-    task; for me; on its own; for now; right now; at once; if you would; if you like; one after other;
+    would be nice if; in end; at end; as first step; as last step; to start with; to begin with; as first thing; as last thing;
+    task; for me; on its own; for now; right now; at once; one after other;
     one after another; one by one; in any order; following; as it stands; over there""",
     ("BY", "by"): "by angle of; through angle of; by total of",
     ("ROTATE", "rotate"): "change orientation of; re orient; turn around; turn round; rotate around; spin around",
@@ -147,7 +136,7 @@ _LISTED: dict[Entry, str] = {
     quarter turn; quarter of turn; right angle; quarter rotation; quarter of full turn; one quarter turn; quarter of
     rotation; quarter""",
     ("ANGLE", 180.0): """
-    half turn; half rotation; half of turn; one half turn; half way round; halfway round; halfway around""",
+    upside down; half turn; half rotation; half of turn; one half turn; half way round; halfway round; halfway around""",
     ("ANGLE", 270.0): "three quarter turn; three quarters of turn; three quarters turn",
     ("ANGLE", 120.0): "third of turn; one third of turn; third of full turn; third of rotation",
     ("ANGLE", 240.0): "two thirds of turn; two thirds of rotation; two thirds of full turn",
@@ -198,14 +187,13 @@ _LISTED: dict[Entry, str] = {
     in; shown in; shown by; pictured in; depicted in; from picture; of picture; in picture; shown as; that is shown in;
     seen in; like one in; as in; displayed in; appearing in; that appears in; matching picture; resembling; that
     resembles; illustrated in; visible in""",
-    (
-        "EACH",
-        "each",
-    ): "each of; every one of; each one of; every single; each single; every single one of; every last; each and every",
+    ("EACH", "each"): """
+    each of; every one of; each one of; every single; each single; every single one of; every last; each and every""",
     ("ALL", "all"): "all of; all; all existing",
     ("ALL", 2): "both of; both",
     ("THEY", "they"): "they all; they both",
     ("EVERYTHING", "everything"): "every thing; all things",
+    ("AND", "and"): "along with; together with; as well as; plus",
     ("THEN", "then"): """
     and then; after that; and after that; next; followed by; and afterwards; and finally; finally; before you; and
     subsequently; once that is done; when that is done; and next; and lastly; after which; as second step; at last; and

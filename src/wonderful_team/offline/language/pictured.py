@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from wonderful_team.offline.description import Description
 from wonderful_team.offline.language.commands import Command
@@ -163,8 +163,6 @@ def _only_mentions(unit: Unit, scenes: set[str]) -> bool:
 
 
 def _after(commands: tuple[Command, ...], then: bool) -> tuple[Command, ...]:
-    from dataclasses import replace
-
     return (replace(commands[0], after_last=True), *commands[1:]) if then and commands else commands
 
 
@@ -177,12 +175,14 @@ def _with_frames_together(units: list[Unit], frames: set[str]) -> list[Unit]:
     at = [k for k, unit in enumerate(units) if set(SLOT.findall(unit.text)) & frames]
     if not at:
         return units
-    middle = units[at[0] : at[-1] + 1]
-    after = units[at[-1] + 1 :]
+    before, middle, after = units[: at[0]], units[at[0] : at[-1] + 1], units[at[-1] + 1 :]
+    if before and not any(_words(unit.text) for unit in middle) and _words(before[-1].text) <= _FOLLOWING:
+        # "Copy this motion with {a}: {f0} {f1}", in two sentences.
+        before, middle = before[:-1], [before[-1], *middle]
     if after and _words(after[0].text) <= _FOLLOWING and _words(after[0].text) & _LIKE_SHOWN:
         # "Watch {f0} {f1} and move {a} likewise."
         middle, after = [*middle, after[0]], after[1:]
-    return [*units[: at[0]], Unit(_joined(middle), middle[0].then, middle[0].mark), *after]
+    return [*before, Unit(_joined(middle), middle[0].then, middle[0].mark), *after]
 
 
 def _with_scenes_together(units: list[Unit], scenes: set[str]) -> list[Unit]:
@@ -230,22 +230,7 @@ def _following(
     if others:
         what = describe(f"object shown in {{{others[0]}}}")
         return Command("follow", what, pictures=ordered) if what is not None and words <= _FOLLOWING else None
-    if words <= _FOLLOWING:
-        return Command("follow", EVERYTHING, pictures=ordered)
-    named = _thing_in(SLOT.sub(" ", unit.text), describe)
-    return Command("follow", named, pictures=ordered) if named is not None else None
-
-
-def _thing_in(rest: str, describe: Callable[[str], Description | None]) -> Description | None:
-    """A thing in words: "follow this motion with the red star"."""
-    found = re.search(
-        r"\b(?:for|with|of|to|by moving|moving|let|move)\s+(the [a-z -]+?)(?=\s*(?:[:.,;]|$|\bas\b|\balong\b|\bfollow))",
-        rest.lower(),
-    )
-    what = describe(found.group(1)) if found is not None else None
-    if what is None or found is None:
-        return None
-    return what if _words(rest.lower().replace(found.group(1), " ")) <= _FOLLOWING else None
+    return Command("follow", EVERYTHING, pictures=ordered) if words <= _FOLLOWING else None
 
 
 def _goes_back(unit: Unit) -> bool:

@@ -6,7 +6,6 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
 from dataclasses import replace
 from functools import lru_cache
 
@@ -19,17 +18,14 @@ from wonderful_team.offline.language.changes import related_of, thing_of
 from wonderful_team.offline.language.clause_parts import PLACES, VERBS, Unclear
 from wonderful_team.offline.language.commands import Command, Understood
 from wonderful_team.offline.language.conditions import open_conditions
-from wonderful_team.offline.language.framing import without_frames
 from wonderful_team.offline.language.grammar import parse
 from wonderful_team.offline.language.meaning import Meaning
-from wonderful_team.offline.language.ordering import in_order
 from wonderful_team.offline.language.ranking import read_ranking
 from wonderful_team.offline.language.references import with_noun, with_nouns
-from wonderful_team.offline.language.rewrites import put_plainly
+from wonderful_team.offline.language.rewrites import in_order, put_plainly, turned
 from wonderful_team.offline.language.slots import matching_template, read_clauses
 from wonderful_team.offline.language.templates import gathering_template
-from wonderful_team.offline.language.tokens import Token, refusal, tokenise
-from wonderful_team.offline.language.turns_of_phrase import turned
+from wonderful_team.offline.language.tokens import OTHERS_MAY, Token, refusal, tokenise
 from wonderful_team.offline.language.vocabulary import nearest_words
 
 
@@ -40,22 +36,6 @@ def understand(text: str) -> Understood:
     Raises:
         NotUnderstoodError: A word is unknown, or the words do not make an instruction; says which.
     """
-    return unframed(text, _understand)
-
-
-def unframed(text: str, read: Callable[[str], Understood]) -> Understood:
-    """A text read as it stands; where that fails, without the sentences that ask for nothing."""
-    try:
-        return read(text)
-    except NotUnderstoodError:
-        plain, nothing_else = without_frames(text)
-        if plain == text:
-            raise
-    understood = read(plain)
-    return replace(understood, text=text, nothing_else=understood.nothing_else or nothing_else)
-
-
-def _understand(text: str) -> Understood:
     ranking = read_ranking(text, try_describe)
     if ranking is not None:
         return Understood(text, (ranking,), tuple(re.findall(r"\w+", text)))
@@ -263,14 +243,12 @@ def _no_sentence(text: str, tokens: list[Token], missing: str) -> str:
         f"I used: {', '.join(token.text for token in tokens)}. I do not know: what {text.strip()!r} asks for ({missing}). "
         "The words are known, but they do not make an instruction for me. I understand: put X into/onto/left of/beside Y, "
         "rotate X by N degrees, stack X on Y, push X to Y, swap X and Y, sort or put each X into the Y of the same colour. "
-        f"For other wordings name a vision-language model: --model anthropic:..., or probe your "
-        "own server."
+        f"{OTHERS_MAY}"
     )
 
 
 def _no_noun_phrase(words: str, tokens: list[Token]) -> str:
     return (
         f"I know every word of {words.strip()!r}, but they do not name a thing for me. "
-        f"I used: {', '.join(token.text for token in tokens) or 'nothing'}. {nearest_words(())} "
-        "For photos like this name a vision-language model: --model anthropic:..., or probe your own server."
+        f"I used: {', '.join(token.text for token in tokens) or 'nothing'}. {nearest_words(())} {OTHERS_MAY}"
     )

@@ -9,7 +9,7 @@ from wonderful_team.errors import NotUnderstoodError
 from wonderful_team.offline.description import Description
 from wonderful_team.offline.language.changes import ONE, OTHERS
 from wonderful_team.offline.language.commands import Command
-from wonderful_team.offline.language.wording import render
+from wonderful_team.offline.language.wording import worded
 
 
 def with_nouns(commands: Iterable[Command]) -> tuple[Command, ...]:
@@ -44,8 +44,7 @@ def _besides(description: Description, named: Sequence[Description | None]) -> D
     if not known:
         raise NotUnderstoodError(f"I do not know: which other {description.noun} is meant; name it")
     left_out = (*(item for item in description.excluded if item.name != OTHERS), *dict.fromkeys(known))
-    full = replace(description, excluded=left_out)
-    return replace(full, text=render(full))
+    return worded(replace(description, excluded=left_out))
 
 
 def _holds(what: Description | None) -> bool:
@@ -62,7 +61,7 @@ def with_noun(description: Description, before: Description | None) -> Descripti
     related = tuple(replace(item, to=tuple(with_noun(to, full) for to in item.to)) for item in full.related)
     excluded = tuple(with_noun(item, full) for item in full.excluded)
     whole = replace(full, related=related, excluded=excluded)
-    return description if whole == description else replace(whole, text=render(whole))
+    return description if whole == description else worded(whole)
 
 
 def _excepted(command: Command) -> Command:
@@ -72,5 +71,5 @@ def _excepted(command: Command) -> Command:
         return command
     thing = replace(command.thing, excluded=(*command.thing.excluded, *to.what.excluded))
     what = replace(to.what, excluded=())
-    what, thing = (replace(item, text=render(item)) for item in (what, thing))
+    what, thing = (worded(item) for item in (what, thing))
     return replace(command, thing=thing, to=replace(to, what=what))

@@ -15,7 +15,7 @@ _TELLING = frozenset(
     you get one same fixed specific certain some given particular angle amount way word term verb show shows shown example examples instance pair pairs picture
     pictures before after following follows three two several object objects thing things something watch look see learn now then please do does did done
     apply give make under need needs have has must should all every each between results result gives yields twice twist twisted twisting twists such so let
-    transforms transform rotations another exactly just likewise kindly there whose difference movement action motion happens first""".split()
+    transforms transform rotations another exactly just likewise kindly there whose difference movement action motion happens happened first""".split()
 ) - {"twice"}
 """Words of a sentence that shows or names the turn, and asks for nothing else."""
 _MANY = re.compile(
@@ -60,7 +60,9 @@ def define_turns(text: str, shows: Shows, describe: Callable[[str], Description 
         elif told and "{" not in rest and not what:
             continue
         elif mentions:
-            raise NotUnderstoodError(_unclear(_words(rest) - _TELLING - {verb}))
+            unknown = ", ".join(sorted(_words(rest) - _TELLING - {verb})) or "what is to be turned"
+            why = "the pictures show a turn, but not everything beside them is understood"
+            raise NotUnderstoodError(f"{why}. I do not know: {unknown}.")
         else:
             asked_again = _by_its_new_name(sentence, verb)
             found |= asked_again != sentence
@@ -119,8 +121,3 @@ def _asks(sentence: str, verb: str) -> bool:
 
 def _words(text: str) -> set[str]:
     return set(re.findall(r"[a-z]+", text.lower()))
-
-
-def _unclear(unknown: set[str]) -> str:
-    told = ", ".join(sorted(unknown)) or "what is to be turned"
-    return f"the pictures show a turn, but not everything beside them is understood. I do not know: {told}."

@@ -23,7 +23,7 @@ from wonderful_team.offline.language.commands import Command, Destination
 from wonderful_team.offline.language.meaning import Meaning
 from wonderful_team.offline.language.templates import gathering_template
 from wonderful_team.offline.language.tokens import Token
-from wonderful_team.offline.language.wording import render
+from wonderful_team.offline.language.wording import worded
 
 _INTO = ("IN", "INTO", "ON", "ONTO", "TO")
 
@@ -151,5 +151,5 @@ def matching_template(tokens: Sequence[Token]) -> Command | None:
     aspect = next((str(token.value) for token in tokens if token.kind == "ASPECT"), "colour")
     thing = Description(moved[0][0], "", moved[0][1], quantity="each" if "EACH" in kinds else "all")
     place = Description(places[0][0], "", places[0][1])
-    goal = Destination("matching", replace(place, text=render(place)), aspect=aspect)  # type: ignore[arg-type]
-    return Command("put", replace(thing, text=render(thing)), goal, conditional="SORT" in kinds)
+    goal = Destination("matching", worded(place), aspect=aspect)  # type: ignore[arg-type]
+    return Command("put", worded(thing), goal, conditional="SORT" in kinds)

@@ -6,12 +6,12 @@ A clause with any word outside a closed list of kinds is not read here.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 from wonderful_team.offline.description import Description, Related
+from wonderful_team.offline.language.changes import SAME
 from wonderful_team.offline.language.commands import Command, Destination
 from wonderful_team.offline.language.tokens import Token
-from wonderful_team.offline.language.wording import render
+from wonderful_team.offline.language.wording import worded
 
 _SAID = frozenset(
     "AUX GIVE WANT OF IT WITH FOR AS AND COMMA SEP ON_TABLE TABLE AROUND THAT THEY TAKE LIKE LOOK FROM THERE".split()
@@ -20,7 +20,6 @@ _GATHER = _SAID | frozenset(
     "PUT SORT IN INTO TO ON ONTO CONTAIN FILL SLOT NOUN ALL EACH EVERYTHING SHARE SAME MATCH ASPECT SHAPED WHOSE ITS BY WHERE THEN".split()
 )
 _SHARED = frozenset("SAME MATCH SHARE OF WITH ITS WHOSE SLOT".split())
-_SAME = {"texture": "same_pattern", "colour": "same_colour", "shape": "same_shape"}
 
 
 def gathering_template(tokens: Sequence[Token]) -> Command | None:
@@ -34,9 +33,7 @@ def gathering_template(tokens: Sequence[Token]) -> Command | None:
     many = bool(kinds & {"ALL", "EACH", "EVERYTHING"}) or any(
         isinstance(token.value, tuple) and token.kind == "NOUN" and token.value[2] for token in tokens
     )
-    going = bool(kinds & {"PUT", "IN", "INTO", "ON", "ONTO", "TO", "CONTAIN", "FILL", "SORT"}) or any(
-        token.text in ("receive", "receives") for token in tokens
-    )
+    going = bool(kinds & {"PUT", "IN", "INTO", "ON", "ONTO", "TO", "CONTAIN", "FILL", "SORT"})
     if len(names) != 1 or len(aspects) != 1 or not many or not going:
         return None
     if not kinds & {"SAME", "MATCH", "SHARE", "ITS", "LIKE", "SHAPED", "WITH", "OF", "AS", "WHOSE"}:
@@ -46,20 +43,12 @@ def gathering_template(tokens: Sequence[Token]) -> Command | None:
         return None
     if kinds & {"ON_TABLE", "TABLE"}:
         return None  # what goes somewhere goes to the table
-    holder = _shown(names.pop())
-    related = Related(_SAME[aspects.pop()], (holder,))  # type: ignore[arg-type]
+    holder = worded(Description("object", "", like=names.pop()))
+    related = Related(SAME[aspects.pop()], (holder,))  # type: ignore[arg-type]
     things = Description("object", "", quantity="all", related=(related,))
-    return Command("put", _worded(things), Destination("in", holder))
+    return Command("put", worded(things), Destination("in", holder))
 
 
 def _is_aspect(token: Token, before: Token) -> bool:
     """Whether "shape" is what is shared, not another word for an object."""
     return token.text in ("shape", "shapes") and before.kind in _SHARED
-
-
-def _shown(name: str) -> Description:
-    return _worded(Description("object", "", like=name))
-
-
-def _worded(description: Description) -> Description:
-    return replace(description, text=render(description))

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from wonderful_team.errors import NotUnderstoodError
 from wonderful_team.offline.language.phrases import PHRASES
-from wonderful_team.offline.language.vocabulary import ARTICLES, FILLERS, NUMBERS, WORDS, nearest_words
+from wonderful_team.offline.language.vocabulary import ARTICLES, FILLERS, NUMBERS, WORDS, kind_of, nearest_words
 
 _PIECE = re.compile(r"\{[^{}]+\}|beside_[a-z]+|\d+(?:\.\d+)?(?:nd|rd|th)?|°|[^\W\d_]+|[,;.:!?()]", re.UNICODE)
 _LONGEST = max(len(phrase) for phrase in PHRASES)
@@ -68,7 +68,7 @@ def _with_fruits(pieces: list[str]) -> list[str]:
 
 
 def _is_adjective(piece: str) -> bool:
-    kind = WORDS.get(piece, ("",))[0]
+    kind = kind_of(piece)
     return piece in ("the", "a", "this", "that", "of") or kind in (*_BEFORE_HEAD, "EACH", "ONE", "ANY")
 
 
@@ -108,15 +108,10 @@ def _with_heads(pieces: list[str]) -> list[str]:
     out: list[str] = []
     for at, piece in enumerate(pieces):
         if piece in ("and", ",") and pieces[at + 1 : at + 2] == ["the"] and _is_open(out):
-            noun = next(
-                (word for word in pieces[at + 2 :] if WORDS.get(word, ("",))[0] in ("NOUN", "SHAPE", "ONE")), None
-            )
+            noun = next((word for word in pieces[at + 2 :] if kind_of(word) in ("NOUN", "SHAPE", "ONE")), None)
             words = pieces[at + 2 : pieces.index(noun, at + 2)] if noun is not None else []
-            if (
-                noun is not None
-                and words
-                and all(WORDS.get(word, ("",))[0] in (*_BEFORE_HEAD, "AND") or word in (",", "the") for word in words)
-            ):
+            before = all(kind_of(word) in (*_BEFORE_HEAD, "AND") or word in (",", "the") for word in words)
+            if noun is not None and words and before:
                 out.append(noun)
         out.append(piece)
     return out
@@ -129,7 +124,7 @@ def _with_verbs(pieces: list[str]) -> list[str]:
         starts = at == 0 or pieces[at - 1] in _CLAUSE_STARTS or (pieces[at - 1] in FILLERS and pieces[at - 1] != "all")
         named = pieces[at + 1 : at + 2]
         before_thing = bool(named) and (named[0] in ARTICLES or named[0] in ("it", "them") or named[0][0] == "{")
-        kind = WORDS.get(piece, ("",))[0]
+        kind = kind_of(piece)
         if starts and before_thing and kind in ("SIDE", "SUPER", "FREE") and (piece,) not in PHRASES:
             piece = "put" if piece in _PUTTING else f"to {piece}"
         out.append(piece)
@@ -142,9 +137,12 @@ def _is_open(pieces: list[str]) -> bool:
         piece = pieces[at]
         if piece == "the":
             return pieces[-1] != "the" and pieces[at - 1] not in ("at", "on", "in", "to", "from", "of", "with")
-        if WORDS.get(piece, ("",))[0] not in _BEFORE_HEAD:
+        if kind_of(piece) not in _BEFORE_HEAD:
             return False
     return False
+
+
+OTHERS_MAY = "For photos like this name a vision-language model: --model anthropic:..., or probe your own server."
 
 
 def refusal(tokens: list[Token], unknown: list[str]) -> str:
@@ -153,10 +151,7 @@ def refusal(tokens: list[Token], unknown: list[str]) -> str:
         ", ".join(dict.fromkeys(token.text for token in tokens if token.kind not in ("SEP", "THEN", "AND")))
         or "nothing"
     )
-    return (
-        f"I used: {used}. I do not know: {', '.join(dict.fromkeys(unknown))}. {nearest_words(unknown)} "
-        "For photos like this name a vision-language model: --model anthropic:..., or probe your own server."
-    )
+    return f"I used: {used}. I do not know: {', '.join(dict.fromkeys(unknown))}. {nearest_words(unknown)} {OTHERS_MAY}"
 
 
 def _plain(text: str) -> str:
@@ -196,7 +191,7 @@ def _next(pieces: list[str], start: int) -> tuple[Token | None, int]:
         if entry is None or (entry[0] == "SIDE_POST" and _noun_phrase_follows(pieces, start + length)):
             continue
         return (None if entry[0] == "SKIP" else Token(entry[0], entry[1], " ".join(words))), length
-    before = WORDS.get(pieces[start - 1], ("",))[0] if start else ""
+    before = kind_of(pieces[start - 1]) if start else ""
     if piece == "one" and _noun_phrase_follows(pieces, start + 1) and before not in (*_BEFORE_HEAD, "ALL", "EACH"):
         return Token("ONE_OF", 1.0, piece), 1  # "one pink block": any of them
     angle = _angle(pieces, start)
@@ -214,7 +209,7 @@ def _noun_phrase_follows(pieces: list[str], at: int) -> bool:
     if at >= len(pieces):
         return False
     word = pieces[at]
-    return word.startswith("{") or WORDS.get(word, ("", None))[0] in _STARTS_NOUN_PHRASE
+    return word.startswith("{") or kind_of(word) in _STARTS_NOUN_PHRASE
 
 
 def _angle(pieces: list[str], start: int) -> tuple[Token, int] | None:

@@ -23,7 +23,7 @@ FILLERS = frozenset(
     entire whole  own real alone picture image shown displayed pictured seen visible workspace scene desk
     surface tabletop here away down up overall around bright vivid suitable appropriate proper  individual
     desktop single mind actually then able nice happy glad shall perhaps maybe kind happily yes well quite midway halfway whichever
-    simple simply current presently pls plz thx ta cheers mate um uh er hmm oh basically really yet alright sure cool great""".split()
+    simple simply current presently pls plz thx ta cheers mate um uh er hmm oh basically really yet alright sure cool great asap somewhere""".split()
 )
 """Words that are skipped: politeness, addressing the robot, and words that do not change what is asked."""
 
@@ -74,7 +74,7 @@ _PLURALS = {"strawberry": "strawberries", "blueberry": "blueberries", "cherry": 
 _VERBS: dict[str, str] = {
     "PUT": "put place move bring brought drop set lay laid transfer relocate deposit shift position carry deliver insert load stick "
     "store throw thrown toss slot pop stow stash dump plop tuck serve tidy add hand send sent haul release convey transport slip pass "
-    "park plant perch mount install situate settle nestle lodge plonk plunk wedge squeeze stuff cram ship chuck bung fling flung lob sling balance dunk",
+    "park plant perch mount install situate settle nestle lodge plonk plunk wedge squeeze stuff cram ship chuck bung whack nip fling flung lob sling balance dunk",
     "TAKE": "take taken grab pick get lift fetch find locate grasp identify seize collect gather see spot notice consider choose chosen "
     "select look use pluck snatch retrieve raise hoist scoop nab snag",
     "ROTATE": "rotate turn spin spun rotation twist revolve swivel reorient orient pivot",
@@ -96,7 +96,7 @@ _SMALL = _listed(
     IN: in inside within; INTO: into; ON: on upon atop over; ONTO: onto; TO: to towards toward at against;
     NEAR: beside near alongside adjoining; BY: by through; ABOVE: above behind;
     BELOW: below under beneath underneath; BETWEEN: between; OF: of; WITH: with having bearing; FROM: from; AS: as;
-    AND: and but; CONTAIN: contain hold holding holds enclose; FILL: fill cover;
+    AND: and but; CONTAIN: contain hold holding holds enclose missing; FILL: fill cover;
     THEN: then afterwards afterward subsequently thereafter; THAT: that which until till; WHOSE: whose; FOR: for;
     THERE: there; IT: it them itself themselves; ITS: its their theirs; THEY: they;
     MATCH: match matches matching matched suits suit suiting fits corresponds correspond fitting belonging;
@@ -221,6 +221,11 @@ def _noun(words: dict[str, Entry], word: str, value: tuple[str, str]) -> None:
 
 WORDS: dict[str, Entry] = _words()
 """Single words."""
+
+
+def kind_of(word: str) -> str:
+    """The kind of token that a word is; "" for one that is not known or is looked up in phrases only."""
+    return WORDS.get(word, ("",))[0]
 
 
 _LISTED = {"COLOUR": "colours", "PATTERN": "patterns", "MATERIAL": "materials", "SHAPE": "shapes", "NOUN": "nouns",

@@ -24,13 +24,18 @@ def render(description: Description) -> str:
     words, tail = _counted(description)
     words += _looks(description) + _head(description)
     if _is_corner(description):
-        tail.append(f"in the {_corner(description)} corner")
+        tail.append(f"in the {corner_words(description.name)} corner")
     if description.like and description.like_only is None:
         tail.append(f"shown in {{{description.like}}}")
     tail += [relation_words(related) for related in description.related]
     if description.excluded:
         tail.append("except the " + " and the ".join(render(item) or item.name for item in description.excluded))
     return " ".join([*words, *tail])
+
+
+def worded(description: Description) -> Description:
+    """The same description with its own words."""
+    return replace(description, text=render(description))
 
 
 def _counted(description: Description) -> tuple[list[str], list[str]]:
@@ -97,9 +102,9 @@ def _is_corner(description: Description) -> bool:
     return " " in description.name
 
 
-def _corner(description: Description) -> str:
-    names = {"topmost": "top", "bottommost": "bottom", "leftmost": "left", "rightmost": "right"}
-    return " ".join(names[word] for word in description.name.split())
+def corner_words(corner: str) -> str:
+    """Such as "top left" for "topmost leftmost"."""
+    return " ".join(_FROM[word] for word in corner.split())
 
 
 def split_colours(thing: Description) -> list[Description]:
@@ -111,4 +116,9 @@ def split_colours(thing: Description) -> list[Description]:
         return [thing]  # how many of which colour is not said
     quantity = "one" if counted else thing.quantity
     parts = [replace(thing, colours=(colour,), quantity=quantity, number=1) for colour in thing.colours]
-    return [replace(part, text=render(part)) for part in parts]
+    return [worded(part) for part in parts]
+
+
+def singles(thing: Description) -> list[Description]:
+    """The words "the red and blue bowls" as one bowl of each colour."""
+    return [worded(replace(part, quantity="one", number=1)) for part in split_colours(thing)]

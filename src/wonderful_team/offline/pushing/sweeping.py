@@ -6,7 +6,7 @@ The places of a plan are found again from its words and the picture alone: the p
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import TypeAlias, TypeVar
@@ -16,7 +16,7 @@ from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.pictures import Point
 from wonderful_team.offline.description import Description
 from wonderful_team.offline.description import Way as Place
-from wonderful_team.offline.language import describe, render, try_understand
+from wonderful_team.offline.language import Destination, describe, render, try_understand
 from wonderful_team.offline.pushing.pushes import Field, Way, best_way, inside, study_field
 from wonderful_team.offline.vision import Match, Scene
 
@@ -249,12 +249,14 @@ def sweep_of(
 
 def _orders(plan: Sequence[str], number: Number) -> tuple[Order, ...]:
     """Who is pushed, in order, by the lines of a plan."""
-    orders = []
+    pushed = ((number(thing), to.what is not None and to.what.name == "free") for thing, to in pushes_of(plan))
+    return tuple(Order(who, free) for who, free in pushed if who is not None)
+
+
+def pushes_of(plan: Sequence[str]) -> Iterator[tuple[Description, Destination]]:
+    """What the lines of a plan push, and where to."""
     for line in plan:
         understood = try_understand(line.partition(":")[2].strip() or line)
         for command in understood.commands if understood is not None else ():
-            who = number(command.thing) if command.kind == "push" else None
-            if who is not None and command.to is not None:
-                free = command.to.what is not None and command.to.what.name == "free"
-                orders.append(Order(who, free))
-    return tuple(orders)
+            if command.kind == "push" and command.to is not None:
+                yield command.thing, command.to

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import cv2
 import numpy as np
 
@@ -22,7 +24,7 @@ LEFT = 0.5
 
 
 def gap_px(one: Point, other: Point) -> float:
-    return float(np.hypot(one[0] - other[0], one[1] - other[1]))
+    return math.dist(one, other)
 
 
 def moved_between(before: Picture, after: Picture) -> tuple[Thing, Thing] | None:

@@ -6,11 +6,10 @@ import numpy as np
 
 from wonderful_team.contracts import ShownSlot
 from wonderful_team.errors import NotUnderstoodError
+from wonderful_team.offline.description import OPPOSITE
 from wonderful_team.offline.vision import Example, NotSeen, see, study_example
 from wonderful_team.offline.vision.turning import common_turn_deg
 
-_OPPOSITE = {"tallest": "shortest", "shortest": "tallest", "darkest": "lightest", "lightest": "darkest", "largest": "smallest",
-             "smallest": "largest"}  # fmt: skip
 _FEW = 0.06
 """Least mean difference of a measure, as a share of it, that defines an adjective."""
 
@@ -30,7 +29,7 @@ def compared(pairs: list[tuple[ShownSlot, ShownSlot]], word: str) -> str:
     if abs(means[name]) < _FEW or not agree:
         told = ", ".join(f"{key} {value:+.2f}" for key, value in means.items())
         raise NotUnderstoodError(f"I do not know: {word}. The pictures do not show what it means (log ratios: {told}).")
-    return name if means[name] > 0 else _OPPOSITE[name]
+    return name if means[name] > 0 else OPPOSITE[name]
 
 
 def _measures(slot: ShownSlot) -> dict[str, float]:

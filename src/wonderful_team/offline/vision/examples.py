@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import threading
-from collections import OrderedDict
 from typing import Literal
 
 import cv2
@@ -13,12 +11,21 @@ from wonderful_team.core.geometry import Box
 from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.pictures import Picture
 from wonderful_team.images.colours import to_lab
-from wonderful_team.offline.vision.outlines import Outline, filled, same_outline, study_outline
+from wonderful_team.offline.vision.outlines import (
+    Outline,
+    components,
+    deep_inside,
+    filled,
+    kernel,
+    mean_width,
+    same_outline,
+    study_outline,
+)
+from wonderful_team.offline.vision.recent import recent
 from wonderful_team.offline.vision.scene import shrink, working_zoom
 from wonderful_team.offline.vision.segments import close_ring, fill_specks
-from wonderful_team.offline.vision.splitting import components, kernel
 from wonderful_team.offline.vision.table import RAISED_M, height_above_table
-from wonderful_team.offline.vision.things import Example, Look, NotSeen, Thing, study_look
+from wonderful_team.offline.vision.things import Example, Look, NotSeen, Thing, inner_part, study_look
 
 _STANDS_OUT = 7.0
 """CIELAB distance from the background at which a pixel belongs to the thing shown."""
@@ -29,10 +36,8 @@ _STANDS_OUT_EXACT = 2.5
 _GAPS = 0.1
 """Share of a thing from which gaps in it may be white parts that melt into the background."""
 
-_cache: OrderedDict[tuple[str, str], Example] = OrderedDict()
-_lock = threading.Lock()
 
-
+@recent(64)
 def study_example(picture: Picture) -> Example:
     """Describe the one thing that a picture shows on an empty background.
 
@@ -41,19 +46,6 @@ def study_example(picture: Picture) -> Example:
     Raises:
         NotSeen: Nothing stands out from the background.
     """
-    key = (picture.hash, picture.name)
-    with _lock:
-        if key in _cache:
-            return _cache[key]
-    example = _study(picture)
-    with _lock:
-        _cache[key] = example
-        while len(_cache) > 64:
-            _cache.popitem(last=False)
-    return example
-
-
-def _study(picture: Picture) -> Example:
     zoom = working_zoom(picture)
     rgb, depth, valid = shrink(picture, zoom)
     lab = to_lab(rgb)
@@ -76,17 +68,16 @@ def _study(picture: Picture) -> Example:
     rows, columns = np.nonzero(mask)
     y0, y1, x0, x1 = int(rows.min()), int(rows.max()) + 1, int(columns.min()), int(columns.max()) + 1
     view = np.s_[y0:y1, x0:x1]
-    look = study_look(rgb[view], lab[view], mask[view], (gapped & shows)[view] if even else None)
+    look = study_look(rgb[view], lab[view], mask[view], inner_part((gapped & shows)[view]) if even else None)
     gaps = even and (mask & ~shows)[view].sum() > _GAPS * mask.sum()
     area = float(filled(mask[view]).sum()) * (zoom / picture.frame.scale) ** 2
     return Example(
-        name=picture.name,
         look=look,
         box=Box(x0 * zoom, y0 * zoom, x1 * zoom, y1 * zoom),
         area_view_px=area,
+        wide_view_px=mean_width(deep_inside(mask[view])) * zoom / picture.frame.scale,
         open_outline=None if (gapped == mask).all() else study_outline(gapped[view]),
         gapless=study_look(rgb[view], lab[view], mask[view]) if gaps else None,
-        pale=bool(background[0] > 92 and not (raised is not None and shows is raised)),
     )
 
 
@@ -127,8 +118,9 @@ def alike(
     """
     parts: dict[str, float] = {}
     if only != "shape":
-        # A thing of a few pixels shows too little of a texture to be told by it.
-        told = float(np.clip((np.sqrt(thing.area_px) / view_scale - 7.0) / 8.0, 0.15, 1))
+        # A small thing, a rim or a line shows too little of a texture to be told by it.
+        wide = min(thing.wide_px / view_scale, example.wide_view_px)
+        told = float(np.clip((wide - 7.0) / 8.0, 0.15, 1))
         looks = [example.look, *([example.gapless] if example.gapless is not None else [])]
         rated = [(alike_colour(look, thing.look), 1 - told * (1 - alike_pattern(look, thing.look))) for look in looks]
         parts["colour"], parts["pattern"] = max(rated, key=lambda pair: (pair[0] * pair[1], pair))
@@ -137,11 +129,7 @@ def alike(
         if only == "shape" and example.look.patterns["plain"] > PLAIN:
             forms = forms[-1:]  # a plain thing has no texture that could have vanished: its gaps are holes
         parts["outline"] = max(same_outline(form, thing.look.outline) for form in forms)
-        thin = thin_likeness(example.look.outline, thing.look.outline)
-        parts["outline"] = max(parts["outline"], thin)
-        if thin > 0 and only is None:
-            # Little of a texture shows on a rim or a line, and less of it on a picture's white.
-            parts["pattern"] = max(parts["pattern"], THIN_PATTERN)
+        parts["outline"] = max(parts["outline"], thin_likeness(example.look.outline, thing.look.outline))
         ratio = thing.area_px / view_scale**2 / example.area_view_px
         # Where looks do not count, size is all that tells like shapes apart.
         full, fall = (1.05, 1.2) if only == "shape" else (1.25, 0.5)
@@ -153,8 +141,6 @@ PLAIN = 0.5
 """Plainness from which a picture's thing has no texture."""
 THIN_FILL, THIN_ASPECT = 0.3, 6.0
 """A rim fills at most this share of the rectangle round it; a line is at least so many times as long as wide."""
-THIN_PATTERN = 0.5
-"""Likeness of two thin things' textures is at least this."""
 
 
 def thin_likeness(one: Outline, other: Outline) -> float:

@@ -156,7 +156,7 @@ def kind_score(thing: Thing, description: Description) -> float:
             return container_score(thing)
         case "block" if not (thing.flat or description.shape):
             bar = look.outline.aspect <= SLIM and look.outline.fill > SOLID
-            return formed(look, ("square", "rectangle", "long") if bar else ("square", "rectangle"))
+            return formed(look, ("square", "rectangle", "l-shape", *(("long",) if bar else ())))
         case "object" | "block" | "toy":
             return 0.3 if thing.flat else 1.0
         case _:

@@ -7,8 +7,6 @@ heights tell where one lamp's shadows fall, and they are lit again.
 from __future__ import annotations
 
 import math
-import threading
-from collections import OrderedDict
 from dataclasses import dataclass, replace
 
 import cv2
@@ -17,6 +15,7 @@ import numpy as np
 from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.pictures import Picture
 from wonderful_team.images.colours import to_lab
+from wonderful_team.offline.vision.recent import recent
 from wonderful_team.offline.vision.table import NO_TABLE, RAISED_M, Table, find_table, height_above_table
 
 _SIDE = 320
@@ -52,10 +51,6 @@ _AGREES = 0.5
 _EVEN = 0.02
 """Median deviation of the light that is left in shadows; what varies more is a surface of its own."""
 
-_CACHE_SIZE = 64
-_cache: OrderedDict[tuple[str, str], Array | None] = OrderedDict()
-_lock = threading.Lock()
-
 
 @dataclass(frozen=True, eq=False)
 class _Shadows:
@@ -72,20 +67,11 @@ class _Shadows:
 
 def in_plain_light(picture: Picture) -> Picture:
     """The picture in white, even light; itself where its light is plain or nothing tells."""
-    depth = "" if picture.depth_m is None else str(hash(picture.depth_m.tobytes()))
-    key = (picture.hash, f"{depth} {picture.frame.valid.as_tuple}")
-    with _lock:
-        known = key in _cache
-        plain = _cache.get(key)
-    if not known:
-        plain = _relit(picture)
-        with _lock:
-            _cache[key] = plain
-            while len(_cache) > _CACHE_SIZE:
-                _cache.popitem(last=False)
+    plain = _relit(picture)
     return picture if plain is None else replace(picture, rgb=plain)
 
 
+@recent(64)
 def _relit(picture: Picture) -> Array | None:
     """A picture's pixels in plain light; None where they are so already or nothing tells."""
     rgb, depth, valid = _small(picture)
@@ -100,7 +86,7 @@ def _relit(picture: Picture) -> Array | None:
     if bare.mean() < 0.1 or (table.spread >= NO_TABLE).any():
         return None
     colour = np.median(rgb[bare], axis=0)
-    if ((rgb > _BRIGHTER * colour).all(axis=-1) & valid).mean() > _LARGE:
+    if ((rgb.mean(axis=-1) > _BRIGHTER * colour.mean()) & valid).mean() > _LARGE:
         return None  # what was taken for the table is something darker round it
     gain = _gain(colour, np.percentile(rgb[valid], 99, axis=0))
     shadows = None if table.height_m is None else _find_shadows(rgb, _colour_of(table), table, valid)

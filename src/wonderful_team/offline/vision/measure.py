@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Literal, TypeAlias
@@ -36,6 +37,7 @@ class BoxFit:
     Attributes:
         verdict: tight | loose (on the target, but cutting it or with room) | other (on another thing) |
             empty (on bare table, the target shows elsewhere in the crop) | absent (the target does not show).
+        why: In words.
         target: The thing that fits the description best; None when absent.
         best: Its measured outline's box; None when absent.
         iou: Intersection over union of the box and `best`; 0 when absent.
@@ -43,18 +45,17 @@ class BoxFit:
         cut: Edges past which the target reaches out of the box.
         loose: Edges that leave room round the target.
         score: How well the target fits the description, 0 to 1.
-        why: In words.
     """
 
     verdict: Literal["tight", "loose", "other", "empty", "absent"]
-    target: Thing | None
-    best: Box | None
-    iou: float
-    under: Thing | None
-    cut: tuple[Side, ...]
-    loose: tuple[Side, ...]
-    score: float
     why: str
+    target: Thing | None = None
+    best: Box | None = None
+    iou: float = 0.0
+    under: Thing | None = None
+    cut: tuple[Side, ...] = ()
+    loose: tuple[Side, ...] = ()
+    score: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -86,41 +87,35 @@ def fit_box(
     fitting = [(score, thing) for score, thing in rated if score >= SURE and _whole_enough(thing, box)]
     if not fitting:
         seen = f"the box is on a {under.look.words}" if under is not None else "the box is on bare table"
-        return BoxFit("absent", None, None, 0.0, under, (), (), 0.0, f"nothing in the crop fits; {seen}")
+        return BoxFit("absent", f"nothing in the crop fits; {seen}", under=under)
     top = max(score for score, _ in fitting)
     near = [(score, thing) for score, thing in fitting if score >= 0.8 * top]
-    score, target = max(near, key=lambda pair: (round(pair[1].box.iou(box), 2), -_away(pair[1], box), pair[0]))
+    score, target = max(
+        near, key=lambda pair: (round(pair[1].box.iou(box), 2), -math.dist(pair[1].box.centre, box.centre), pair[0])
+    )
     iou = target.box.iou(box)
     cut, loose = _edges(target.box, box)
+    verdict: Literal["tight", "loose", "other", "empty"] = "empty"
+    why = "on bare table beside the target"
     if iou >= tight:
-        return BoxFit("tight", target, target.box, iou, under, cut, loose, score, f"tight on a {target.look.words}")
-    if target.box.intersection(box) is not None and iou >= 0.12 and (under is target or iou >= 0.3):
-        says = f"on a {target.look.words}, overlap {iou:.2f}"
-        if cut:
-            says += f", cuts it at the {' and '.join(cut)}"
-        return BoxFit("loose", target, target.box, iou, under, cut, loose, score, says)
-    if under is not None and under is not target:
-        return BoxFit("other", target, target.box, iou, under, cut, loose, score, f"on a {under.look.words} instead")
-    return BoxFit("empty", target, target.box, iou, under, cut, loose, score, "on bare table beside the target")
+        verdict, why = "tight", f"tight on a {target.look.words}"
+    elif target.box.intersection(box) is not None and iou >= 0.12 and (under is target or iou >= 0.3):
+        cuts = f", cuts it at the {' and '.join(cut)}" if cut else ""
+        verdict, why = "loose", f"on a {target.look.words}, overlap {iou:.2f}{cuts}"
+    elif under is not None and under is not target:
+        verdict, why = "other", f"on a {under.look.words} instead"
+    return BoxFit(verdict, why, target, target.box, iou, under, cut, loose, score)
 
 
 def _under(things: tuple[Thing, ...], box: Box) -> Thing | None:
     """The thing that a box mostly covers."""
-    best, most = None, 0.12
-    for thing in things:
-        iou = thing.box.iou(box)
-        if iou > most:
-            best, most = thing, iou
-    return best
+    best = max(things, key=lambda thing: thing.box.iou(box), default=None)
+    return best if best is not None and best.box.iou(box) > 0.12 else None
 
 
 def _whole_enough(thing: Thing, box: Box) -> bool:
     """A neighbour cut off by the crop's edge cannot be measured, unless the box itself lies there."""
     return not thing.cut or thing.box.iou(box) > 0.2
-
-
-def _away(thing: Thing, box: Box) -> float:
-    return float(np.hypot(thing.box.centre[0] - box.centre[0], thing.box.centre[1] - box.centre[1]))
 
 
 def _edges(target: Box, box: Box) -> tuple[tuple[Side, ...], tuple[Side, ...]]:

@@ -1,4 +1,4 @@
-"""Parting the things that touch or lie on each other in computed pictures, by how their colours are spread.
+"""Parting the things that touch or lie on each other, by how their colours are spread.
 
 The colours of one texture are spread over the whole thing; those of a thing that lies on it show in one place only.
 """
@@ -11,11 +11,21 @@ import cv2
 import numpy as np
 
 from wonderful_team.core.geometry.arrays import Array
-from wonderful_team.offline.vision.outlines import filled, largest_contour
-from wonderful_team.offline.vision.splitting import components, kernel, placed, window
+from wonderful_team.offline.vision.outlines import (
+    components,
+    filled,
+    kernel,
+    largest_contour,
+    nearest_in,
+    placed,
+    window,
+)
 
 _COLOURS = 6
 """Main colours that a patch is parted into at most."""
+
+_ONE_COLOUR = 15.0
+"""How far centres of one colour lie apart at most [CIELAB, lightness counts 0.7]."""
 
 _SPREAD = 0.55
 """Share of the patch's extent from which a colour belongs to all of it."""
@@ -95,19 +105,8 @@ def _labels(lab: Array, inside: Array) -> Array:
     names = _merged(centres, np.bincount(number, minlength=count))
     out[core] = names[number]
     if core is not inside:
-        out[inside] = out[_nearest(core)][inside]
+        out[inside] = out[nearest_in(core)][inside]
     return out
-
-
-def _nearest(mask: Array) -> tuple[Array, Array]:
-    """Row and column of the pixel of a mask that is nearest to each pixel."""
-    _, labels = cv2.distanceTransformWithLabels(
-        (~mask).astype(np.uint8), cv2.DIST_L2, 5, labelType=cv2.DIST_LABEL_PIXEL
-    )
-    rows, columns = np.nonzero(mask)
-    place = np.zeros(int(labels.max()) + 1, np.int64)
-    place[labels[rows, columns]] = np.arange(len(rows))
-    return rows[place[labels]], columns[place[labels]]
 
 
 def _merged(centres: Array, counts: Array) -> Array:
@@ -115,7 +114,7 @@ def _merged(centres: Array, counts: Array) -> Array:
     names = np.arange(len(centres))
     for a in np.argsort(-counts):
         for b in range(len(centres)):
-            if names[b] != names[a] and np.linalg.norm(centres[a] - centres[b]) < 15:
+            if names[b] != names[a] and np.linalg.norm(centres[a] - centres[b]) < _ONE_COLOUR:
                 names[names == names[b]] = names[a]
     return np.asarray(np.unique(names, return_inverse=True)[1])
 
@@ -276,7 +275,7 @@ def _at_neck(part: Array, least: float) -> list[Array]:
     markers = np.zeros(part.shape, np.int32)
     for number, core in enumerate(cores, start=1):
         markers[core] = number
-    owner = markers[_nearest(markers > 0)]
+    owner = markers[nearest_in(markers > 0)]
     bodies = [whole & (owner == number) for number in range(1, len(cores) + 1)]
     sizes = [float(body.sum()) for body in bodies]
     if min(sizes) < max(least, 0.6 * max(sizes)) or not all(_compact(body) for body in bodies):

@@ -1,4 +1,4 @@
-"""Outlines in polar form: compare two shapes, holes included, at every rotation at once."""
+"""Masks, and their outlines in polar form: compare two shapes, holes included, at every rotation at once."""
 
 from __future__ import annotations
 
@@ -30,7 +30,6 @@ class Outline:
         fill: Filled area over that rectangle's area, 0 to 1.
         corners: Corners of the simplified outline.
         filled_area: Of the mask, in its own pixels.
-        angle_rad: Direction of the long axis in the picture, counter-clockwise seen, -pi/2 to pi/2.
     """
 
     polar: Array
@@ -43,7 +42,46 @@ class Outline:
     fill: float
     corners: int
     filled_area: float
-    angle_rad: float
+
+
+def kernel(size: int) -> Array:
+    """A round structuring element."""
+    return np.asarray(cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (size, size)))
+
+
+def components(mask: Array, least: float) -> list[Array]:
+    """Connected patches of at least `least` pixels, largest first, each as a full mask."""
+    count, labels, stats, _ = cv2.connectedComponentsWithStats(mask.astype(np.uint8), connectivity=4)
+    sizes = stats[:, cv2.CC_STAT_AREA]
+    order = sorted((k for k in range(1, count) if sizes[k] >= least), key=lambda k: -int(sizes[k]))
+    return [labels == k for k in order]
+
+
+def window(mask: Array, margin: int = 4) -> tuple[slice, slice]:
+    """Rows and columns round what a mask shows."""
+    rows, columns = np.flatnonzero(mask.any(axis=1)), np.flatnonzero(mask.any(axis=0))
+    return (
+        slice(max(0, int(rows[0]) - margin), int(rows[-1]) + 1 + margin),
+        slice(max(0, int(columns[0]) - margin), int(columns[-1]) + 1 + margin),
+    )
+
+
+def placed(part: Array, view: tuple[slice, slice], shape: tuple[int, ...]) -> Array:
+    """A window's mask in a full one."""
+    full = np.zeros(shape, dtype=bool)
+    full[view] = part
+    return full
+
+
+def nearest_in(mask: Array) -> tuple[Array, Array]:
+    """Row and column of the pixel of a mask that is nearest to each pixel."""
+    _, labels = cv2.distanceTransformWithLabels(
+        (~mask).astype(np.uint8), cv2.DIST_L2, 5, labelType=cv2.DIST_LABEL_PIXEL
+    )
+    rows, columns = np.nonzero(mask)
+    place = np.zeros(int(labels.max()) + 1, np.int64)
+    place[labels[rows, columns]] = np.arange(len(rows))
+    return rows[place[labels]], columns[place[labels]]
 
 
 def largest_contour(mask: Array) -> Array:
@@ -58,6 +96,17 @@ def filled(mask: Array) -> Array:
     out = np.zeros(mask.shape, np.uint8)
     cv2.drawContours(out, contours, -1, 1, cv2.FILLED)
     return out.astype(bool)
+
+
+def deep_inside(mask: Array) -> Array:
+    """How far each pixel of a mask is from where it ends [px], shape of the mask."""
+    padded = np.pad(mask.astype(np.uint8), 1)
+    return np.asarray(cv2.distanceTransform(padded, cv2.DIST_L2, 3)[1:-1, 1:-1])
+
+
+def mean_width(deep: Array) -> float:
+    """How wide a form is, by how deep its pixels lie: a strip's width; 4/3 of a disc's radius."""
+    return 4 * float(deep[deep > 0].mean())
 
 
 def study_outline(mask: Array) -> Outline:
@@ -80,7 +129,6 @@ def study_outline(mask: Array) -> Outline:
     simple = cv2.approxPolyDP(contour, 0.035 * cv2.arcLength(contour, True), True)
     moments = cv2.moments(whole.astype(np.uint8), True)
     centre = (moments["m10"] / moments["m00"], moments["m01"] / moments["m00"])
-    angle = 0.5 * np.arctan2(2 * moments["mu11"], moments["mu20"] - moments["mu02"])
     radius = np.sqrt(area / np.pi)
     polar = _polar(
         np.where(_opened(whole & ~solid, area), 0.0, np.where(whole, np.maximum(grown, 0.5), grown)), centre, radius
@@ -98,7 +146,6 @@ def study_outline(mask: Array) -> Outline:
         area / (long_side * short_side),
         len(simple),
         area / scale**2,
-        -float(angle),
     )
 
 
@@ -167,18 +214,21 @@ def overlaps(polar: Array, forms: Forms) -> tuple[Array, Array]:
 def same_outline(one: Outline, other: Outline) -> float:
     """How alike two outlines are at their best rotation, 0 to 1; 1 for the same shape."""
     iou = float(overlaps(one.polar, Forms.of(other.polar[None]))[0][0])
-    spectrum = np.conj(np.fft.rfft(other.profile)) * np.fft.rfft(one.profile)
-    shared = np.fft.irfft(spectrum, n=ANGLES).max()
-    gap = np.sqrt(max((one.profile**2).mean() + (other.profile**2).mean() - 2 * shared / ANGLES, 0.0))
     hole_gap = abs(one.hole_share - other.hole_share)
     solidity_gap = abs(one.solidity - other.solidity)
-    score = np.clip((iou - 0.55) / 0.4, 0, 1) * np.clip(1 - gap / 0.35, 0, 1)
+    score = np.clip((iou - 0.55) / 0.4, 0, 1) * np.clip(1 - _edge_gap(one, other) / 0.35, 0, 1)
     return float(score * np.clip(1 - 1.2 * hole_gap, 0, 1) * np.clip(1 - 1.2 * solidity_gap, 0, 1))
+
+
+def _edge_gap(one: Outline, other: Outline) -> float:
+    """How far two outer edges lie apart at their best rotation [radii]."""
+    spectrum = np.conj(np.fft.rfft(other.profile)) * np.fft.rfft(one.profile)
+    shared = np.fft.irfft(spectrum, n=ANGLES).max()
+    return float(np.sqrt(max((one.profile**2).mean() + (other.profile**2).mean() - 2 * shared / ANGLES, 0.0)))
 
 
 def same_form(one: Outline, other: Outline) -> float:
     """How alike two outer edges are, holes and sizes left out, 0 to 1: a ring and a disc are both round."""
-    spectrum = np.conj(np.fft.rfft(other.profile)) * np.fft.rfft(one.profile)
-    shared = np.fft.irfft(spectrum, n=ANGLES).max()
-    gap = np.sqrt(max((one.profile**2).mean() + (other.profile**2).mean() - 2 * shared / ANGLES, 0.0))
-    return float(np.clip(1 - gap / 0.12, 0, 1) * np.clip(1 - 1.5 * abs(one.solidity - other.solidity), 0, 1))
+    return float(
+        np.clip(1 - _edge_gap(one, other) / 0.12, 0, 1) * np.clip(1 - 1.5 * abs(one.solidity - other.solidity), 0, 1)
+    )

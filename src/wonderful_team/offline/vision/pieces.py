@@ -13,7 +13,7 @@ import cv2
 import numpy as np
 
 from wonderful_team.core.geometry.arrays import Array
-from wonderful_team.offline.vision.outlines import filled
+from wonderful_team.offline.vision.outlines import filled, largest_contour
 from wonderful_team.offline.vision.things import lab_histogram
 
 _GAP = 4
@@ -92,8 +92,7 @@ def _piece(lab: Array, labels: Array, stats: Array, label: int, least: float) ->
     if size < least:
         return _Piece(label, size, histogram, False, False)
     whole = filled(mask)
-    contours, _ = cv2.findContours(whole.astype(np.uint8), cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)
-    contour = max(contours, key=cv2.contourArea)
+    contour = largest_contour(whole)
     hull = max(float(cv2.contourArea(cv2.convexHull(contour))), 1.0)
     solid = (float(cv2.contourArea(contour)) + 0.5 * len(contour)) / (hull + 0.5 * len(contour))
     _, sides, _ = cv2.minAreaRect(contour)

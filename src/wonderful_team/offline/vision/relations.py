@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -10,9 +10,10 @@ import cv2
 import numpy as np
 
 from wonderful_team.core.geometry.arrays import Array
+from wonderful_team.offline.description import OPPOSITE
 from wonderful_team.offline.vision.examples import alike_colour, alike_pattern
 from wonderful_team.offline.vision.outlines import filled, largest_contour, same_form, study_outline
-from wonderful_team.offline.vision.things import Look, Match, Scene, Thing, covers
+from wonderful_team.offline.vision.things import Look, Match, Scene, Thing
 
 DIRECTIONS = {"left_of": (-1.0, 0.0), "right_of": (1.0, 0.0), "above": (0.0, -1.0), "below": (0.0, 1.0)}
 """Unit vectors in the picture: x right, y down."""
@@ -34,7 +35,7 @@ def relation_score(relation: str, thing: Thing, others: Sequence[Thing], scene: 
         case "far_from":
             return float(np.clip(2.5 * distance / diagonal - 0.2, 0.05, 1))
         case "on" | "inside":
-            if thing.on == other.number or (thing.area_px < other.area_px and covers(other, thing.centre)):
+            if thing.on == other.number or (thing.area_px < other.area_px and other.covers(thing.centre)):
                 return 1.0
             return 0.0
         case "between":
@@ -119,7 +120,7 @@ def _between(thing: Thing, one: Thing, other: Thing) -> float:
     return float(np.clip(min(along, 1 - along) / 0.15, 0, 1) * np.clip(1.2 - 2 * aside, 0, 1))
 
 
-def pick_superlative(scene: Scene, matches: list[Match], superlative: str, ordinal: int) -> list[Match]:
+def pick_superlative(matches: list[Match], superlative: str, ordinal: int) -> list[Match]:
     """The one (or those nearly equal) that a superlative picks among what fits; the others are dropped.
 
     An `ordinal` beyond what fits gives [].
@@ -133,11 +134,8 @@ def pick_superlative(scene: Scene, matches: list[Match], superlative: str, ordin
     order = np.argsort(keys, kind="stable")
     chosen = int(order[ordinal - 1])
     neighbours = [int(order[k]) for k in (ordinal - 2, ordinal) if 0 <= k < len(order)]
-    scale = (
-        max(abs(keys[chosen]), 1e-6)
-        if superlative in ("largest", "smallest", "tallest", "shortest", "darkest", "lightest")
-        else (0.5 * placed[chosen].box.width)
-    )
+    measured = superlative in OPPOSITE
+    scale = max(abs(keys[chosen]), 1e-6) if measured else 0.5 * placed[chosen].box.width
     lead = min((abs(keys[k] - keys[chosen]) / scale for k in neighbours), default=1.0)
     best = placed[chosen]
     sure = float(np.clip(0.5 + 5 * lead, 0, 1))
@@ -183,29 +181,26 @@ def superlative_keys(things: Sequence[Thing], superlative: str) -> list[float]:
 
 
 def _superlative_key(thing: Thing, superlative: str) -> float:
-    match superlative:
-        case "largest":
-            return -thing.area_px
-        case "smallest":
-            return thing.area_px
-        case "leftmost":
-            return thing.centre[0]
-        case "rightmost":
-            return -thing.centre[0]
-        case "topmost":
-            return thing.centre[1]
-        case "bottommost" | "nearest":  # the picture's bottom is nearest to the viewer
-            return -thing.centre[1]
-        case "darkest" | "lightest":
-            light = sum(colour.lab[0] * colour.share for colour in thing.look.colours)
-            light /= max(sum(colour.share for colour in thing.look.colours), 1e-6)
-            return light if superlative == "darkest" else -light
-        case "tallest":
-            return -(_tall(thing) or 0.0)
-        case "shortest":
-            return _tall(thing) or 0.0
-        case _:
-            raise ValueError(f"unknown superlative {superlative!r}")
+    measure = _MEASURES.get(superlative)
+    return -_MEASURES[_LEAST[superlative]](thing) if measure is None else measure(thing)
+
+
+def _light(thing: Thing) -> float:
+    """Mean lightness of a thing's colours."""
+    light = sum(colour.lab[0] * colour.share for colour in thing.look.colours)
+    return light / max(sum(colour.share for colour in thing.look.colours), 1e-6)
+
+
+_MEASURES: dict[str, Callable[[Thing], float]] = {
+    "smallest": lambda thing: thing.area_px,
+    "leftmost": lambda thing: thing.centre[0],
+    "topmost": lambda thing: thing.centre[1],
+    "darkest": _light,
+    "shortest": lambda thing: _tall(thing) or 0.0,
+}
+_LEAST = {"largest": "smallest", "rightmost": "leftmost", "bottommost": "topmost", "nearest": "topmost",
+          "lightest": "darkest", "tallest": "shortest"}  # fmt: skip
+"""The measure that a superlative is the most of; the picture's bottom is nearest to the viewer."""
 
 
 def _tall(thing: Thing) -> float | None:

@@ -16,7 +16,7 @@ from wonderful_team.offline.vision.kinds import formed, is_kind_here, kind_score
 from wonderful_team.offline.vision.materials import material_score
 from wonderful_team.offline.vision.relations import pick_in_corner, pick_superlative, relation_score
 from wonderful_team.offline.vision.spots import free_spots
-from wonderful_team.offline.vision.things import Example, Look, Match, NotSeen, Scene, Thing
+from wonderful_team.offline.vision.things import Example, Look, Match, NotSeen, Scene, Thing, with_margins
 
 FITS = 0.4
 """Score from which a thing is taken to fit a description."""
@@ -27,8 +27,13 @@ _SAME_SURFACE = 0.45
 _NEARLY_AS_ALIKE = 0.83
 """Share of the best likeness of shapes from which another thing has that shape too."""
 
+_NEARLY_AS_COLOURED = 0.8
+"""Of several that are told by a colour, those that fit at least this share as well as the best are meant."""
+
 NEAR_BEST = 0.75
 """Share of the best score from which things like an example are compared with each other or meant together."""
+_OTHER_FORM = 0.8
+"""What is left of the likeness to a form of one that has another name than the best one."""
 _TEXTURE = 0.25
 """How much the likeness of its texture to the best one's counts there (an exponent)."""
 
@@ -50,6 +55,9 @@ def resolve(scene: Scene, description: Description, examples: Mapping[str, Examp
     if description.noun == "area" and not _has_look(description):
         return _spots(scene, description, examples)
     matches = _fitting(scene, description, examples)
+    if description.colours and not (description.pattern or description.material):
+        # Beside a yellow block, one in yellow and blue is not meant.
+        matches = [m for m in matches if m.score >= _NEARLY_AS_COLOURED * max(other.score for other in matches)]
     for related in description.related:
         matches = _related(scene, matches, related.relation, related.to, examples)
     several = description.quantity != "one" and description.like_only is None
@@ -60,10 +68,10 @@ def resolve(scene: Scene, description: Description, examples: Mapping[str, Examp
         matches = (
             pick_in_corner(scene, matches, description.name)
             if corner
-            else pick_superlative(scene, matches, description.superlative, description.ordinal)
+            else pick_superlative(matches, description.superlative, description.ordinal)
         )
     matches.sort(key=lambda match: -match.score)
-    return _with_margins(matches)
+    return with_margins(matches)
 
 
 def suits(
@@ -90,7 +98,7 @@ def suits(
         parts["words: pattern"] = pattern_fit(thing.look, description.pattern)
         if not description.colours and description.pattern != "plain":
             # A pattern named without a colour is black and white where there is a choice.
-            parts["words: pattern"] *= 0.6 + 0.4 * _colourless(thing.look)
+            parts["words: pattern"] *= 0.6 + 0.4 * thing.look.colourless
         score *= parts["words: pattern"]
     if description.material is not None:
         parts["words: material"] = float(np.clip(material_score(thing.look, description.material) / 0.6, 0, 1))
@@ -118,7 +126,7 @@ def colour_fit(look: Look, description: Description) -> float:
     for name in description.colours:
         own, *others = (look.memberships[alias] * weight for alias, weight in _aliases(name, description.dark))
         # Near colours add to what shows of a colour itself and do not stand in for it: an olive ring is not green.
-        share = own + (sum(others) if description.dark else min(sum(others), own))
+        share = own + (min(sum(others), own) if description.dark is None else sum(others))
         score = float(np.clip(share / needed, 0, 1))
         shown += share
         if len(description.colours) == 1:
@@ -159,11 +167,6 @@ def _rainbow(look: Look) -> float:
     return float(np.clip(hues - 2, 0, 1) * np.clip((14 - look.surface.contrast) / 2, 0, 1))
 
 
-def _colourless(look: Look) -> float:
-    """Share of white, grey and black."""
-    return look.memberships["white"] + look.memberships["grey"] + look.memberships["black"]
-
-
 def _aliases(name: str, dark: bool | None) -> tuple[tuple[str, float], ...]:
     """Names under which a colour may show: dark orange looks brown, dark yellow olive, …"""
     near: dict[str, tuple[tuple[str, float], ...]] = {
@@ -172,7 +175,7 @@ def _aliases(name: str, dark: bool | None) -> tuple[tuple[str, float], ...]:
         "pink": (("purple", 0.7 if dark else 0.15), ("red", 0.4 if dark else 0.1)),
         "purple": (("pink", 0.15), ("blue", 0.12)),
         "red": (("brown", 0.5 if dark else 0.15), ("pink", 0.15)),
-        "blue": (("cyan", 0.2), ("purple", 0.1)),
+        "blue": (("cyan", 0.9 if dark is False else 0.2), ("purple", 0.1)),
     }
     even = {"cyan": "blue green", "green": "olive cyan", "olive": "green yellow brown", "brown": "orange red olive",
             "grey": "white black", "white": "grey", "black": "grey"}  # fmt: skip
@@ -186,9 +189,10 @@ def _shade_fit(look: Look, name: str, dark: bool | None) -> float:
     renamed = colour.name != name
     if dark is None:
         return 1.0 - 0.15 * colour.dark - 0.05 * colour.light
-    if dark:
-        return 0.3 + 0.7 * max(colour.dark, 0.8 if renamed and colour.name in ("brown", "olive") else 0.0)
-    return 0.3 + 0.7 * colour.light
+    stands_for_it = renamed and colour.name in (("brown", "olive") if dark else ("cyan",))
+    return 0.3 + 0.7 * max(
+        colour.dark if dark else colour.light, 0.8 * stands_for_it * (1.0 if dark else 1 - colour.dark)
+    )
 
 
 _ON_A_CORNER = 0.56
@@ -250,11 +254,16 @@ def _judged(scene: Scene, description: Description, examples: Mapping[str, Examp
 
 
 def _like_the_best(matches: list[Match], *, textured: bool) -> list[Match]:
-    """Those nearly as like an example as the best one, and like that one in texture: within one picture this shows better."""
+    """Those nearly as like an example as the best one, and like that one: within one picture this shows better."""
     looks = [(match, match.thing.look) for match in matches if match.thing is not None]
     best, look = max(looks, key=lambda pair: pair[0].score)
-    likeness = [alike_pattern(look, own) ** _TEXTURE if textured else 1.0 for _, own in looks]
-    return [m for (m, _), same in zip(looks, likeness, strict=True) if m.score * same >= NEAR_BEST * best.score]
+
+    def same(own: Look) -> float:
+        if textured:
+            return float(alike_pattern(look, own) ** _TEXTURE)
+        return 1.0 if (own.shape, own.letter) == (look.shape, look.letter) else _OTHER_FORM
+
+    return [match for match, own in looks if match.score * same(own) >= NEAR_BEST * best.score]
 
 
 def _point_on(scene: Scene, thing: Thing) -> Point:
@@ -305,12 +314,3 @@ def _spots(scene: Scene, description: Description, examples: Mapping[str, Exampl
             things.append(found[0])
         anchors.append((related.relation, things))
     return free_spots(scene, relations=anchors)
-
-
-def _with_margins(matches: list[Match]) -> list[Match]:
-    """Each match's lead over the best of the others (negative when behind)."""
-    out = []
-    for k, match in enumerate(matches):
-        rival = matches[1] if k == 0 and len(matches) > 1 else matches[0] if k else None
-        out.append(replace(match, margin=match.score - (rival.score if rival is not None else 0.0)))
-    return out

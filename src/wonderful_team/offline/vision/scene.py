@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import threading
-from collections import OrderedDict
 from dataclasses import replace
 
 import cv2
@@ -13,38 +11,14 @@ from wonderful_team.core.geometry import Box
 from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.pictures import Picture
 from wonderful_team.images.colours import to_lab
-from wonderful_team.offline.vision.outlines import filled
+from wonderful_team.offline.vision.outlines import filled, kernel, window
+from wonderful_team.offline.vision.recent import recent
 from wonderful_team.offline.vision.segments import Segment, find_segments
-from wonderful_team.offline.vision.splitting import kernel, window
 from wonderful_team.offline.vision.table import Table, find_table
 from wonderful_team.offline.vision.things import Scene, Thing, study_look
 
 _WORKING_SIDE = 640
 """Longest side that pictures are looked at in [px]; larger ones are shrunk first."""
-
-_CACHE_SIZE = 96
-_cache: OrderedDict[tuple[str, str, tuple[float, ...], float], Scene] = OrderedDict()
-_lock = threading.Lock()
-
-
-def see(picture: Picture) -> Scene:
-    """Find the things in a picture of a table. Looking twice at the same pixels costs nothing.
-
-    Args:
-        picture: Its pixels, its depth if it has one, and which part of it is no padding; marks are not read.
-    """
-    depth = "" if picture.depth_m is None else str(hash(picture.depth_m.tobytes()))
-    key = (picture.hash, depth, picture.frame.valid.as_tuple, picture.frame.scale)
-    with _lock:
-        if key in _cache:
-            _cache.move_to_end(key)
-            return _cache[key]
-    scene = _look(picture)
-    with _lock:
-        _cache[key] = scene
-        while len(_cache) > _CACHE_SIZE:
-            _cache.popitem(last=False)
-    return scene
 
 
 def working_zoom(picture: Picture) -> float:
@@ -86,7 +60,13 @@ def _crisp(rgb: Array, size: tuple[int, int]) -> Array:
     return np.asarray(cv2.resize(pixels, size, interpolation=cv2.INTER_NEAREST_EXACT))
 
 
-def _look(picture: Picture) -> Scene:
+@recent(96)
+def see(picture: Picture) -> Scene:
+    """Find the things in a picture of a table.
+
+    Args:
+        picture: Its pixels, its depth if it has one, and which part of it is no padding; marks are not read.
+    """
     zoom = working_zoom(picture)
     rgb, depth, valid = shrink(picture, zoom)
     lab = to_lab(rgb)
@@ -154,18 +134,9 @@ def _thing(
 
 def _stacked(things: list[Thing]) -> list[Thing]:
     """Say what each thing lies on or in, and which plain things must be areas because others lie on them."""
-    wholes = [filled(thing.mask) for thing in things]
     hosts: dict[int, int] = {}
     for thing in things:
-        column, row = (int(v / thing.zoom) for v in thing.centre)
-        under = []
-        for other in things:
-            if other is thing or other.area_px < 1.3 * thing.area_px:
-                continue
-            x, y = column - other.offset[0], row - other.offset[1]
-            height, width = other.mask.shape
-            if 0 <= x < width and 0 <= y < height and wholes[other.number][y, x]:
-                under.append(other)
+        under = [other for other in things if other.area_px >= 1.3 * thing.area_px and other.covers(thing.centre)]
         if under:
             hosts[thing.number] = min(under, key=lambda other: other.area_px).number
     out = []

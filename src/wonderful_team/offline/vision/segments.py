@@ -9,9 +9,8 @@ import numpy as np
 
 from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.offline.vision.occlusion import part_overlaid
-from wonderful_team.offline.vision.outlines import filled
+from wonderful_team.offline.vision.outlines import components, filled, kernel, nearest_in, placed, window
 from wonderful_team.offline.vision.pieces import joined_pieces
-from wonderful_team.offline.vision.splitting import components, kernel, placed, split_by_colour, window
 from wonderful_team.offline.vision.table import Table
 from wonderful_team.offline.vision.things import lab_histogram
 
@@ -59,7 +58,7 @@ def find_segments(lab: Array, valid: Array, table: Table) -> list[Segment]:
     else:
         found = []
         for patch in _patches(table.stands_out, least):
-            found += [Segment(part, None) for part in split_by_colour(lab, patch, least)]
+            found += [Segment(part, None) for part in part_overlaid(lab, patch, least)]
     return [segment for segment in found if not _beyond_table(segment.mask, valid)]
 
 
@@ -127,7 +126,10 @@ def _with_height(lab: Array, table: Table, least: float) -> list[Segment]:
     papers: list[Array] = []
     wholes = [filled(thing) for thing in raised]
     for patch in _patches(table.stands_out & ~wide, least):
-        host = next((k for k, whole in enumerate(wholes) if (patch & whole).sum() > 0.8 * patch.sum()), None)
+        round_it = [k for k, whole in enumerate(wholes) if (patch & whole).sum() > 0.8 * patch.sum()]
+        # What shows through a ring that lies in a bowl is the bowl's.
+        floor = lab_histogram(lab[patch])
+        host = max(round_it, key=lambda k: float(floor @ lab_histogram(lab[raised[k]])), default=None)
         if host is not None and not (patch & raised[host]).sum() > 0.5 * patch.sum():
             # The floor inside walls belongs to the container.
             joined = cv2.morphologyEx((raised[host] | patch).astype(np.uint8), cv2.MORPH_CLOSE, kernel(7)) > 0
@@ -135,7 +137,7 @@ def _with_height(lab: Array, table: Table, least: float) -> list[Segment]:
             continue
         grown = cv2.dilate(patch.astype(np.uint8), kernel(5)) > 0
         papers.append(patch | (grown & table.stands_out & ~table.raised))
-    papers = _join_papers(lab, [part for paper in papers for part in split_by_colour(lab, paper, least)], raised)
+    papers = _join_papers(lab, [part for paper in papers for part in part_overlaid(lab, paper, least)], raised)
     return [*(Segment(mask, False) for mask in raised), *(Segment(_under(paper, raised), True) for paper in papers)]
 
 
@@ -181,12 +183,7 @@ def _split_by_height(lab: Array, patch: Array, height_m: Array, least: float) ->
     markers = np.zeros(patch.shape, np.int32)
     for number, piece in enumerate(pieces, start=1):
         markers[piece] = number
-    _, labels = cv2.distanceTransformWithLabels(
-        (markers == 0).astype(np.uint8), cv2.DIST_L2, 5, labelType=cv2.DIST_LABEL_PIXEL
-    )
-    owner = np.zeros(int(labels.max()) + 1, np.int32)
-    owner[labels[markers > 0]] = markers[markers > 0]
-    nearest = owner[labels]
+    nearest = markers[nearest_in(markers > 0)]
     return [patch & (nearest == number) for number in range(1, len(pieces) + 1)]
 
 

@@ -133,21 +133,26 @@ def ideals() -> tuple[tuple[str, ...], Forms]:
 
 @cache
 def letters() -> tuple[str, Forms, tuple[bool, ...]]:
-    """Capital letters, their polar forms in several weights and which are holed; I and O have no outline of their own."""
+    """Capital letters, their polar forms in several hands and which are holed; I and O have no outline of their own."""
     names, forms = "", []
     holed: list[bool] = []
-    font = ImageFont.load_default(120)
-    for letter in string.ascii_uppercase:
-        if letter in "IO":
-            continue
-        for weight in (1, 5, 9):
-            image = Image.new("L", (_SIDE + 40, _SIDE + 40), 0)
-            ImageDraw.Draw(image).text((100, 100), letter, fill=255, font=font, anchor="mm", stroke_width=weight)
-            names += letter
-            outline = study_outline(np.asarray(image) > 127)
-            forms.append(outline.polar)
-            holed.append(outline.holes > 0 if weight == 1 else holed[-1])  # thick strokes may close a hole
+    for letter in (name for name in string.ascii_uppercase if name not in "IO"):
+        # Two typefaces, one of them in two weights, each narrower and wider: C and G differ less than two hands of G.
+        hands = [study_outline(cv2.resize(image, None, fx=wide, fy=1) > 127) for image in _written(letter) for wide in (0.8, 1, 1.25)]  # fmt: skip
+        names += letter * len(hands)
+        forms += [outline.polar for outline in hands]
+        holed += [hands[0].holes > 0] * len(hands)  # thick strokes may close a hole
     return names, Forms.of(np.stack(forms)), tuple(holed)
+
+
+def _written(letter: str) -> list[Array]:
+    size, font = _SIDE + 40, ImageFont.load_default(120)
+    images = [Image.new("L", (size, size), 0) for _ in range(2)]
+    for image, weight in zip(images, (2, 6), strict=True):
+        ImageDraw.Draw(image).text((100, 100), letter, fill=255, font=font, anchor="mm", stroke_width=weight)
+    other = np.zeros((size, size), np.uint8)
+    cv2.putText(other, letter, (50, 150), cv2.FONT_HERSHEY_SIMPLEX, 4.0, 255, 20, cv2.LINE_AA)
+    return [*map(np.asarray, images), other]
 
 
 HOLES_SHOW = 1000.0

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 import cv2
 import numpy as np
@@ -11,8 +10,8 @@ import numpy as np
 from wonderful_team.core.geometry import Box
 from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.offline.vision.outlines import filled
-from wonderful_team.offline.vision.relations import DIRECTIONS, direction_score, is_at
-from wonderful_team.offline.vision.things import Match, Scene, Thing, whole_mask
+from wonderful_team.offline.vision.relations import DIRECTIONS, is_at
+from wonderful_team.offline.vision.things import Match, Scene, Thing, whole_mask, with_margins
 
 
 def free_spots(
@@ -108,10 +107,4 @@ def _best_spots(rating: Array, radius_px: float, zoom: float, count: int) -> lis
         box = Box.around(point, 2 * radius_px, 2 * radius_px)
         out.append(Match(None, box, point, score, 0.0, f"free place with room for a radius of {radius_px:.0f} px"))
         left[np.hypot(rows - row, columns - column) * zoom < 2 * radius_px] = -1
-    for k, match in enumerate(out):
-        rival = out[1] if k == 0 and len(out) > 1 else out[0] if k else None
-        out[k] = replace(match, margin=match.score - (rival.score if rival else 0.0))
-    return out
-
-
-__all__ = ["direction_score", "free_spots"]
+    return with_margins(out)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import cv2
@@ -10,10 +10,10 @@ import numpy as np
 
 from wonderful_team.core.geometry import Box
 from wonderful_team.core.geometry.arrays import Array
-from wonderful_team.core.pictures import Picture, Point
+from wonderful_team.core.pictures import Point
 from wonderful_team.errors import WonderfulTeamError
 from wonderful_team.images.colours import ColourShare, colour_shares, darkness, membership_shares
-from wonderful_team.offline.vision.outlines import Outline, filled, study_outline
+from wonderful_team.offline.vision.outlines import Outline, deep_inside, filled, mean_width, study_outline
 from wonderful_team.offline.vision.patterns import Surface, pattern_scores, study_surface
 from wonderful_team.offline.vision.shapes import shape_scores
 
@@ -49,6 +49,16 @@ class Look:
     outline: Outline
     surface: Surface
     histogram: Array
+
+    @property
+    def colourless(self) -> float:
+        """Share of white, grey and black."""
+        return self.memberships["white"] + self.memberships["grey"] + self.memberships["black"]
+
+    @property
+    def letter(self) -> str:
+        """The letter that it is, or ""."""
+        return max(self.letters, key=self.letters.__getitem__) if self.shape == "letter" else ""
 
     @property
     def words(self) -> str:
@@ -94,15 +104,35 @@ class Thing:
 
     def holds(self, point: Point) -> bool:
         """Whether a point [picture px] lies on what shows of it."""
+        return self._shows(self.mask, point)
+
+    def covers(self, point: Point) -> bool:
+        """Whether a point [picture px] lies inside its outer outline, holes included."""
+        return self._shows(self._whole, point)
+
+    def _shows(self, mask: Array, point: Point) -> bool:
         column = int(point[0] / self.zoom) - self.offset[0]
         row = int(point[1] / self.zoom) - self.offset[1]
-        height, width = self.mask.shape
-        return 0 <= column < width and 0 <= row < height and bool(self.mask[row, column])
+        height, width = mask.shape
+        return 0 <= column < width and 0 <= row < height and bool(mask[row, column])
+
+    @cached_property
+    def _whole(self) -> Array:
+        return filled(self.mask)
 
     @property
     def radius_px(self) -> float:
         """Radius of a disc of its area [picture px]."""
         return float(np.sqrt(self.area_px / np.pi))
+
+    @cached_property
+    def _deep(self) -> Array:
+        return deep_inside(self.mask)
+
+    @property
+    def wide_px(self) -> float:
+        """How wide its material is on the whole [picture px]."""
+        return mean_width(self._deep) * self.zoom
 
     def steady_point(self) -> Point:
         """A point well inside what shows of it: its centre when that lies on it, else the deepest one near the centre."""
@@ -110,7 +140,7 @@ class Thing:
 
     @cached_property
     def _steady(self) -> Point:
-        deep = cv2.distanceTransform(np.pad(self.mask.astype(np.uint8), 1), cv2.DIST_L2, 3)[1:-1, 1:-1]
+        deep = self._deep
         rows, columns = np.mgrid[0 : deep.shape[0], 0 : deep.shape[1]]
         away = np.hypot(
             columns + 0.5 + self.offset[0] - self.centre[0] / self.zoom,
@@ -178,20 +208,18 @@ class Example:
     """What an object picture shows alone.
 
     Attributes:
-        name: Of the picture.
         look: Colours, pattern, shape.
         box: Tight round it [px of that picture].
         area_view_px: Its filled area [px squared of the view], for comparing sizes in like views.
-        pale: White parts may have vanished into the white background.
+        wide_view_px: How wide its material is on the whole [px of the view].
         gapless: Its look if the gaps in it are white parts that have vanished; None where `look` says so already.
         open_outline: Its outline if the gaps that were taken for vanished texture are holes instead; None without any.
     """
 
-    name: str
     look: Look
     box: Box
     area_view_px: float
-    pale: bool = False
+    wide_view_px: float
     open_outline: Outline | None = None
     gapless: Look | None = None
 
@@ -216,6 +244,13 @@ class Match:
     margin: float
     why: str
     parts: dict[str, float] = field(default_factory=dict)
+
+
+def with_margins(matches: list[Match]) -> list[Match]:
+    """Each match's lead over the best of the others (negative when behind); the best one comes first."""
+    best, *others = [match.score for match in matches] or [0.0]
+    rivals = [max(others, default=0.0), *(best for _ in others)]
+    return [replace(match, margin=match.score - rival) for match, rival in zip(matches, rivals, strict=False)]
 
 
 def study_look(rgb: Array, lab: Array, mask: Array, shown: Array | None = None) -> Look:
@@ -288,14 +323,3 @@ def whole_mask(thing: Thing, shape: tuple[int, int]) -> Array:
     h, w = thing.mask.shape
     full[y : y + h, x : x + w] = thing.mask
     return full
-
-
-def covers(thing: Thing, point: Point) -> bool:
-    """Whether a point lies inside a thing's outer outline, holes included."""
-    column = int(point[0] / thing.zoom) - thing.offset[0]
-    row = int(point[1] / thing.zoom) - thing.offset[1]
-    height, width = thing.mask.shape
-    return 0 <= column < width and 0 <= row < height and bool(filled(thing.mask)[row, column])
-
-
-__all__ = ["Example", "Look", "Match", "NotSeen", "Picture", "Scene", "Thing", "covers", "lab_histogram", "study_look"]

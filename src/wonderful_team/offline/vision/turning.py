@@ -22,16 +22,12 @@ def turned_deg(before: Picture, was: Thing, after: Picture, now: Thing, asked_de
 
     None when every turn fits about equally, as for a plain disc.
     """
-    first = _patch(before, was)
-    second = _patch(after, now)
-    turns = np.arange(0.0, 360.0, STEP_DEG)
-    fits = np.array([_fit(_rotated(first, turn), second) for turn in turns])
-    if fits.max() - fits.min() < CLEARLY:
+    first, second = _patch(before, was), _patch(after, now)
+    best = common_turn_deg([(before, was, after, now)])
+    if best is None:
         return None
-    asked = _fit(_rotated(first, asked_deg), second)
-    if asked >= fits.max() - CLEARLY * 0.5:
-        return asked_deg % 360
-    return float(turns[int(fits.argmax())])
+    asked, most = (_fit(_rotated(first, turn), second) for turn in (asked_deg, best))
+    return asked_deg % 360 if asked >= most - CLEARLY * 0.5 else best
 
 
 def common_turn_deg(pairs: Sequence[tuple[Picture, Thing, Picture, Thing]]) -> float | None:

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 import numpy as np
 import shapely
 
-from wonderful_team.core.actions import Action, PickPlace, Push
+from wonderful_team.core.actions import Action, Gripper, Home, MoveTo, PickPlace, Push, RotateGripper
 from wonderful_team.core.geometry import wrap_angle
 from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.geometry.cameras import Camera
@@ -131,7 +131,7 @@ def moves_of(actions: Sequence[Action], truth: SceneTruth, instruction: Instruct
     pictured = _pictured(truth, instruction)
     start = {name: _xy(thing.position_m) for name, thing in truth.start().items()}
     moves: list[Move] = []
-    for action in actions:
+    for action in carried(actions):
         if isinstance(action, PickPlace):
             put = _put(action, table, pictured, start)
             if put is not None:
@@ -141,6 +141,25 @@ def moves_of(actions: Sequence[Action], truth: SceneTruth, instruction: Instruct
             if shove is not None:
                 moves.append(shove)
     return moves
+
+
+def carried(actions: Sequence[Action]) -> list[Action]:
+    """The same, with what an arm does between closing and opening its gripper as one pick and place."""
+    found: list[Action] = []
+    at = gripped = None
+    for action in actions:
+        if isinstance(action, MoveTo):
+            at = action.pose
+        elif isinstance(action, Gripper) and at is not None:
+            if action.state != "open":
+                gripped = at
+            elif gripped is not None:
+                turn = wrap_angle(at.yaw_rad - gripped.yaw_rad)
+                found.append(PickPlace(gripped.position_m, at.position_m, turn))
+                gripped = None
+        elif not isinstance(action, Gripper | RotateGripper | Home):
+            found.append(action)
+    return found
 
 
 def _put(

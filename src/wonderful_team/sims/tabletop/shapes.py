@@ -43,7 +43,7 @@ KIT = (
 )
 BASES = ("pan", "bowl", "frame", "square", "container", "pallet")
 AREAS = ("paper", "line")
-SMALL = {"shorter block": (BLOCK_M, 0.03), "small block": (0.03, 0.03)}
+SMALL = {"shorter block": (BLOCK_M, 0.03), "small block": (0.03, 0.03), "cube": (0.045, 0.045)}
 """Cuboids by name: side and height [m]."""
 THREE_SIDED = "three-sided rectangle"
 ROOM_M = (0.3, 0.172)

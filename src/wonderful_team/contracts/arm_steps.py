@@ -17,7 +17,9 @@ def can_carry(step_kinds: Sequence[str]) -> bool:
 def arm_steps(
     subgoal: str, pick: str, place: Mapping[str, Any], rotate_deg: float, step_kinds: Sequence[str]
 ) -> list[dict[str, Any]]:
-    """Above, open, down, close, up, turn, over the place, down, open, clear, and out of the cameras' sight, as `StepList` takes them.
+    """Over the thing, down, close, up, turn, over the place, down, open, up, and out of the cameras' sight, as `StepList` takes them.
+
+    Every way across the table is made clear of everything; only then the tool goes down.
 
     Args:
         subgoal: That they carry out.
@@ -35,12 +37,13 @@ def arm_steps(
     home = [{"kind": "home", "subgoal": subgoal}] if "home" in step_kinds else []
     return [
         {"kind": "open", "subgoal": subgoal},
+        move(thing, "clear"),
         move(thing, "above"),
         move(thing, "at"),
         {"kind": "close", "subgoal": subgoal, "tight": False},
         move(thing, "clear"),
         *turn,
-        move(place, "above"),
+        move(place, "clear"),
         move(place, "at"),
         {"kind": "open", "subgoal": subgoal},
         move(place, "clear"),

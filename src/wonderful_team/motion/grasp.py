@@ -18,8 +18,8 @@ TURNS = 60
 """Turns of the gripper that are tried, over half a turn: every 3 degrees."""
 ROOM_M = 0.005
 """More than the thing's width the open fingers want between them [m]."""
-ALIKE_M = 0.003
-"""Widths that differ by less are the same: the smaller turn is then taken [m]."""
+TURNING_M_RAD = 0.001
+"""So much narrower a grip has to be for a turn of one more radian [m]: what is round is gripped as the gripper stands."""
 LOW_SHARE, LEAST_M = 0.2, 0.005
 """What is lower than this share of the thing's height, or this, is not the thing but what it stands on."""
 TIP_M = 0.009
@@ -78,13 +78,14 @@ def grip_of(view: View, box: Box, px: Point, support_z_m: float, grasp_z_m: floa
     spacing = _spacing(mine)
     found, narrowest = [], math.inf
     tip_m = max(grasp_z_m - TIP_M, support_z_m) + ROOM_M
+    others = others[others[:, 2] > tip_m]
     for yaw in np.linspace(-math.pi / 2, math.pi / 2, TURNS, endpoint=False):
         low, high = _extent(mine, at, float(yaw), fingers, spacing)
         width, middle = high - low, (high + low) / 2
         narrowest = min(narrowest, width)
         if width + ROOM_M > fingers.opening_m:
             continue
-        hit = _hits(others, at, float(yaw), middle, width, fingers, tip_m)
+        hit = _hits(others, at, float(yaw), middle, width, fingers)
         found.append((hit, width, abs(float(yaw)), float(yaw), middle))
     if not found:
         raise GeometryError(
@@ -97,8 +98,7 @@ def grip_of(view: View, box: Box, px: Point, support_z_m: float, grasp_z_m: floa
             f"other things stand where a finger would go, however the gripper is turned ({len(found)} turns tried); "
             "move one of them away first"
         )
-    least = min(one[1] for one in free)
-    _, width, _, yaw, middle = min((one for one in free if one[1] <= least + ALIKE_M), key=lambda one: one[2])
+    _, width, _, yaw, middle = min(free, key=lambda one: one[1] + TURNING_M_RAD * one[2])
     centre = at + middle * np.array([math.sin(yaw), -math.cos(yaw)])
     return Grip(centre, yaw, width, len(mine))
 
@@ -116,8 +116,12 @@ def _cloud(view: View, box: Box, px: Point) -> Array:
         raise GeometryError("there is no depth, so how wide it is and how the gripper must turn are not known")
     cloud = np.full((*depth.shape, 3), np.nan)
     known = np.isfinite(depth) & (depth > 0)
+    # A window that holds everything nearby, whatever the camera: a metre in pixels, from two points of the table.
+    ends = camera.project([middle := camera.on_plane([px], 0.0)[0], middle + (0.1, 0.0, 0.0)])
+    reach = 1.5 * NEAR_M / 0.1 * float(np.linalg.norm(ends[1] - ends[0])) + max(box.width, box.height)
+    away = np.abs(_pixels(view) - np.array(px)).max(axis=2)
+    known &= away <= reach
     cloud[known] = camera.deproject(_pixels(view)[known], depth[known])
-    middle = camera.on_plane([px], 0.0)[0]
     far = np.hypot(cloud[..., 0] - middle[0], cloud[..., 1] - middle[1]) > NEAR_M
     cloud[far] = np.nan
     return cloud
@@ -188,9 +192,9 @@ def _extent(mine: Array, at: Array, yaw_rad: float, fingers: Fingers, spacing: f
     return float(low) - spacing / 2, float(high) + spacing / 2
 
 
-def _hits(others: Array, at: Array, yaw_rad: float, middle: float, width: float, fingers: Fingers, tip_m: float) -> int:
+def _hits(others: Array, at: Array, yaw_rad: float, middle: float, width: float, fingers: Fingers) -> int:
     """How many points of other things stand where the fingers come down and close."""
     along, across = _seen_from(others, at, yaw_rad)
     off = np.abs(across - middle)
     beside = (off > width / 2 + ROOM_M / 2) & (off < fingers.opening_m / 2 + fingers.thickness_m + ROOM_M)
-    return int((beside & (np.abs(along) <= fingers.breadth_m / 2 + ROOM_M / 2) & (others[:, 2] > tip_m)).sum())
+    return int((beside & (np.abs(along) <= fingers.breadth_m / 2 + ROOM_M / 2)).sum())

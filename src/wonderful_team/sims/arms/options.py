@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import Any
 
 from wonderful_team.errors import ConfigError
 from wonderful_team.sims.arms.rows import ARMS, DEFAULT
@@ -45,7 +46,8 @@ def asked(name: str, arm: str | None, depth: int, calibration: int) -> Asked:
         if equals and tier in TIERS and level.isdigit():
             if getattr(found, tier) not in (0, int(level)):
                 raise ConfigError(f"{tier}: the name says {level}, the option {getattr(found, tier)}; say it once")
-            found = replace(found, **{tier: int(level)})
+            more: dict[str, Any] = {tier: int(level)}
+            found = replace(found, **more)
         elif part in ARMS and arm in (None, part):
             found = replace(found, arm=part)
         else:

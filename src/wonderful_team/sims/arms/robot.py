@@ -22,7 +22,7 @@ TURN_RAD_S, JOINT_RAD_S = 1.6, 1.8
 """How fast the tool turns, and how fast any joint does on the way from and to its parking place."""
 APART_M = 0.015
 """Distance of the points of a line at which inverse kinematics is solved [m]."""
-TOUCH_N, COLLISION_N = 10.0, 40.0
+TOUCH_N, COLLISION_N = 6.0, 40.0
 """A tool that goes down stops at the first force; any other motion at the second [N]."""
 ARRIVED_M, ARRIVED_RAD = 0.0015, 0.01
 """A motion is over when the tool is this near to its goal."""
@@ -33,6 +33,10 @@ AWAY_M = 0.012
 EMPTY_M = 0.003
 """Fingers that are closed up to this hold nothing [m]."""
 DOWN_SHARE = 0.5
+PRESS_N = 3.0
+"""With so much a tool that is led along a surface presses on it [N]."""
+GIVES_M_N, MOST_LEAN_M = 2e-5, 0.008
+"""How far it goes down at each command for a newton that is missing, and at most in all [m]."""
 OVER_M = 0.32
 """Height at which the tool comes from its parking place, and goes there [m]."""
 
@@ -82,6 +86,8 @@ class Robot:
         self.each_step: Callable[[], None] | None = None
         self.tip_m = np.zeros(3)
         self._halted = False
+        self._lean_m = 0.0
+        self._led: tuple[Array, Array] | None = None
         self._command(self.kinematics.parked(), self._state.qpos.copy())
 
     def _command(self, q: Array, qpos: Array) -> None:
@@ -189,11 +195,12 @@ class Robot:
         return self._straight(goal, yaw_rad, touching)
 
     def _straight(self, goal: Array, yaw_rad: float, touching: bool) -> Moved:
-        start, from_yaw = self.tool_m, self.yaw_rad
+        start, from_q = self._led if touching and self._led is not None else (self.tool_m, self.q)
+        from_yaw = self.yaw_rad
         way, turn = goal - start, math.remainder(yaw_rad - from_yaw, 2 * math.pi)
         length = float(np.linalg.norm(way))
         count = max(1, math.ceil(length / APART_M), math.ceil(abs(turn) / 0.2))
-        near, path = self.q, [self.q]
+        near, path = from_q, [from_q]
         for share in np.linspace(0, 1, count + 1)[1:]:
             found = self.kinematics.reach(*self._flange_at(start + share * way, from_yaw + share * turn), near=near)
             if found is None:
@@ -204,8 +211,12 @@ class Robot:
         speed = CONTACT_SPEED_M_S if touching or (down and length < 0.15) else SPEED_M_S
         most = float(np.abs(path[-1] - path[0]).max()) / JOINT_RAD_S
         seconds = max(1.5 * length / speed, 1.5 * abs(turn) / TURN_RAD_S, most, 0.1)
-        stopped, force = self._along(np.array(path), seconds, TOUCH_N if down else COLLISION_N)
-        if not stopped:
+        if not touching:
+            self._lean_m = 0.0
+        # Where the next edge of a path along a surface begins: where this one would end without the pressing.
+        self._led = (goal, path[-1]) if touching else None
+        stopped, force = self._along(np.array(path), seconds, TOUCH_N if down else COLLISION_N, touching)
+        if not stopped and not touching:
             stopped, pressed = self._settle(goal, yaw_rad, TOUCH_N if down else COLLISION_N)
             force = max(force, pressed)
         if stopped == "collision" and down:
@@ -271,7 +282,16 @@ class Robot:
                 self._tick()
         return stopped, force
 
-    def _along(self, path: Array, seconds: float, most_n: float) -> tuple[str, float]:
+    def _leant(self, q: Array, force_n: float) -> Array:
+        """Joint angles a little lower, or higher, so that the tool presses as it should on what it is led along."""
+        change = GIVES_M_N * (force_n - PRESS_N)
+        self._lean_m = float(np.clip(self._lean_m + change, -MOST_LEAN_M, MOST_LEAN_M))
+        jacobian = np.zeros((6, self._model.nv))
+        mj.mj_jacSite(self._model, self._state, jacobian[:3], jacobian[3:], self._flange)
+        up = np.array([0.0, 0.0, self._lean_m, 0.0, 0.0, 0.0])
+        return q + np.linalg.lstsq(jacobian[:, self._v_at], up, rcond=None)[0]
+
+    def _along(self, path: Array, seconds: float, most_n: float, touching: bool = False) -> tuple[str, float]:
         """Servo the joints along a path, slow at both ends; the speed is told to the servos, which would lag behind."""
         count, worst = max(2, math.ceil(seconds / (TICK * TIMESTEP_S))), 0.0
         at = np.linspace(0, 1, len(path))
@@ -280,13 +300,14 @@ class Robot:
             eased = share * share * (3 - 2 * share)
             return np.array([np.interp(eased, at, path[:, j]) for j in range(path.shape[1])])
 
-        before = goal(0.0)
+        before, force = goal(0.0), self.force_n()
         for k in range(1, count + 1):
             if self._halted:
                 self._hold()
                 return "stop", worst
             q = goal(k / count)
-            self._state.ctrl[self._drives] = q + (q - before) / (TICK * TIMESTEP_S) * self._lag_s
+            told = q + (q - before) / (TICK * TIMESTEP_S) * self._lag_s
+            self._state.ctrl[self._drives] = self._leant(told, force) if touching else told
             before = q
             self._tick()
             force = self.force_n()
@@ -294,7 +315,15 @@ class Robot:
             if force > most_n:
                 self._hold()
                 return "collision", worst
-        self._state.ctrl[self._drives] = before
+        if not touching:
+            self._state.ctrl[self._drives] = before
+            return "", worst
+        for _ in range(round(3 * float(self._lag_s.max()) / (TICK * TIMESTEP_S))):
+            # The corner is reached before the next edge begins.
+            self._state.ctrl[self._drives] = self._leant(before, force)
+            self._tick()
+            force = self.force_n()
+            worst = max(worst, force)
         return "", worst
 
     def _settle(self, goal: Array, yaw_rad: float, most_n: float) -> tuple[str, float]:

@@ -2,13 +2,20 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 
 import numpy as np
 
 from wonderful_team.core.actions import ARM
+from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.errors import UnknownNameError
+from wonderful_team.sims.arms.drawing import Drawing
+from wonderful_team.sims.arms.scene import ArmScene
+from wonderful_team.sims.arms.star import star_points, star_problem
 from wonderful_team.sims.tabletop import tasks as _tabletop_tasks
+from wonderful_team.sims.tabletop.goals import Poses
+from wonderful_team.sims.tabletop.placing import Room
 from wonderful_team.sims.tabletop.registering import SetTable, TabletopTask, find_task
 from wonderful_team.sims.tabletop.scene import Scene
 
@@ -16,6 +23,10 @@ MOVES = 14
 """Actions that one pick and place may take: ten, and a few more for what went wrong."""
 COLOURS = ("red", "green", "yellow", "purple", "orange")
 BOWLS = ("blue", "cyan")
+PAPERS = ("green", "yellow", "orange", "cyan", "pink")
+NEAR_ROOM_M: Room = (0.3, -0.3, 0.66, 0.3)
+STAR_M = 0.065
+"""From the middle of the oracle's star to its tips [m]."""
 FRUITS = ("all_match", "no_area", "misplaced", "both")
 _TASKS: dict[str, TabletopTask] = {}
 
@@ -57,6 +68,21 @@ def block_in_bowl(scene: Scene, rng: np.random.Generator) -> None:
     scene.ends_when_reached = False
     scene.goal(wanted, inside=bowl)
     scene.goal(other, off=[bowl])
+
+
+@task("star", instruction="draw a five-pointed star on the {colour} paper", horizon=8)
+def star(scene: Scene, rng: np.random.Generator) -> None:
+    """Draw a five-pointed star on the paper of the named colour; judged on the ink."""
+    colours = [str(name) for name in scene.colours.permutation(PAPERS)[:2]]
+    paper = scene.add("paper", f"{colours[0]} paper", yaw_rad=0.0, name=f"{colours[0]} paper", within=NEAR_ROOM_M)
+    scene.add("paper", f"{colours[1]} paper", yaw_rad=0.0, name=f"{colours[1]} paper")
+    scene.say(colour=colours[0])
+    assert isinstance(scene, ArmScene)
+
+    def right(poses: Poses) -> Array:
+        return star_points(poses[paper.name].position_m[:2], STAR_M, math.pi)
+
+    scene.work = Drawing(paper, star_problem, right)
 
 
 for _variation in FRUITS:

@@ -24,8 +24,6 @@ from wonderful_team.sims.tabletop.table import Snapshot
 LEANS_RAD = 0.01
 LOW_M = 0.14
 """A path whose points lie lower than this runs along a surface; in the air it lies at the clearance or higher [m]."""
-PRESS_M = 0.001
-"""How much lower than where it first touched a surface the tool is then led along it [m]."""
 SEEK_M = 0.006
 """How far below its first low point a path's surface is looked for by touch [m]."""
 REASONS = {
@@ -145,7 +143,7 @@ class ArmWorld:
                 if not moved.stopped_by:
                     moved = robot.move(goal - np.array([0.0, 0.0, SEEK_M]), robot.yaw_rad)
                 if moved.stopped_by == "contact":
-                    off_m = float(robot.tool_m[2]) - PRESS_M - float(point[2])
+                    off_m = float(robot.tool_m[2]) - float(point[2])
                     moved = Moved(0.0, moved.error_rad, moved.force_n)
             before_low = low
             force = max(force, moved.force_n)

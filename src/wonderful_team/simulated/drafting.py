@@ -140,10 +140,14 @@ def _steps(
         named["subgoal"] = own[step["subgoal"]]
         if "pick" in named:
             named["pick"] = ids[step["pick"]]
+        if step["kind"] == "follow":
+            named["function"] = own[step["function"]]
         if step["kind"] == "pick_place" and "pick_place" not in kinds and can_carry(kinds):
             steps += arm_steps(named["subgoal"], named["pick"], named["place"], named["rotate_deg"], kinds)
         else:
             steps.append(named)
+            if step["kind"] == "follow" and "home" in kinds:
+                steps.append({"kind": "home", "subgoal": named["subgoal"]})
     return steps
 
 

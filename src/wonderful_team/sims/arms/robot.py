@@ -35,6 +35,7 @@ EMPTY_M = 0.003
 DOWN_SHARE = 0.5
 PRESS_N = 3.0
 """With so much a tool that is led along a surface presses on it [N]."""
+PRESS_TICKS = 40
 GIVES_M_N, MOST_LEAN_M = 2e-5, 0.008
 """How far it goes down at each command for a newton that is missing, and at most in all [m]."""
 OVER_M = 0.32
@@ -222,6 +223,15 @@ class Robot:
         if stopped == "collision" and down:
             stopped = "contact"
         return self._ended(goal, yaw_rad, force, stopped)
+
+    def press(self) -> None:
+        """Press as a tool does that is led along a surface, before it is: where it touches, and until it does so steadily."""
+        self._led = (self.tool_m, self.q)
+        q, self._lean_m, force = self.q, 0.0, self.force_n()
+        for _ in range(PRESS_TICKS):
+            self._state.ctrl[self._drives] = self._leant(q, force)
+            self._tick()
+            force = self.force_n()
 
     def park(self) -> Moved:
         """Straight up, then to the parking place beside the table."""

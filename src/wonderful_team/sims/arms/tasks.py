@@ -13,11 +13,13 @@ from wonderful_team.errors import UnknownNameError
 from wonderful_team.sims.arms.drawing import Drawing
 from wonderful_team.sims.arms.scene import ArmScene
 from wonderful_team.sims.arms.star import star_points, star_problem
+from wonderful_team.sims.arms.wiping import Wiping
 from wonderful_team.sims.tabletop import tasks as _tabletop_tasks
 from wonderful_team.sims.tabletop.goals import Poses
 from wonderful_team.sims.tabletop.placing import Room
 from wonderful_team.sims.tabletop.registering import SetTable, TabletopTask, find_task
 from wonderful_team.sims.tabletop.scene import Scene
+from wonderful_team.sims.tabletop.shapes import WELL_M
 
 MOVES = 14
 """Actions that one pick and place may take: ten, and a few more for what went wrong."""
@@ -83,6 +85,17 @@ def star(scene: Scene, rng: np.random.Generator) -> None:
         return star_points(poses[paper.name].position_m[:2], STAR_M, math.pi)
 
     scene.work = Drawing(paper, star_problem, right)
+
+
+@task("wipe", instruction="wipe the {colour} plate with the sponge", horizon=8)
+def wipe(scene: Scene, rng: np.random.Generator) -> None:
+    """Wipe the plate of the named colour with the sponge; judged by how much of it the sponge has pressed on."""
+    colours = [str(name) for name in scene.colours.permutation(COLOURS)[:2]]
+    plate = scene.add("plate", colours[0], name=f"{colours[0]} plate", within=NEAR_ROOM_M)
+    scene.add("cube", colours[1], name=f"{colours[1]} block")
+    scene.say(colour=colours[0])
+    assert isinstance(scene, ArmScene)
+    scene.work = Wiping(plate, WELL_M)
 
 
 for _variation in FRUITS:

@@ -133,18 +133,20 @@ class ArmWorld:
     def _follow(self, points_m: Array) -> Moved:
         """Along a path: where it is low, down until the tool touches the surface, and then along it."""
         robot, off_m, before_low = self._table.robot, 0.0, False
-        moved = Moved(0.0, 0.0, 0.0)
-        force = 0.0
+        moved, force = Moved(0.0, 0.0, 0.0), 0.0
+        # How it stands at its parking place says nothing: from there it comes straight.
+        yaw = 0.0 if robot.parked else robot.yaw_rad
         for point in points_m:
             low = float(point[2]) < LOW_M
             goal = np.asarray(point) + np.array([0.0, 0.0, off_m if low else 0.0])
-            moved = robot.move(goal, robot.yaw_rad, touching=low and before_low)
+            moved = robot.move(goal, yaw, touching=low and before_low)
             if low and not before_low:
                 if not moved.stopped_by:
-                    moved = robot.move(goal - np.array([0.0, 0.0, SEEK_M]), robot.yaw_rad)
+                    moved = robot.move(goal - np.array([0.0, 0.0, SEEK_M]), yaw)
                 if moved.stopped_by == "contact":
                     off_m = float(robot.tool_m[2]) - float(point[2])
                     moved = Moved(0.0, moved.error_rad, moved.force_n)
+                    robot.press()
             before_low = low
             force = max(force, moved.force_n)
             if moved.stopped_by:

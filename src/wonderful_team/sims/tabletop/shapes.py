@@ -43,6 +43,8 @@ KIT = (
 )
 BASES = ("pan", "bowl", "frame", "square", "container", "pallet")
 AREAS = ("paper", "line")
+PLATE, PLATE_M, WELL_M = "plate", (0.1, 0.006), 0.08
+"""A flat round plate: its radius and height, and the radius of the part inside its edge [m]."""
 SMALL = {"shorter block": (BLOCK_M, 0.03), "small block": (0.03, 0.03), "cube": (0.045, 0.045)}
 """Cuboids by name: side and height [m]."""
 THREE_SIDED = "three-sided rectangle"
@@ -92,7 +94,7 @@ class Shape:
 def shape_names(kind: Kind | None = None) -> tuple[str, ...]:
     """All names, or those of one kind that tasks may choose among."""
     chosen = {"kit": KIT, "base": BASES, "area": AREAS, "fruit": fruits.NAMES}
-    return chosen[kind] if kind else (*KIT, *SMALL, *BASES, THREE_SIDED, *AREAS, *fruits.NAMES)
+    return chosen[kind] if kind else (*KIT, *SMALL, *BASES, THREE_SIDED, PLATE, *AREAS, *fruits.NAMES)
 
 
 @cache
@@ -113,6 +115,8 @@ def shape(name: str, stretch: float = 1.0) -> Shape:
         return _base(name)
     if name == THREE_SIDED:
         return _three_sided()
+    if name == PLATE:
+        return _plate()
     if name in AREAS:
         across, along = (0.085, 0.085) if name == "paper" else (LINE_M[0] / 2, LINE_M[1] / 2)
         return _from_layers(name, "area", [(box(-across, -along, across, along), 0.0, PAPER_M)], [], movable=False)
@@ -136,6 +140,13 @@ def _three_sided() -> Shape:
     around = box(-across - WALL_M, -along - WALL_M, across + WALL_M, along)
     wall = around.difference(box(-across, -along, across, along + WALL_M))
     return _from_layers(THREE_SIDED, "base", [(wall, 0.0, 0.02)], [], movable=False)
+
+
+def _plate() -> Shape:
+    """The part inside the edge is darker, and as high but for what keeps the two apart in a picture."""
+    (radius, height), well = PLATE_M, Point(0, 0).buffer(WELL_M)
+    edge = Point(0, 0).buffer(radius).difference(well)
+    return _from_layers(PLATE, "base", [(edge, 0.0, height)], [(well, 0.0, height)], movable=False)
 
 
 def _kit(name: str) -> Shape:

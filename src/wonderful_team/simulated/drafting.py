@@ -129,7 +129,7 @@ def _steps(
     ids = {draft.id: asked.get(key_of(draft.to_target()), draft.id) for draft in plan.targets}
     own = {draft.id: subgoal.id for draft, subgoal in zip(plan.subgoals, subgoals, strict=True)}
 
-    def renamed(value: object) -> object:
+    def renamed(value: Any) -> Any:
         if isinstance(value, dict):
             return {**value, "target": ids[value["target"]]}
         return value

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from wonderful_team.sims.arms.cameras import PinholeLens
 from wonderful_team.sims.arms.rows import ArmRow
@@ -138,7 +139,7 @@ def _add_surroundings(spec: Any, look: Look) -> None:
     )
 
 
-def upright(quaternion: Sequence[float]) -> float:
+def upright(quaternion: ArrayLike) -> float:
     """How far something leans over [rad], from its quaternion (wxyz)."""
-    w, x, y, z = (float(value) for value in quaternion)
+    w, x, y, z = (float(value) for value in np.asarray(quaternion))
     return math.acos(float(np.clip(1 - 2 * (x * x + y * y) / (w * w + x * x + y * y + z * z), -1.0, 1.0)))

@@ -299,7 +299,7 @@ class Robot:
         jacobian = np.zeros((6, self._model.nv))
         mj.mj_jacSite(self._model, self._state, jacobian[:3], jacobian[3:], self._flange)
         up = np.array([0.0, 0.0, self._lean_m, 0.0, 0.0, 0.0])
-        return q + np.linalg.lstsq(jacobian[:, self._v_at], up, rcond=None)[0]
+        return np.asarray(q + np.linalg.lstsq(jacobian[:, self._v_at], up, rcond=None)[0])
 
     def _along(self, path: Array, seconds: float, most_n: float, touching: bool = False) -> tuple[str, float]:
         """Servo the joints along a path, slow at both ends; the speed is told to the servos, which would lag behind."""

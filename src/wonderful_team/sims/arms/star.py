@@ -7,6 +7,7 @@ from collections.abc import Sequence
 
 import cv2
 import numpy as np
+from numpy.typing import ArrayLike
 from shapely import Polygon
 
 from wonderful_team.core.geometry.arrays import Array
@@ -23,12 +24,13 @@ NOTCH_SHARES = (0.2, 0.72)
 """How far in the corners between the tips lie, as a share of how far the tips lie out."""
 
 
-def star_points(centre: Sequence[float], reach_m: float, turn_rad: float = 0.0) -> Array:
+def star_points(centre: ArrayLike, reach_m: float, turn_rad: float = 0.0) -> Array:
     """The closed outline of a five-pointed star, shape (11, 2) [m]; one tip points along +x when nothing is turned."""
     inner = math.cos(math.radians(72)) / math.cos(math.radians(36))
     radii = [reach_m if k % 2 == 0 else reach_m * inner for k in range(10)]
     angles = [turn_rad + math.pi * k / 5 for k in range(10)]
-    points = [(centre[0] + r * math.cos(a), centre[1] + r * math.sin(a)) for r, a in zip(radii, angles, strict=True)]
+    x, y = (float(v) for v in np.asarray(centre)[:2])
+    points = [(x + r * math.cos(a), y + r * math.sin(a)) for r, a in zip(radii, angles, strict=True)]
     return np.array([*points, points[0]])
 
 

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from wonderful_team.core.actions import Action, Home, Trajectory
 from wonderful_team.core.geometry.arrays import Array
@@ -135,7 +136,7 @@ class Wiping(HeldTool):
         return [Trajectory(np.vstack([low[:1] + over, low, low[-1:] + over])), Home()]
 
 
-def lanes(centre: Sequence[float], radius_m: float) -> Array:
+def lanes(centre: ArrayLike, radius_m: float) -> Array:
     """To and fro over a round plate, shape (N, 2) [m]: what is pressed on is wider than the gaps between the lanes."""
     count = int(np.ceil(2 * (radius_m - EDGE_M) / LANE_M)) + 1
     points: list[tuple[float, float]] = []
@@ -143,4 +144,4 @@ def lanes(centre: Sequence[float], radius_m: float) -> Array:
         half = max(0.0, float(np.sqrt(radius_m**2 - min(abs(x) - 0.01, radius_m) ** 2)) - SPONGE_HALF_M[1])
         ends = [(float(x), -half), (float(x), half)]
         points += ends if k % 2 == 0 else ends[::-1]
-    return np.array(points) + np.asarray(centre)
+    return np.asarray(np.array(points) + np.asarray(centre))

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 from wonderful_team.core.actions import Action, Home, Trajectory
 from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.protocols import Score
-from wonderful_team.sims.arms.held import GRIP_HALF_M, STIFF, HeldTool
+from wonderful_team.sims.arms.held import GRIP_HALF_M, HeldTool
 from wonderful_team.sims.arms.model import BuiltArm
 from wonderful_team.sims.arms.robot import Robot
 from wonderful_team.sims.tabletop.engine import mj
@@ -21,6 +21,8 @@ from wonderful_team.sims.tabletop.shapes import PLATE_M
 
 SPONGE_HALF_M = (0.03, 0.02, 0.008)
 """Half the sides of what wipes [m]."""
+SOFT = (0.008, 1.5)
+"""Time constant and damping of its contacts: it gives by about 3 mm, and does not chatter."""
 CELL_M = 0.004
 """Side of the cells that the plate is counted in [m]."""
 COVERED_SHARE = 0.9
@@ -64,7 +66,7 @@ class Wiping(HeldTool):
     def add_end(self, body: Any) -> None:
         body.add_geom(
             name="sponge", type=mj.mjtGeom.mjGEOM_BOX, size=SPONGE_HALF_M, pos=(0.0, 0.0, -GRIP_HALF_M[2] - SPONGE_HALF_M[2]),
-            mass=0.01, group=0, condim=3, friction=(0.3, 0.005, 0.0001), priority=2, solref=STIFF, rgba=(0.95, 0.85, 0.3, 1.0),
+            mass=0.01, group=0, condim=3, friction=(0.3, 0.005, 0.0001), priority=2, solref=SOFT, rgba=(0.95, 0.85, 0.3, 1.0),
         )  # fmt: skip
 
     def begin(self, built: BuiltArm, state: Any, robot: Robot) -> None:

@@ -73,6 +73,20 @@ def test_stop_holds_and_never_opens(world: ArmWorld) -> None:
 
 
 @needs_arms
+def test_what_slips_out_of_the_fingers_is_noticed(world: ArmWorld) -> None:
+    actions = list(world.privileged.oracle())
+    for action in actions[:5]:
+        assert world.execute(action).executed
+    # The block is knocked out of the fingers.
+    table, name = world._table, wanted(world)
+    table.put(name, np.array([0.65, 0.3, 0.0]), 0.0)
+    report = world.execute(actions[5])
+    assert not report.executed
+    assert "closed on nothing" in str(report.fault)
+    assert report.measured["holding"] is False
+
+
+@needs_arms
 def test_a_touch_on_the_way_down_stops_the_arm_and_is_reported(world: ArmWorld) -> None:
     name = wanted(world)
     x, y, _ = at(world, name)

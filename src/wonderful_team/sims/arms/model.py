@@ -38,10 +38,9 @@ PREFIX = "arm/"
 """Of every name of the arm and its gripper in the scene's model."""
 IMPRATIO = 10.0
 """Friction to normal forces of contacts: below it, what is held creeps out of the fingers."""
-SPEED_LIMIT = 1e-3
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class BuiltArm(BuiltModel):
     """A compiled scene with an arm in it.
 
@@ -50,8 +49,8 @@ class BuiltArm(BuiltModel):
         bodies: Ids of the arm's and the gripper's bodies.
     """
 
-    row: ArmRow = None  # type: ignore[assignment]
-    bodies: frozenset[int] = frozenset()
+    row: ArmRow
+    bodies: frozenset[int]
 
     def arm_id(self, kind: Any, name: str) -> int:
         """Id of something of the arm by the name that its own file gives it."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -374,10 +374,3 @@ class Robot:
     def _ended(self, goal: Array, yaw_rad: float, force_n: float, stopped_by: str) -> Moved:
         off = float(np.linalg.norm(self.tool_m - goal))
         return Moved(off, abs(math.remainder(self.yaw_rad - yaw_rad, 2 * math.pi)), force_n, stopped_by)
-
-
-def waypoints(points_m: Array, surface: Callable[[Array], bool]) -> Iterator[tuple[Array, bool]]:
-    """Each point of a path, and whether the way to it runs along a surface."""
-    low: Sequence[bool] = [surface(point) for point in points_m]
-    for k, point in enumerate(points_m):
-        yield point, k > 0 and low[k] and low[k - 1]

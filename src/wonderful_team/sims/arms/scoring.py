@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from wonderful_team.core.protocols import Score
-from wonderful_team.core.text import counted
 from wonderful_team.sims.arms.table import Grip
 from wonderful_team.sims.tabletop.goals import Goal, Poses, off_table
 from wonderful_team.sims.tabletop.model import Thing
@@ -73,8 +72,3 @@ def _stage(missing: Sequence[Goal], grips: Sequence[Grip], things: Mapping[str, 
     if not at & {goal.thing for goal in missing}:
         return "wrong object" if len(at) == len(grips) else "plan"
     return "execution"
-
-
-def said(count: int) -> str:
-    """How many actions ran, for messages."""
-    return counted(count, "action")

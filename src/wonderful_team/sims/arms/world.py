@@ -234,7 +234,8 @@ def _facts(row: ArmRow, table: ArmTable) -> str:
         (
             f"Robot: {row.words}, bolted down at the upper edge of the top view.",
             *tool.splitlines(),
-            "After a task the arm goes home: it then stands beside the table, out of the top view, and everything can be seen.",
+            "End every task with home: the arm then stands beside the table, out of the top view, and everything can be seen.",
+            "Every way across the table is made clear of everything; the tool goes down only over where it is to be.",
             f"Reach: {100 * (REACH_HIGH_M[0] - REACH_LOW_M[0]):.0f} by {100 * (REACH_HIGH_M[1] - REACH_LOW_M[1]):.0f} cm in the "
             "middle of the table, and nothing beyond.",
             "Views: the top camera looks straight down; the front camera looks from the side that is the lower edge of the top view.",

@@ -83,3 +83,17 @@ def test_what_lies_on_another_fruit_is_not_on_the_paper() -> None:
         poses["red block"] = Pose.at(np.array([0.5, -0.1, z]))
         assert score_things(rules, poses, THINGS, (), ()).success is success
     assert replace(PAPER).body.kind == "area"
+
+
+def test_a_fruit_that_has_rolled_over_on_its_paper_lies_there_all_the_same() -> None:
+    orange = Thing("orange", "orange", "orange skin", 0.3, 0.3, 0.0)
+    things = {"orange": orange, "paper": PAPER}
+    rules = Rules(((Goal("orange", inside=("paper",)),),), (), 14, ends_when_reached=False)
+    half = orange.body.height_m / 2
+    for turn, up in ((np.pi / 2, 0.0), (np.pi, 0.0), (np.pi / 2, 0.06)):
+        turned = np.array([np.cos(turn / 2), np.sin(turn / 2), 0.0, 0.0])
+        rolled = Pose(np.zeros(3), turned)
+        # Its middle is over the paper, half its height up; its foot points elsewhere.
+        rolled = Pose(np.array([0.5, -0.1, half + up]) - rolled.apply([[0.0, 0.0, half]])[0], turned)
+        score = score_things(rules, {"orange": rolled, "paper": Pose.at((0.5, -0.1, 0.0))}, things, (), ())
+        assert score.success is (up == 0.0), score.reason

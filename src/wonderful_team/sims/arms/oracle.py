@@ -13,6 +13,7 @@ from wonderful_team.core.actions import Action, Gripper, Home, MoveTo, PickPlace
 from wonderful_team.core.geometry import Pose, wrap_angle
 from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.sims.arms.rows import ArmRow
+from wonderful_team.sims.arms.scoring import lying
 from wonderful_team.sims.tabletop.goals import Poses, footprint_of
 from wonderful_team.sims.tabletop.model import Thing
 from wonderful_team.sims.tabletop.oracle import solve
@@ -84,7 +85,7 @@ def arm_actions(pick: PickPlace, yaw_rad: float, height_m: float) -> list[Action
 
 def solve_things(rules: Rules, poses: Poses, things: Mapping[str, Thing], row: ArmRow) -> Sequence[Action]:
     """Arm actions for every goal that is not met."""
-    upright = {name: Pose.at(pose.position_m, pose.yaw_rad) for name, pose in poses.items()}
+    upright = lying(poses, things)
     actions: list[Action] = []
     believed = dict(upright)
     for pick in solve(rules, rules.start(upright, things), upright, things):

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
+import numpy as np
+
+from wonderful_team.core.geometry import Pose
 from wonderful_team.core.protocols import Score
 from wonderful_team.sims.arms.table import Grip
 from wonderful_team.sims.tabletop.goals import Goal, Poses, off_table
@@ -12,6 +15,15 @@ from wonderful_team.sims.tabletop.rules import Rules
 
 LOW_M = 0.025
 """What lies on a flat area has its bottom no higher than this: it does not lie on something else [m]."""
+
+
+def lying(poses: Poses, things: Mapping[str, Thing]) -> dict[str, Pose]:
+    """Poses as if everything lay on its foot where its middle is: a fruit that has rolled over lies where it lies."""
+    found = {}
+    for name, pose in poses.items():
+        half = np.array([0.0, 0.0, things[name].body.height_m / 2])
+        found[name] = Pose.at(pose.apply(half[None])[0] - half, pose.yaw_rad)
+    return found
 
 
 def met(goal: Goal, poses: Poses, things: Mapping[str, Thing], touched: Sequence[str]) -> str:
@@ -56,6 +68,7 @@ def score_things(
         touched: What the robot still touches.
         grips: What the fingers closed on.
     """
+    poses = lying(poses, things)
     missing = [(goal, why) for goal in rules.goals if (why := met(goal, poses, things, touched))]
     if not missing:
         return Score(True, None, "every goal is met")

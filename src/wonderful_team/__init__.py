@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from wonderful_team.core.values import (
         Answer,
         Detection,
+        Fingers,
         Instruction,
         KeepOut,
         Limits,
@@ -56,6 +57,7 @@ _HOMES: dict[str, str] = {
     "Detection": "core.values",
     "Detector": "core.protocols",
     "Done": "core.protocols",
+    "Fingers": "core.values",
     "FoundTarget": "api.results",
     "GaveUp": "core.protocols",
     "Instruction": "core.values",
@@ -115,6 +117,7 @@ __all__ = [
     "Detection",
     "Detector",
     "Done",
+    "Fingers",
     "FoundTarget",
     "GaveUp",
     "Instruction",

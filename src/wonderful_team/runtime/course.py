@@ -91,7 +91,7 @@ class Course:
         self._view, self._table_z_m = view, table_z_m
         self._grounded = dict(plan.grounded) if plan is not None else {}
         self._relief = self._seen = Relief.of(view)
-        self._held: tuple[str, Carried, Array] | None
+        self._held: tuple[str, Carried, Array, float] | None
         self._things: dict[str, Array] = {}
         # What was put somewhere and has no name that the plan knows.
         self._nameless: list[Array] = []
@@ -99,7 +99,7 @@ class Course:
         self._regions: dict[str, Any] = {}
         self._lies_at: dict[str, str] = {}
         # What a robot holds from the start has a size that nobody has said.
-        self._held = ("", Carried(None), np.zeros(0, dtype=np.int64)) if holding else None
+        self._held = ("", Carried(None), np.zeros(0, dtype=np.int64), table_z_m) if holding else None
         self._at: tuple[str, Array] | None = None
         self._due: Callable[[], None] | None = None
 
@@ -299,21 +299,21 @@ class Course:
             return
         if grip == "open":
             if self._held is not None and tool_m is not None and self._relief is not None:
-                name, carried, indices = self._held
+                # What it stood on, not the lowest of its points that is seen: a fruit bulges over its own foot.
+                name, carried, indices, base = self._held
                 own = self._mask(indices)
                 middle = self._relief.xyz_m[own, :2].mean(axis=0) if own.any() else tool_m[:2]
-                base = float(self._relief.xyz_m[own, 2].min()) if own.any() else self._table_z_m
                 end = np.append(tool_m[:2], float(tool_m[2]) - carried.hanging_m)
                 self._move(name, own, base, np.append(middle, base), end, 0.0)
             self._held = None
         elif self._held is None:
             if tool_m is None or self._at is None:
-                self._held = ("", Carried(None), np.zeros(0, dtype=np.int64))
+                self._held = ("", Carried(None), np.zeros(0, dtype=np.int64), self._table_z_m)
                 return
             name = self._at[0]
             points, base = self._own(name, tool_m)
             indices = np.zeros(0, dtype=np.int64) if points is None else np.flatnonzero(points)
-            self._held = (name, self._carried(name, points, tool_m, base), indices)
+            self._held = (name, self._carried(name, points, tool_m, base), indices, base)
 
     def _met(self, planned: PlannedAction) -> Any | None:
         """What a move is meant to come near to: what its step names, or what stands at its end."""

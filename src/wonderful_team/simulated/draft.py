@@ -11,7 +11,7 @@ from typing import Any
 
 from wonderful_team.contracts import MoveDraft, SubgoalDraft, TargetDraft
 from wonderful_team.core.values import PointRole, Subgoal, Target
-from wonderful_team.simulated.plan import Move, Put, Shove, Spot
+from wonderful_team.simulated.plan import Move, Put, Shove, Spot, Trace
 
 Key = tuple[str, str, tuple[str, ...]]
 """What a target is known by: its words, where it is, and the pictures that it is like."""
@@ -58,12 +58,14 @@ class Written:
 
     Attributes:
         steps: As `StepList` takes them, targets by their own ids.
+        paths: What the helper function of a subgoal has to lead over, by the subgoal's text.
     """
 
     subgoals: list[SubgoalDraft] = field(default_factory=list)
     targets: list[TargetDraft] = field(default_factory=list)
     steps: list[dict[str, Any]] = field(default_factory=list)
     meanings: dict[str, Meaning] = field(default_factory=dict)
+    paths: dict[str, Trace] = field(default_factory=dict)
 
     def target(self, kind: str, words: str, meaning: Meaning, role: PointRole | None, where: str = "") -> str:
         """The id of a target, written when it is first needed."""
@@ -112,8 +114,13 @@ def write(moves: Sequence[Move], words: Names, sizes_m: Mapping[str, float]) -> 
     spots = 0
     for number, move in enumerate(moves, start=1):
         subgoal = f"G{number}"
+        function = None
         if isinstance(move, Shove):
             text, targets, step = _push(plan, move, words, number)
+        elif isinstance(move, Trace):
+            text, targets, function = _trace(plan, move, words)
+            step = {"kind": "follow", "function": subgoal, "contact": "surface"}
+            plan.paths[text] = move
         else:
             spots += move.to.how == "spot"
             text, targets, step = _put(plan, move, words, sizes_m, spots)
@@ -121,7 +128,7 @@ def write(moves: Sequence[Move], words: Names, sizes_m: Mapping[str, float]) -> 
         moved = None if step["kind"] != "pick_place" else {name: step[name] for name in MoveDraft.model_fields}
         plan.subgoals.append(
             SubgoalDraft.model_validate(
-                {"id": subgoal, "text": text, "after": after, "targets": targets, "function": None, "move": moved}
+                {"id": subgoal, "text": text, "after": after, "targets": targets, "function": function, "move": moved}
             )
         )
         plan.steps.append({"subgoal": subgoal, **step})
@@ -173,6 +180,14 @@ def _free(plan: Written, to: Spot, words: Names, meaning: Meaning, name: str, sp
     where += f"; move {spots}" if spots > 1 else ""
     said = "free area" if spots == 1 else f"free area for the {name}"
     return plan.target("area", said, meaning, "place", where), "to a free area"
+
+
+def _trace(plan: Written, move: Trace, words: Names) -> tuple[str, list[str], str]:
+    """A subgoal that needs a path: its words, its target, and what the function is to compute."""
+    name = words.of(move.thing)
+    there = plan.target("object", name, Meaning(move.thing), "place")
+    text = f"lead the tool over the {name} along a path of {len(move.path_m)} points"
+    return text, [there], f"the {len(move.path_m)} points of the path on the {name}, from its box"
 
 
 def _push(plan: Written, move: Shove, words: Names, number: int) -> tuple[str, list[str], dict[str, Any]]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import Any
 
 from wonderful_team.contracts import (
     ClarificationDraft,
@@ -23,6 +24,8 @@ from wonderful_team.contracts import (
     TargetList,
     WalkedReview,
     WriteSteps,
+    arm_steps,
+    can_carry,
     step_list_type,
 )
 from wonderful_team.contracts.review_plan import CritiqueDraft
@@ -101,7 +104,7 @@ def answer_write_steps(context: Context, question: WriteSteps) -> StepList:
         UnsupportedQuestion: The plan is another's, or the pictures do not show the task.
     """
     plan = _own(context, question.task, question.subgoals, "WriteSteps")
-    steps = _steps(plan, question.subgoals, question.targets)
+    steps = _steps(plan, question.subgoals, question.targets, question.step_kinds)
     answer: StepList = step_list_type(question.step_kinds).model_validate(
         {"reasoning": "One step per subgoal, in the plan's order.", "steps": steps}
     )
@@ -118,24 +121,33 @@ def _own(context: Context, shown: ShownTask, subgoals: Sequence[Subgoal], contra
     return plan
 
 
-def _steps(plan: Written, subgoals: Sequence[Subgoal], targets: Sequence[Target]) -> list[dict[str, object]]:
-    """The plan's steps with the ids that the question uses."""
+def _steps(
+    plan: Written, subgoals: Sequence[Subgoal], targets: Sequence[Target], kinds: Sequence[str]
+) -> list[dict[str, Any]]:
+    """The plan's steps with the ids that the question uses, as the robot runs them."""
     asked = {key_of(target): target.id for target in targets}
     ids = {draft.id: asked.get(key_of(draft.to_target()), draft.id) for draft in plan.targets}
     own = {draft.id: subgoal.id for draft, subgoal in zip(plan.subgoals, subgoals, strict=True)}
 
-    def renamed(value: object) -> object:
+    def renamed(value: Any) -> Any:
         if isinstance(value, dict):
             return {**value, "target": ids[value["target"]]}
         return value
 
-    steps = []
+    steps: list[dict[str, Any]] = []
     for step in plan.steps:
         named = {key: renamed(value) for key, value in step.items()}
         named["subgoal"] = own[step["subgoal"]]
         if "pick" in named:
             named["pick"] = ids[step["pick"]]
-        steps.append(named)
+        if step["kind"] == "follow":
+            named["function"] = own[step["function"]]
+        if step["kind"] == "pick_place" and "pick_place" not in kinds and can_carry(kinds):
+            steps += arm_steps(named["subgoal"], named["pick"], named["place"], named["rotate_deg"], kinds)
+        else:
+            steps.append(named)
+            if step["kind"] == "follow" and "home" in kinds:
+                steps.append({"kind": "home", "subgoal": named["subgoal"]})
     return steps
 
 
@@ -192,10 +204,10 @@ def _review_steps(context: Context, question: ReviewSteps) -> PlanReview:
     plan = task.plan_of(question.subgoals)
     if plan is None:
         return approved("The steps belong to a plan of another's; nothing in them is impossible.")
-    wanted = step_list_type(tuple(dict.fromkeys(step.kind for step in question.steps)) or ("pick_place",))
-    right: tuple[Step, ...] = wanted.model_validate(
-        {"reasoning": "", "steps": _steps(plan, question.subgoals, question.targets)}
-    ).to_steps()
+    kinds = question.step_kinds or tuple(dict.fromkeys(step.kind for step in question.steps)) or ("pick_place",)
+    own_steps = _steps(plan, question.subgoals, question.targets, kinds)
+    wanted = step_list_type(tuple(dict.fromkeys(str(step["kind"]) for step in own_steps)) or kinds)
+    right: tuple[Step, ...] = wanted.model_validate({"reasoning": "", "steps": own_steps}).to_steps()
     for number, (step, own) in enumerate(zip(question.steps, right, strict=False), start=1):
         text = f"Step {number} does something else than its subgoal asks; is it right?"
         if not _same(step, own) and not any(text in line for line in question.checked):

@@ -31,10 +31,12 @@ from wonderful_team.contracts import (
     ReadTurn,
     Remember,
     Replan,
+    ReviewPath,
     ReviewPlan,
     ReviewSteps,
     RevisePlan,
     SelectMarks,
+    WriteFunction,
     WriteProgram,
     WriteSteps,
     direct_plan_type,
@@ -44,7 +46,7 @@ from wonderful_team.core.caps import Estimate
 from wonderful_team.core.protocols import SceneTruth
 from wonderful_team.core.values import Answer, Instruction, Request, Usage
 from wonderful_team.errors import UnsupportedQuestion
-from wonderful_team.simulated import crops, drafting, grounding, listing, marks, outcome, programs, turns
+from wonderful_team.simulated import crops, drafting, grounding, listing, marks, outcome, paths, programs, turns
 from wonderful_team.simulated.context import Context
 from wonderful_team.simulated.error_sampler import ErrorSampler
 from wonderful_team.simulated.profile import Profile
@@ -80,6 +82,8 @@ ANSWERS: dict[type[Question], Callable[[Context, Any], Any]] = {
     JudgeOutcome: outcome.answer_outcome,
     Replan: outcome.answer_replan,
     Remember: outcome.answer_remember,
+    WriteFunction: paths.answer_write_function,
+    ReviewPath: paths.answer_review_path,
     PlanDirectly: answer_plan_directly,
     SelectMarks: grounding.answer_select_marks,
     ListObjects: listing.answer_list_objects,

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 import numpy as np
 import shapely
 
-from wonderful_team.core.actions import Action, PickPlace, Push
+from wonderful_team.core.actions import Action, Gripper, Home, MoveTo, PickPlace, Push, RotateGripper, Trajectory
 from wonderful_team.core.geometry import wrap_angle
 from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.geometry.cameras import Camera
@@ -24,6 +24,8 @@ SAME_M = 0.02
 REACH_M = 0.006
 """A point this close to an outline still touches the thing [m]."""
 TURNED_RAD = math.radians(0.5)
+LEVEL_M = 0.05
+"""Points of a path that lie no higher than this over its lowest run along the surface [m]."""
 LANE_M = 0.02
 """Half the width of what a push may meet [m]."""
 PICTURED = ("scene", "frame", "before", "after")
@@ -73,7 +75,20 @@ class Shove:
     clear_of: tuple[str, ...] = ()
 
 
-Move = Put | Shove
+@dataclass(frozen=True)
+class Trace:
+    """Lead the tool along a surface.
+
+    Attributes:
+        thing: What it is led over.
+        path_m: Points (x, y) of the way on the surface [m].
+    """
+
+    thing: str
+    path_m: tuple[tuple[float, float], ...]
+
+
+Move = Put | Shove | Trace
 
 
 @dataclass
@@ -131,7 +146,7 @@ def moves_of(actions: Sequence[Action], truth: SceneTruth, instruction: Instruct
     pictured = _pictured(truth, instruction)
     start = {name: _xy(thing.position_m) for name, thing in truth.start().items()}
     moves: list[Move] = []
-    for action in actions:
+    for action in carried(actions):
         if isinstance(action, PickPlace):
             put = _put(action, table, pictured, start)
             if put is not None:
@@ -140,7 +155,28 @@ def moves_of(actions: Sequence[Action], truth: SceneTruth, instruction: Instruct
             shove = _shove(action, table)
             if shove is not None:
                 moves.append(shove)
+        elif isinstance(action, Trajectory):
+            moves += _traced(action, table)
     return moves
+
+
+def carried(actions: Sequence[Action]) -> list[Action]:
+    """The same, with what an arm does between closing and opening its gripper as one pick and place."""
+    found: list[Action] = []
+    at = gripped = None
+    for action in actions:
+        if isinstance(action, MoveTo):
+            at = action.pose
+        elif isinstance(action, Gripper) and at is not None:
+            if action.state != "open":
+                gripped = at
+            elif gripped is not None:
+                turn = wrap_angle(at.yaw_rad - gripped.yaw_rad)
+                found.append(PickPlace(gripped.position_m, at.position_m, turn))
+                gripped = None
+        elif not isinstance(action, Gripper | RotateGripper | Home):
+            found.append(action)
+    return found
 
 
 def _put(
@@ -209,6 +245,14 @@ def _shove(action: Push, table: _Table) -> Shove | None:
     hulls = {n: table.outline(n).convex_hull for n, thing in table.things.items() if thing.kind == "container"}
     into = next((n for n, hull in hulls.items() if hull.covers(shapely.Point(to))), None)
     return Shove(name, to, into, tuple(n for n, thing in table.things.items() if thing.kind == "area"))
+
+
+def _traced(action: Trajectory, table: _Table) -> list[Move]:
+    """What a path runs over: its points are those lower than where it comes from and goes to."""
+    points = action.waypoints_m
+    low = points[points[:, 2] <= points[:, 2].min() + LEVEL_M]
+    under = table.top_at(_xy(low[:, :2].mean(axis=0)), ("area", "container", "object"))
+    return [] if under is None else [Trace(under, tuple(_xy(point) for point in low))]
 
 
 def _turned(angle_rad: float) -> Array:

@@ -77,7 +77,7 @@ def test_push() -> None:
 def test_arm() -> None:
     steps = steps_for("put the green star onto the blue square", ARM.step_kinds)
     assert [step.kind for step in steps] == [
-        "open", "move", "move", "close", "move", "move", "move", "open", "move",
+        "open", "move", "move", "move", "close", "move", "move", "move", "open", "move", "home",
     ]  # fmt: skip
     turned = steps_for("rotate the green star by 90 degrees", ARM.step_kinds)
     assert [step.rotate_deg for step in turned if step.kind == "rotate_gripper"] == [90.0]

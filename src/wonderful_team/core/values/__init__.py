@@ -4,7 +4,7 @@ from wonderful_team.core.values.clarification import AskUser, Clarification
 from wonderful_team.core.values.content import content_hash, file_hash
 from wonderful_team.core.values.detection import Detection, DetectorRun, mask_from_runs, mask_to_runs
 from wonderful_team.core.values.ground_truth import GroundTruthView, TrueThing
-from wonderful_team.core.values.limits import NO_WORKSPACE, KeepOut, Limits
+from wonderful_team.core.values.limits import NO_WORKSPACE, Fingers, KeepOut, Limits
 from wonderful_team.core.values.observation import Instruction, Observation, RobotState, Slot, SlotKind, View
 from wonderful_team.core.values.plan import (
     Alike,
@@ -46,6 +46,7 @@ __all__ = [
     "GroundedTarget",
     "GroundingEvent",
     "Instruction",
+    "Fingers",
     "KeepOut",
     "Limits",
     "MAX_ACTIONS",

@@ -19,6 +19,25 @@ class KeepOut:
     unit: Literal["px", "m"] = "px"
 
 
+@dataclass(frozen=True)
+class Fingers:
+    """A gripper with two parallel fingers that points down.
+
+    Attributes:
+        opening_m: Between the open fingers [m].
+        thickness_m, breadth_m: Of one finger, along the way it closes and across it [m].
+    """
+
+    opening_m: float
+    thickness_m: float
+    breadth_m: float
+
+    def __post_init__(self) -> None:
+        for name in ("opening_m", "thickness_m", "breadth_m"):
+            if not 0 < getattr(self, name) < math.inf:
+                raise ValueError(f"fingers: {name} must be more than 0 m, got {getattr(self, name)} m")
+
+
 @dataclass(frozen=True, eq=False)
 class Limits:
     """What a world allows.
@@ -28,6 +47,7 @@ class Limits:
         keep_out: Regions nothing may enter.
         clearance_m: Height at which things are carried over the table [m].
         blade_m: Width of what pushes, across the way of a push [m]; None where nobody says.
+        fingers: Of the gripper: how it is turned to grip is then computed from depth; None where nobody says.
     """
 
     low_m: tuple[float, float, float]
@@ -35,6 +55,7 @@ class Limits:
     keep_out: tuple[KeepOut, ...] = ()
     clearance_m: float = 0.2
     blade_m: float | None = later(None)
+    fingers: Fingers | None = later(None)
 
     def __post_init__(self) -> None:
         if not all(math.isfinite(value) for value in (*self.low_m, *self.high_m, self.clearance_m)):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
-from wonderful_team.contracts import StepList, WriteSteps, step_list_type
+from wonderful_team.contracts import StepList, WriteSteps, arm_steps, can_carry, step_list_type
 from wonderful_team.core.actions import SIDES, Side
 from wonderful_team.core.values import Subgoal, Target
 from wonderful_team.errors import NotUnderstoodError, UnsupportedQuestion
@@ -64,7 +64,7 @@ def _steps_of(task: Task, subgoal: Subgoal, kinds: Sequence[str], eyes: Eyes) ->
     if "pick_place" in kinds:
         ends = {"pick": task.thing.id, "place": place_of(task, eyes), "rotate_deg": task.rotate_deg}
         return [{"kind": "pick_place", "subgoal": task.subgoal, **ends}]
-    if {"move", "open", "close"} <= set(kinds):
+    if can_carry(kinds):
         return _arm(task, kinds, eyes)
     raise UnsupportedQuestion(
         "offline", "WriteSteps", f"it writes pick_place, push, or move with open and close; offered: {', '.join(kinds)}"
@@ -117,28 +117,8 @@ def freest_side(thing: Thing | None, eyes: Eyes) -> Side:
 
 
 def _arm(task: Task, kinds: Sequence[str], eyes: Eyes) -> list[dict[str, object]]:
-    """Pick and place with an arm: above, open, down, close, up, turn, over the place, down, open, clear."""
-    subgoal = task.subgoal
-    assert task.thing is not None  # checked by the caller
-    thing, place = _spot(task.thing), place_of(task, eyes)
-    turn: list[dict[str, object]] = []
-    if task.rotate_deg:
-        if "rotate_gripper" not in kinds:
-            raise UnsupportedQuestion("offline", "WriteSteps", "turning needs rotate_gripper steps")
-        turn = [{"kind": "rotate_gripper", "subgoal": subgoal, "rotate_deg": task.rotate_deg}]
-
-    def move(to: dict[str, object], height: str) -> dict[str, object]:
-        return {"kind": "move", "subgoal": subgoal, "to": to, "height": height}
-
-    return [
-        {"kind": "open", "subgoal": subgoal},
-        move(thing, "above"),
-        move(thing, "at"),
-        {"kind": "close", "subgoal": subgoal, "tight": False},
-        move(thing, "clear"),
-        *turn,
-        move(place, "above"),
-        move(place, "at"),
-        {"kind": "open", "subgoal": subgoal},
-        move(place, "clear"),
-    ]
+    """Pick and place with an arm."""
+    assert task.thing is not None  # checked by the callers
+    if task.rotate_deg and "rotate_gripper" not in kinds:
+        raise UnsupportedQuestion("offline", "WriteSteps", "turning needs rotate_gripper steps")
+    return arm_steps(task.subgoal, task.thing.id, place_of(task, eyes), task.rotate_deg, kinds)

@@ -20,6 +20,9 @@ LEAST_SHARE = 0.0006
 _JUMP_M = 0.010
 """A step in height that separates two things [m]."""
 
+_HOLLOW, _TOUCHES = 1.5, 0.9
+"""A ring's outline holds at least so many times its own area; two rings that are steps of a wall touch along this share."""
+
 SAME_PAPER = 9.0
 """Flat patches whose median colours differ by no more than this in any channel may be parts of one thing (CIELAB)."""
 
@@ -188,12 +191,17 @@ def _split_by_height(lab: Array, patch: Array, height_m: Array, least: float) ->
 
 
 def _same_level(lab: Array, pieces: list[Array], height: Array) -> list[Array]:
-    """Put together pieces of one thing that a narrow neck or a lower floor parts: same height, same colours."""
+    """Put together pieces of one thing: those that a narrow neck or a lower floor parts, with the same height and
+    colours, and the steps of one wall.
+    """
     out: list[Array] = []
     for piece in pieces:
         level, look = float(np.median(height[piece])), lab_histogram(lab[piece])
         near = cv2.dilate(piece.astype(np.uint8), kernel(7)) > 0
         for k, other in enumerate(out):
+            if _stepped(piece, other):
+                out[k] = other | piece
+                break
             if abs(float(np.median(height[other])) - level) > 0.006 or look @ lab_histogram(lab[other]) < 0.5:
                 continue
             if (near & other).any() or (filled(piece) & other).sum() > 0.5 * other.sum():
@@ -202,3 +210,14 @@ def _same_level(lab: Array, pieces: list[Array], height: Array) -> list[Array]:
         else:
             out.append(piece)
     return out
+
+
+def _stepped(one: Array, other: Array) -> bool:
+    """Whether two pieces are steps of one wall: rings, one within the other, that touch all the way round."""
+    outer, inner = (one, other) if filled(one).sum() >= filled(other).sum() else (other, one)
+    hole, whole = filled(outer), filled(inner)
+    if hole.sum() < _HOLLOW * outer.sum() or whole.sum() < _HOLLOW * inner.sum() or (whole & ~hole).any():
+        return False
+    rim = whole & ~(cv2.erode(whole.astype(np.uint8), kernel(3)) > 0)
+    near = cv2.dilate(outer.astype(np.uint8), kernel(9)) > 0
+    return bool((rim & near).sum() >= _TOUCHES * rim.sum())

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from wonderful_team.core.geometry import AffineCamera
+from wonderful_team.core.geometry import AffineCamera, Camera
 from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.errors import ConfigError
 
@@ -17,6 +17,8 @@ SIZE_PX = (640, 320)
 SEEN_WIDTH_M = 640 / 600
 """Width of what a camera sees [m]: the table and a margin of 33 mm on either side."""
 CAMERA_NAMES = ("top", "front")
+FAR_M = 1000.0
+"""Rays start this far away: from there they are as good as parallel (0.03 px over the whole table) [m]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,7 +53,7 @@ class Lens:
         return self.size_px[1] / self.scale_px_m
 
     @property
-    def camera(self) -> AffineCamera:
+    def camera(self) -> Camera:
         """The same camera for planners, as far as its calibration goes: base frame to pixels and depth."""
         width, height = self.size_px
         right, down, position = self.right, self.down, self.position_m
@@ -67,6 +69,13 @@ class Lens:
         ):
             rows.append([*(axis * scale), offset - scale * float(axis @ position)])
         return AffineCamera(np.array(rows))
+
+    def rays(self) -> tuple[Array, Array]:
+        """Where the pixels' rays start, shape (3,) [m], and where they go, unit vectors of shape (H, W, 3)."""
+        width, height = self.size_px
+        u, v = np.meshgrid(np.arange(width) + 0.5 - width / 2, np.arange(height) + 0.5 - height / 2)
+        aim = (u[..., None] * self.right + v[..., None] * self.down) / self.scale_px_m + self.forward * (FAR_M + 1.0)
+        return self.position_m - self.forward * FAR_M, aim / np.linalg.norm(aim, axis=-1, keepdims=True)
 
 
 def lens(name: str, size_px: tuple[int, int] = SIZE_PX) -> Lens:

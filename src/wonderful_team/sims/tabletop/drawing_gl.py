@@ -18,6 +18,8 @@ from wonderful_team.sims.tabletop.model import FLOOR_GROUP, TABLE_GROUP, THING_G
 from wonderful_team.sims.tabletop.renderer import Drawn
 
 T = TypeVar("T")
+MOST_GEOMS = 4000
+"""Geoms of one picture: those of the model, and the strokes of a pen."""
 
 
 class _DrawingThread:
@@ -87,7 +89,7 @@ class OpenGLRenderer:
     def _open(self) -> None:
         _THREAD.ensure_context()
         model = self._built.model
-        self._scene = mj.MjvScene(model, maxgeom=400)
+        self._scene = mj.MjvScene(model, maxgeom=MOST_GEOMS)
         self._scene.flags[mj.mjtRndFlag.mjRND_SHADOW] = int(self._built.look.light.shadows)
         self._scene.flags[mj.mjtRndFlag.mjRND_REFLECTION] = 0
         self._scene.flags[mj.mjtRndFlag.mjRND_SKYBOX] = 0
@@ -127,13 +129,19 @@ class OpenGLRenderer:
         self._option.geomgroup[list(groups)] = 1
         self._camera.fixedcamid = mj.mj_name2id(model, mj.mjtObj.mjOBJ_CAMERA, camera)
         mj.mjv_updateScene(model, state, self._option, None, self._camera, mj.mjtCatBit.mjCAT_ALL, self._scene)
+        if self._built.decorate is not None:
+            self._built.decorate(self._scene)
         mj.mjr_setBuffer(mj.mjtFramebuffer.mjFB_OFFSCREEN, self._context)
         mj.mjr_render(self._viewport, self._scene, self._context)
         shape = (self._viewport.height, self._viewport.width)
         rgb, depth = np.empty((*shape, 3), dtype=np.uint8), np.empty(shape, dtype=np.float32)
         mj.mjr_readPixels(rgb, depth, self._viewport, self._context)
         near, far = model.vis.map.znear * model.stat.extent, model.vis.map.zfar * model.stat.extent
-        metres = near + (far - near) * depth[::-1].astype(np.float64)
+        share = depth[::-1].astype(np.float64)
+        if int(model.cam_projection[self._camera.fixedcamid]) == int(mj.mjtProjection.mjPROJ_PERSPECTIVE):
+            metres = near * far / (far - (far - near) * share)
+        else:
+            metres = near + (far - near) * share
         return np.ascontiguousarray(rgb[::-1]), np.ascontiguousarray(metres.astype(np.float32))
 
     def close(self) -> None:

@@ -9,7 +9,7 @@ import numpy as np
 
 from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.sims.tabletop import textures
-from wonderful_team.sims.tabletop.cameras import Lens
+from wonderful_team.sims.tabletop.cameras import FAR_M, Lens
 from wonderful_team.sims.tabletop.engine import mj
 from wonderful_team.sims.tabletop.model import (
     FLOOR_GROUP,
@@ -21,8 +21,6 @@ from wonderful_team.sims.tabletop.model import (
 )
 from wonderful_team.sims.tabletop.renderer import Drawn
 
-FAR_M = 1000.0
-"""Rays start this far away: from there they are as good as parallel (0.03 px over the whole table) [m]."""
 BOUNDS_FACTOR = 3.0
 SHADOW_BIAS_M = 0.002
 """How much nearer to the light something must lie to throw a shadow [m]."""
@@ -69,12 +67,7 @@ class RayRenderer:
 
     def _cast(self, state: Any, lens: Lens, groups: tuple[int, ...]) -> tuple[Array, Array, Array, Array]:
         """Geom, depth, surface normal and point of what each pixel sees; shapes (H, W), (H, W), (H, W, 3), (H, W, 3)."""
-        width, height = lens.size_px
-        u, v = np.meshgrid(np.arange(width) + 0.5 - width / 2, np.arange(height) + 0.5 - height / 2)
-        through = (u[..., None] * lens.right + v[..., None] * lens.down) / lens.scale_px_m
-        aim = through + lens.forward * (FAR_M + 1.0)
-        rays = aim / np.linalg.norm(aim, axis=-1, keepdims=True)
-        start = lens.position_m - lens.forward * FAR_M
+        start, rays = lens.rays()
         geoms, reach, normals = self._shot(state, start, rays, groups)
         points = start + rays * reach[..., None]
         depth = (points - lens.position_m) @ lens.forward

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal, TypeAlias
 
@@ -29,7 +29,7 @@ TABLE_RGB = (224, 219, 208)
 FLOOR_RGB = (148, 152, 158)
 DENSITY = 350.0
 """Of every thing [kg/m^3]: like light wood."""
-ToolName: TypeAlias = Literal["suction", "spatula"]
+ToolName: TypeAlias = Literal["suction", "spatula", "gripper"]
 BLADE_HALF_M = (0.002, 0.02, 0.014)
 """Half the thickness, width and height of the spatula's blade [m]; it pushes along its own x axis."""
 BLADE_BIT = 2
@@ -68,7 +68,8 @@ class BuiltModel:
     Attributes:
         covers: Texture of each geom that is seen and how bright it is, by geom id.
         look: How it is lit and from where it is seen.
-        tool: What the robot holds: a suction cup, which needs no body of its own, or a spatula.
+        tool: What the robot holds: a suction cup, which needs no body of its own, a spatula, or the gripper of an arm.
+        decorate: Adds what no body shows, such as ink, to MuJoCo's visual scene before it is drawn.
     """
 
     model: Any
@@ -76,6 +77,7 @@ class BuiltModel:
     covers: dict[int, tuple[str, float]]
     look: Look
     tool: ToolName = "suction"
+    decorate: Callable[[Any], None] | None = None
 
     @property
     def lenses(self) -> dict[str, Lens]:
@@ -84,6 +86,17 @@ class BuiltModel:
 
     def body_id(self, name: str) -> int:
         return int(mj.mj_name2id(self.model, mj.mjtObj.mjOBJ_BODY, name))
+
+
+def covers_of(model: Any, things: Sequence[Thing]) -> dict[int, tuple[str, float]]:
+    """Texture and brightness of each geom of these things that is seen, by geom id."""
+    covers = {}
+    for thing in things:
+        for name, brightness in ((f"see {thing.name}", 1.0), (f"floor of {thing.name}", SHADE)):
+            geom = int(mj.mj_name2id(model, mj.mjtObj.mjOBJ_GEOM, name))
+            if geom >= 0:
+                covers[geom] = (thing.texture, brightness)
+    return covers
 
 
 def build(
@@ -101,18 +114,13 @@ def build(
             friction=(0.3, 0.005, 0.002), contype=BLADE_BIT, conaffinity=0, solref=(0.004, 1.0), priority=1, rgba=(0.5, 0.5, 0.5, 0.0),
         )  # fmt: skip
     for name in sorted({thing.texture for thing in things}):
-        _add_texture(spec, name)
+        add_texture(spec, name)
     for body in {thing.body.key: thing.body for thing in sorted(things, key=lambda t: t.body.key)}.values():
-        _add_meshes(spec, body)
+        add_meshes(spec, body)
     for thing in things:
-        _add_thing(spec, thing)
+        add_thing(spec, thing)
     model = spec.compile()
-    covers = {}
-    for thing in things:
-        for name, brightness in ((f"see {thing.name}", 1.0), (f"floor of {thing.name}", SHADE)):
-            geom = int(mj.mj_name2id(model, mj.mjtObj.mjOBJ_GEOM, name))
-            if geom >= 0:
-                covers[geom] = (thing.texture, brightness)
+    covers = covers_of(model, things)
     if look.table_cover is not None:
         covers[int(mj.mj_name2id(model, mj.mjtObj.mjOBJ_GEOM, "see table"))] = (look.table_cover, 1.0)
     return BuiltModel(model, tuple(things), covers, look, tool)
@@ -136,12 +144,12 @@ def _set_options(spec: Any, size_px: tuple[int, int], look: Look) -> None:
 
 def _add_surroundings(spec: Any, look: Look) -> None:
     world = spec.worldbody
-    _add_lights(world, look.light)
+    add_lights(world, look.light)
     for one in look.lenses.values():
         world.add_camera(
             name=one.name,
             pos=one.position_m,
-            quat=_camera_quaternion(one),
+            quat=camera_quaternion(one),
             proj=mj.mjtProjection.mjPROJ_ORTHOGRAPHIC,
             fovy=one.seen_height_m,
         )
@@ -173,7 +181,7 @@ def _add_surroundings(spec: Any, look: Look) -> None:
     )
 
 
-def _add_lights(world: Any, light: Light) -> None:
+def add_lights(world: Any, light: Light) -> None:
     """A light that casts shadows takes its ambient share away in them, so that this share has a light of its own."""
     parts = [((0.0,) * 3, light.diffuse, True), (light.ambient, (0.0,) * 3, False)]
     for ambient, diffuse, shadows in parts if light.shadows else [(light.ambient, light.diffuse, False)]:
@@ -190,7 +198,7 @@ def _add_lights(world: Any, light: Light) -> None:
 
 def _add_table_cover(spec: Any, cover: str) -> None:
     """What is seen of a table with a pattern, where otherwise the box itself is seen."""
-    _add_texture(spec, cover)
+    add_texture(spec, cover)
     mesh = extruded(shapely.box(-0.5, -0.75, 0.5, -0.25), -0.04, 0.0, 0.0)
     _add_mesh(spec, "see table", mesh)
     spec.worldbody.add_geom(
@@ -199,15 +207,16 @@ def _add_table_cover(spec: Any, cover: str) -> None:
     )  # fmt: skip
 
 
-def _camera_quaternion(one: Lens) -> Array:
-    """MuJoCo's cameras look along -z with y up."""
+def camera_quaternion(one: Lens) -> Array:
+    """How a camera stands: MuJoCo's cameras look along -z with y up."""
     quaternion = np.zeros(4)
     axes = np.column_stack([one.right, -one.down, -one.forward])
     mj.mju_mat2Quat(quaternion, axes.ravel())
     return quaternion
 
 
-def _add_texture(spec: Any, name: str) -> None:
+def add_texture(spec: Any, name: str) -> None:
+    """A texture, and the two materials made of it: as it is, and shaded."""
     tile = textures.texture(name)
     texture = spec.add_texture(
         name=f"tile {name}", type=mj.mjtTexture.mjTEXTURE_2D, width=tile.shape[1], height=tile.shape[0], nchannel=3
@@ -219,7 +228,8 @@ def _add_texture(spec: Any, name: str) -> None:
         material.specular, material.shininess, material.reflectance = 0.0, 0.0, 0.0
 
 
-def _add_meshes(spec: Any, body: Shape) -> None:
+def add_meshes(spec: Any, body: Shape) -> None:
+    """What of a shape is seen, and what it collides with."""
     for name, mesh in ((f"see {body.key}", body.mesh), (f"floor of {body.key}", body.inside)):
         if mesh is None:
             continue
@@ -237,12 +247,21 @@ def _add_mesh(spec: Any, name: str, mesh: Mesh) -> None:
     seen.userface = seen.userfacenormal = seen.userfacetexcoord = faces
 
 
-def _add_thing(spec: Any, thing: Thing) -> None:
+def add_thing(spec: Any, thing: Thing, *, free: bool | None = None, held_by: str | None = "tool") -> None:
+    """A body for a thing.
+
+    Args:
+        spec: Gets the body.
+        thing: Where it stands and what it is.
+        free: Whether physics moves it; None for what its shape says.
+        held_by: Body that a weld, switched off at first, can tie it to; None for a robot that holds by contact alone.
+    """
     body = thing.body
+    free = body.movable if free is None else free
     half = thing.yaw_rad / 2
     where = {"pos": (thing.x_m, thing.y_m, thing.z_m), "quat": (math.cos(half), 0, 0, math.sin(half))}
-    made = spec.worldbody.add_body(name=thing.name, mocap=not body.movable, **where)
-    if body.movable:
+    made = spec.worldbody.add_body(name=thing.name, mocap=not free, **where)
+    if free:
         made.add_freejoint(name=f"free {thing.name}")
     mesh = mj.mjtGeom.mjGEOM_MESH
     seen = {"type": mesh, "group": THING_GROUP, "contype": 0, "conaffinity": 0, "mass": 0}
@@ -258,10 +277,10 @@ def _add_thing(spec: Any, thing: Thing) -> None:
             density=DENSITY, condim=6, friction=(0.9, 0.005, 0.002), rgba=(0.5, 0.5, 0.5, 0.0),
             conaffinity=1 | BLADE_BIT if body.movable else 1,
         )  # fmt: skip
-    if body.movable:
+    if free and held_by is not None:
         hold = spec.add_equality(
             name=f"hold {thing.name}", type=mj.mjtEq.mjEQ_WELD, objtype=mj.mjtObj.mjOBJ_BODY,
-            name1="tool", name2=thing.name, active=False, solref=(0.004, 1.0),
+            name1=held_by, name2=thing.name, active=False, solref=(0.004, 1.0),
         )  # fmt: skip
         # The specification's own default puts the anchor a metre away.
         hold.data[:] = 0.0

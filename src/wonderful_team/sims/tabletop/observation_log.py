@@ -10,7 +10,7 @@ import threading
 from collections import deque
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TypeVar
+from typing import Protocol, TypeVar
 
 import numpy as np
 import shapely
@@ -18,12 +18,12 @@ from shapely.geometry.base import BaseGeometry
 
 from wonderful_team.core.geometry import Pose
 from wonderful_team.core.geometry.arrays import Array
-from wonderful_team.core.values import GroundTruthView, Observation, TrueThing, View
+from wonderful_team.core.values import GroundTruthView, Instruction, Observation, TrueThing, View
 from wonderful_team.sims.tabletop import prints
 from wonderful_team.sims.tabletop.goals import footprint_of
 from wonderful_team.sims.tabletop.model import Thing
 from wonderful_team.sims.tabletop.oracle import grasp_point
-from wonderful_team.sims.tabletop.table import Snapshot, Table
+from wonderful_team.sims.tabletop.table import Snapshot
 
 LOOKS = 24
 """How many different looks are kept; a task of the suite has at most 17 actions."""
@@ -65,10 +65,28 @@ class Look:
     observation_log: Mapping[str, GroundTruthView]
 
 
+class Seen(Protocol):
+    """What is kept of a table: its things, and how it can be drawn as it stood at an earlier instant."""
+
+    things: Mapping[str, Thing]
+
+    def snapshot(self) -> Snapshot: ...
+
+    def masks_at(self, at: Snapshot, camera: str) -> dict[str, Array]: ...
+
+    def poses_at(self, at: Snapshot) -> Mapping[str, Pose]: ...
+
+    def instruction(self) -> Instruction: ...
+
+    def slot_masks(self, slot: str, camera: str) -> dict[str, Array]: ...
+
+    def slot_stands(self, slot: str) -> list[tuple[Thing, Pose]]: ...
+
+
 class ObservationLog:
     """Keeps what was looked at; bounded, and without any drawing of its own until somebody asks."""
 
-    def __init__(self, table: Table) -> None:
+    def __init__(self, table: Seen) -> None:
         self._table = table
         self._looks: deque[Look] = deque(maxlen=LOOKS)
         self._slots: Mapping[str, GroundTruthView] | None = None

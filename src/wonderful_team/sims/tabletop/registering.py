@@ -36,9 +36,16 @@ class TabletopTask:
     partitions: tuple[str, ...] = ()
 
     def scene(
-        self, seed: int, recolour: int | None = None, partition: str | None = None, tiers: Tiers | None = None
+        self,
+        seed: int,
+        recolour: int | None = None,
+        partition: str | None = None,
+        tiers: Tiers | None = None,
+        made: type[Scene] = Scene,
     ) -> Scene:
         """Set the table; the same seed sets the same table, and things stand at the same places at every tier.
+
+        `made` is the kind of table, such as one that an arm reaches all of.
 
         Raises:
             UnknownNameError: The task does not exist at this generalisation level.
@@ -53,7 +60,7 @@ class TabletopTask:
                 generator(number, f"{self.name}/{purpose}", attempt)
                 for number, purpose in ((seed, "layout"), (paint, use), (seed, "choices"))
             )
-            scene = Scene(layout, colours, partition=partition, alike=tiers.texture)
+            scene = made(layout, colours, partition=partition, alike=tiers.texture)
             try:
                 self.set_table(scene, choices)
             except CrowdedError:
@@ -81,7 +88,7 @@ class TabletopTask:
                 f"task {self.name!r}: its instruction has the slots {sorted(wanted | inner)}, "
                 f"but the scene fills {sorted(given)}"
             )
-        if not scene.goals and not scene.counts:
+        if not scene.wants_something:
             raise ConfigError(f"task {self.name!r}: it sets no goal; call scene.goal(...) or scene.count(...)")
 
 

@@ -156,6 +156,11 @@ class Scene(Floor):
         """The goals of all phases."""
         return [goal for phase in self.phases for goal in phase]
 
+    @property
+    def wants_something(self) -> bool:
+        """Whether there is anything to judge."""
+        return bool(self.goals or self.counts)
+
     def say(self, **words: str) -> None:
         """Fill text slots of the instruction."""
         self.words.update(words)

@@ -43,7 +43,9 @@ KIT = (
 )
 BASES = ("pan", "bowl", "frame", "square", "container", "pallet")
 AREAS = ("paper", "line")
-SMALL = {"shorter block": (BLOCK_M, 0.03), "small block": (0.03, 0.03)}
+PLATE, PLATE_M, WELL_M = "plate", (0.1, 0.006), 0.08
+"""A flat round plate: its radius and height, and the radius of the part inside its edge [m]."""
+SMALL = {"shorter block": (BLOCK_M, 0.03), "small block": (0.03, 0.03), "cube": (0.045, 0.045)}
 """Cuboids by name: side and height [m]."""
 CARDS = {"price tag": (0.11, 0.075), "label": (0.11, 0.044)}
 """Cards to print on by name: width, which is that of a tile, and depth [m]."""
@@ -94,7 +96,7 @@ class Shape:
 def shape_names(kind: Kind | None = None) -> tuple[str, ...]:
     """All names, or those of one kind that tasks may choose among."""
     chosen = {"kit": KIT, "base": BASES, "area": AREAS, "fruit": fruits.NAMES}
-    return chosen[kind] if kind else (*KIT, *SMALL, *BASES, THREE_SIDED, *AREAS, *CARDS, *fruits.NAMES)
+    return chosen[kind] if kind else (*KIT, *SMALL, *BASES, THREE_SIDED, PLATE, *AREAS, *CARDS, *fruits.NAMES)
 
 
 @cache
@@ -115,6 +117,8 @@ def shape(name: str, stretch: float = 1.0) -> Shape:
         return _base(name)
     if name == THREE_SIDED:
         return _three_sided()
+    if name == PLATE:
+        return _plate()
     if name in AREAS or name in CARDS:
         width, depth = {"paper": (0.17, 0.17), "line": LINE_M, **CARDS}[name]
         across, along = width / 2, depth / 2
@@ -139,6 +143,13 @@ def _three_sided() -> Shape:
     around = box(-across - WALL_M, -along - WALL_M, across + WALL_M, along)
     wall = around.difference(box(-across, -along, across, along + WALL_M))
     return _from_layers(THREE_SIDED, "base", [(wall, 0.0, 0.02)], [], movable=False)
+
+
+def _plate() -> Shape:
+    """The part inside the edge is darker, and as high but for what keeps the two apart in a picture."""
+    (radius, height), well = PLATE_M, Point(0, 0).buffer(WELL_M)
+    edge = Point(0, 0).buffer(radius).difference(well)
+    return _from_layers(PLATE, "base", [(edge, 0.0, height)], [(well, 0.0, height)], movable=False)
 
 
 def _kit(name: str) -> Shape:

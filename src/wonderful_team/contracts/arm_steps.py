@@ -1,0 +1,51 @@
+"""A pick and place as the steps of an arm with a gripper, for models that write steps."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+NEEDED = ("move", "open", "close")
+"""Kinds of step without which an arm picks nothing up."""
+
+
+def can_carry(step_kinds: Sequence[str]) -> bool:
+    """Whether an arm with these kinds of step can pick a thing up and put it down."""
+    return set(NEEDED) <= set(step_kinds)
+
+
+def arm_steps(
+    subgoal: str, pick: str, place: Mapping[str, Any], rotate_deg: float, step_kinds: Sequence[str]
+) -> list[dict[str, Any]]:
+    """Over the thing, down, close, up, turn, over the place, down, open, up, and out of the cameras' sight, as `StepList` takes them.
+
+    Every way across the table is made clear of everything; only then the tool goes down.
+
+    Args:
+        subgoal: That they carry out.
+        pick: Id of the target that is picked.
+        place: Where it goes, as a PlaceDraft.
+        rotate_deg: How far it is turned clockwise.
+        step_kinds: What the robot runs; without `rotate_gripper` nothing is turned, without `home` it stays over the place.
+    """
+    thing = {"target": pick, "how": "at", "side": None}
+
+    def move(to: Mapping[str, Any], height: str) -> dict[str, Any]:
+        return {"kind": "move", "subgoal": subgoal, "to": dict(to), "height": height}
+
+    turn = [{"kind": "rotate_gripper", "subgoal": subgoal, "rotate_deg": rotate_deg}] if rotate_deg else []
+    home = [{"kind": "home", "subgoal": subgoal}] if "home" in step_kinds else []
+    return [
+        {"kind": "open", "subgoal": subgoal},
+        move(thing, "clear"),
+        move(thing, "above"),
+        move(thing, "at"),
+        {"kind": "close", "subgoal": subgoal, "tight": False},
+        move(thing, "clear"),
+        *turn,
+        move(place, "clear"),
+        move(place, "at"),
+        {"kind": "open", "subgoal": subgoal},
+        move(place, "clear"),
+        *home,
+    ]

@@ -1,0 +1,17 @@
+"""Arms at a table: real arm models in MuJoCo that run the arm's vocabulary by contact. Needs the optional part `arms`."""
+
+from wonderful_team.sims.arms.options import TIERS
+from wonderful_team.sims.arms.rows import ARMS, check_ready
+from wonderful_team.sims.arms.tasks import task_names
+from wonderful_team.sims.arms.world import ArmWorld
+
+make_world = ArmWorld
+"""make_world("block_in_bowl", seed=3, arm="ur5e", depth=0, calibration=0); the name may say the same: "block_in_bowl@depth=1"."""
+
+
+def partitions(name: str) -> tuple[str, ...]:
+    """Tasks of arms have no generalisation levels."""
+    return ()
+
+
+__all__ = ["ARMS", "TIERS", "ArmWorld", "check_ready", "make_world", "partitions", "task_names"]

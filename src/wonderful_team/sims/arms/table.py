@@ -1,0 +1,266 @@
+"""One table with an arm at it, in simulated time: physics, pictures, and what has happened. Holds the truth."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from wonderful_team.core.geometry import Pose
+from wonderful_team.core.geometry.arrays import Array
+from wonderful_team.core.values import Instruction
+from wonderful_team.errors import ConfigError
+from wonderful_team.sims.arms.cameras import SIZE_PX, lenses, sensed
+from wonderful_team.sims.arms.model import BuiltArm, build
+from wonderful_team.sims.arms.options import Asked
+from wonderful_team.sims.arms.robot import Moved, Robot
+from wonderful_team.sims.arms.rows import find_arm
+from wonderful_team.sims.arms.scene import ArmScene
+from wonderful_team.sims.tabletop.appearance import PLAIN_LIGHT, Look
+from wonderful_team.sims.tabletop.drawing import open_renderer
+from wonderful_team.sims.tabletop.engine import mj
+from wonderful_team.sims.tabletop.goals import Poses, footprint_of
+from wonderful_team.sims.tabletop.model import TIMESTEP_S, Thing
+from wonderful_team.sims.tabletop.moving import put_body
+from wonderful_team.sims.tabletop.registering import TabletopTask, filled
+from wonderful_team.sims.tabletop.renderer import Drawn, Renderer
+from wonderful_team.sims.tabletop.rules import Rules
+from wonderful_team.sims.tabletop.seeds import generator
+from wonderful_team.sims.tabletop.table import Snapshot
+
+CALIBRATION_M, CALIBRATION_RAD = (0.002, 0.004, 0.008), (0.002, 0.004, 0.008)
+"""How far off planners are told that the top camera stands, along both of its axes, and how it is rolled, by tier."""
+QUIET_M_S = 0.01
+REST_LIMIT_S = 1.5
+
+
+@dataclass(frozen=True)
+class Grip:
+    """One closing of the fingers.
+
+    Attributes:
+        at: The thing under the tool's point, or None; the truth, which is not told to the robot.
+        held: Things that both fingers touched afterwards.
+    """
+
+    at: str | None
+    held: tuple[str, ...]
+
+
+class ArmTable:
+    """Everything that a world keeps from planners.
+
+    Attributes:
+        things: As they stood at the start, by name.
+        start: Where they stood once everything was at rest.
+        grips: Every closing of the fingers so far.
+    """
+
+    def __init__(self, task: TabletopTask, seed: int, asked: Asked) -> None:
+        self.task, self.seed, self.asked = task, seed, asked
+        scene = task.scene(seed, made=ArmScene)
+        assert isinstance(scene, ArmScene)
+        self.scene, self.work = scene, scene.work
+        self.things: Mapping[str, Thing] = {thing.name: thing for thing in scene.things}
+        self.rules = Rules(
+            tuple(tuple(phase) for phase in scene.phases if phase),
+            (),
+            task.horizon,
+            ends_when_reached=False,
+        )
+        row = find_arm(asked.arm)
+        self.built: BuiltArm = build(
+            row,
+            scene.things,
+            Look(self._lenses(seed, asked), PLAIN_LIGHT),
+            SIZE_PX,
+            lambda thing: thing.body.kind != "area",
+            None if self.work is None else self.work.furnish,
+            None if self.work is None else self.work.decorate,
+        )
+        self._state = mj.MjData(self.built.model)
+        mj.mj_forward(self.built.model, self._state)
+        self.robot = Robot(self.built, self._state)
+        self.rest()
+        if self.work is not None:
+            self.work.begin(self.built, self._state, self.robot)
+            self.robot.each_step = self.work.step
+            self.rest()
+        self._state.time = 0.0
+        self.start: Poses = self.poses()
+        self.grips: list[Grip] = []
+        self._opened: Renderer | None = None
+        self._notes: tuple[str, ...] = ()
+        self._looks = 0
+        self.closed = False
+
+    @staticmethod
+    def _lenses(seed: int, asked: Asked) -> Any:
+        found = lenses()
+        if asked.calibration:
+            rng, step = generator(seed, "calibration", asked.calibration), asked.calibration - 1
+            signs = rng.choice([-1.0, 1.0], size=3)
+            wrong_m = (CALIBRATION_M[step] * signs[0], CALIBRATION_M[step] * signs[1])
+            found["top"] = replace(found["top"], wrong_m=wrong_m, wrong_rad=CALIBRATION_RAD[step] * signs[2])
+        return found
+
+    @property
+    def time_s(self) -> float:
+        """Simulated time [s]."""
+        return float(self._state.time)
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What the choice of a renderer has to say."""
+        self.renderer()
+        return self._notes
+
+    def poses(self) -> Poses:
+        """True pose of each thing now."""
+        return self._poses(self._state)
+
+    def _poses(self, state: Any) -> Poses:
+        found = {}
+        for name in self.things:
+            body = self.built.body_id(name)
+            found[name] = Pose(state.xpos[body].copy(), state.xquat[body].copy())
+        return found
+
+    def held(self) -> tuple[str, ...]:
+        """Things that both fingers touch now."""
+        bodies = self.robot.held_bodies()
+        return tuple(name for name in self.things if self.built.body_id(name) in bodies)
+
+    def touched(self) -> tuple[str, ...]:
+        """Things that anything of the robot touches now."""
+        contact, bodies = self._state.contact, self.built.model.geom_bodyid
+        pairs = bodies[contact.geom[: self._state.ncon]].reshape(-1, 2)
+        met = {
+            int(b if a in self.built.bodies else a)
+            for a, b in pairs
+            if (a in self.built.bodies) != (b in self.built.bodies)
+        }
+        return tuple(name for name in self.things if self.built.body_id(name) in met)
+
+    def rest(self) -> None:
+        """Let time pass until the things lie still, or the limit is reached."""
+        quiet = 0
+        for _ in range(round(REST_LIMIT_S / TIMESTEP_S / 10)):
+            self.robot.rest(10 * TIMESTEP_S)
+            speeds = [self._speed(thing) for thing in self.things.values()]
+            quiet = quiet + 1 if max(speeds, default=0.0) < QUIET_M_S else 0
+            if quiet >= 4:
+                return
+
+    def _speed(self, thing: Thing) -> float:
+        body = self.built.body_id(thing.name)
+        return float(np.linalg.norm(self._state.cvel[body][3:]))
+
+    def grip(self, closed: bool, tight: bool) -> Moved:
+        """Close or open the fingers, and keep in mind what came of it."""
+        x, y, _ = self.robot.tool_m
+        moved = self.robot.grip(closed, tight)
+        if closed:
+            self.grips.append(Grip(self.thing_at(float(x), float(y)), self.held()))
+        else:
+            self.rest()
+        return moved
+
+    def thing_at(self, x_m: float, y_m: float) -> str | None:
+        """The highest thing over a point of the table."""
+        from shapely import Point
+
+        poses = self.poses()
+        under = [
+            (float(poses[name].position_m[2]) + thing.body.height_m, name)
+            for name, thing in self.things.items()
+            if footprint_of(thing, poses[name]).covers(Point(x_m, y_m))
+        ]
+        return max(under)[1] if under else None
+
+    def put(self, name: str, position_m: Array, yaw_rad: float) -> None:
+        """Set a thing down elsewhere, upright, and let everything come to rest."""
+        put_body(self.built, self._state, name, Pose.at(position_m, yaw_rad))
+        mj.mj_forward(self.built.model, self._state)
+        self.rest()
+
+    # Pictures.
+
+    def renderer(self) -> Renderer:
+        """What draws this table, opened when it is first needed."""
+        if self.closed:
+            raise ConfigError("this world is closed; make a new one")
+        if self._opened is None:
+            self._opened, self._notes = open_renderer(self.built)
+        return self._opened
+
+    def draw(self, camera: str) -> Drawn:
+        """A picture of the table as it stands now, its depth as it is."""
+        return self.renderer().draw(self._state, camera)
+
+    def look(self, camera: str) -> Drawn:
+        """A picture of the table as its camera sees it: the depth sensor has its faults."""
+        drawn = self.draw(camera)
+        if not self.asked.depth:
+            return drawn
+        self._looks += 1
+        return Drawn(drawn.rgb, sensed(drawn.depth_m, self.asked.depth, generator(self.seed, "depth", self._looks)))
+
+    def film(self, each: Callable[[], None] | None, every_s: float) -> None:
+        """Call `each` about every `every_s` of simulated time while the arm moves; None stops it."""
+        due = [self.time_s]
+
+        def watch() -> None:
+            if each is not None and self.time_s >= due[0]:
+                due[0] = self.time_s + every_s
+                each()
+
+        self.robot.watch = None if each is None else watch
+
+    def snapshot(self) -> Snapshot:
+        """Where everything stands now, kept."""
+        state = self._state
+        return Snapshot(state.qpos.copy(), state.mocap_pos.copy(), state.mocap_quat.copy())
+
+    def masks_at(self, at: Snapshot, camera: str) -> dict[str, Array]:
+        """Which pixels of a view showed each thing at an earlier instant, shape (H, W) bool by name."""
+        ids = self.renderer().bodies(self._state_at(at), camera)
+        return {name: ids == self.built.body_id(name) for name in self.things}
+
+    def poses_at(self, at: Snapshot) -> Poses:
+        """True pose of each thing at an earlier instant."""
+        return self._poses(self._state_at(at))
+
+    def _state_at(self, at: Snapshot) -> Any:
+        state = mj.MjData(self.built.model)
+        state.qpos[:], state.mocap_pos[:], state.mocap_quat[:] = at.qpos, at.mocap_pos, at.mocap_quat
+        mj.mj_kinematics(self.built.model, state)
+        mj.mj_comPos(self.built.model, state)
+        mj.mj_camlight(self.built.model, state)
+        return state
+
+    def slot_masks(self, slot: str, camera: str) -> dict[str, Array]:
+        """Instructions of these tasks have no pictures."""
+        return {}
+
+    def slot_stands(self, slot: str) -> list[tuple[Thing, Pose]]:
+        """Instructions of these tasks have no pictures."""
+        return []
+
+    @cached_property
+    def _instruction(self) -> Instruction:
+        return Instruction(filled(self.task.instruction, self.scene.words))
+
+    def instruction(self) -> Instruction:
+        """Words with their slots filled."""
+        return self._instruction
+
+    def close(self) -> None:
+        """Give the renderer back; safe to call twice."""
+        self.closed = True
+        if self._opened is not None:
+            self._opened.close()
+            self._opened = None

@@ -1,0 +1,106 @@
+"""The tasks of an arm. A task is a function that sets the table, as on the tabletop; what it draws follows from the seed."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+
+from wonderful_team.core.actions import ARM
+from wonderful_team.core.geometry.arrays import Array
+from wonderful_team.errors import UnknownNameError
+from wonderful_team.sims.arms.drawing import Drawing
+from wonderful_team.sims.arms.scene import ArmScene
+from wonderful_team.sims.arms.star import star_points, star_problem
+from wonderful_team.sims.arms.wiping import Wiping
+from wonderful_team.sims.tabletop import tasks as _tabletop_tasks
+from wonderful_team.sims.tabletop.goals import Poses
+from wonderful_team.sims.tabletop.placing import Room
+from wonderful_team.sims.tabletop.registering import SetTable, TabletopTask, find_task
+from wonderful_team.sims.tabletop.scene import Scene
+from wonderful_team.sims.tabletop.shapes import WELL_M
+
+MOVES = 14
+"""Actions that one pick and place may take: ten, and a few more for what went wrong."""
+COLOURS = ("red", "green", "yellow", "purple", "orange")
+BOWLS = ("blue", "cyan")
+PAPERS = ("green", "yellow", "orange", "cyan", "pink")
+NEAR_ROOM_M: Room = (0.3, -0.3, 0.66, 0.3)
+STAR_M = 0.065
+"""From the middle of the oracle's star to its tips [m]."""
+FRUITS = ("all_match", "no_area", "misplaced", "both")
+_TASKS: dict[str, TabletopTask] = {}
+
+
+def task(name: str, *, instruction: str, horizon: int) -> Callable[[SetTable], SetTable]:
+    """Make a task of a function that sets the table."""
+
+    def register(set_table: SetTable) -> SetTable:
+        words = (set_table.__doc__ or instruction).strip().splitlines()[0]
+        _TASKS[name] = TabletopTask(name, instruction, horizon, set_table, words, ARM)
+        return set_table
+
+    return register
+
+
+def find_arm_task(name: str) -> TabletopTask:
+    """The task of that name.
+
+    Raises:
+        UnknownNameError: No such task; lists the known ones.
+    """
+    if name not in _TASKS:
+        raise UnknownNameError("task", name, _TASKS)
+    return _TASKS[name]
+
+
+def task_names() -> dict[str, str]:
+    """All tasks with one line of help each."""
+    return {name: found.help for name, found in _TASKS.items()}
+
+
+@task("block_in_bowl", instruction="put the {colour} block into the bowl", horizon=2 * MOVES)
+def block_in_bowl(scene: Scene, rng: np.random.Generator) -> None:
+    """Put the block of the named colour into the bowl; another block stands beside it."""
+    colours = [str(name) for name in scene.colours.permutation(COLOURS)[:2]]
+    bowl = scene.add("bowl", str(scene.colours.choice(BOWLS)), name="bowl")
+    wanted, other = (scene.add("cube", colour, name=f"{colour} block") for colour in colours)
+    scene.say(colour=colours[0])
+    scene.ends_when_reached = False
+    scene.goal(wanted, inside=bowl)
+    scene.goal(other, off=[bowl])
+
+
+@task("star", instruction="draw a five-pointed star on the {colour} paper", horizon=8)
+def star(scene: Scene, rng: np.random.Generator) -> None:
+    """Draw a five-pointed star on the paper of the named colour; judged on the ink."""
+    colours = [str(name) for name in scene.colours.permutation(PAPERS)[:2]]
+    paper = scene.add("paper", f"{colours[0]} paper", yaw_rad=0.0, name=f"{colours[0]} paper", within=NEAR_ROOM_M)
+    scene.add("paper", f"{colours[1]} paper", yaw_rad=0.0, name=f"{colours[1]} paper")
+    scene.say(colour=colours[0])
+    assert isinstance(scene, ArmScene)
+
+    def right(poses: Poses) -> Array:
+        return star_points(poses[paper.name].position_m[:2], STAR_M, math.pi)
+
+    scene.work = Drawing(paper, star_problem, right)
+
+
+@task("wipe", instruction="wipe the {colour} plate with the sponge", horizon=8)
+def wipe(scene: Scene, rng: np.random.Generator) -> None:
+    """Wipe the plate of the named colour with the sponge; judged by how much of it the sponge has pressed on."""
+    colours = [str(name) for name in scene.colours.permutation(COLOURS)[:2]]
+    plate = scene.add("plate", colours[0], name=f"{colours[0]} plate", within=NEAR_ROOM_M)
+    scene.add("cube", colours[1], name=f"{colours[1]} block")
+    scene.say(colour=colours[0])
+    assert isinstance(scene, ArmScene)
+    scene.work = Wiping(plate, WELL_M)
+
+
+for _variation in FRUITS:
+    _found = find_task(f"fruit_placement/{_variation}")
+    _TASKS[_found.name] = TabletopTask(
+        _found.name, _found.instruction, _found.horizon * MOVES, _found.set_table, _found.help, ARM
+    )
+del _tabletop_tasks

@@ -1,0 +1,245 @@
+"""An arm at a table as planners meet it: look, act, stop."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import numpy as np
+
+from wonderful_team.core.actions import ARM, Action, Gripper, Home, MoveTo, RotateGripper, Trajectory, Vocabulary
+from wonderful_team.core.geometry.arrays import Array
+from wonderful_team.core.values import Fingers, Instruction, Limits, Observation, RobotState, StepReport, View
+from wonderful_team.errors import ConfigError
+from wonderful_team.sims.arms.model import REACH_HIGH_M, REACH_LOW_M, upright
+from wonderful_team.sims.arms.options import asked as read_options
+from wonderful_team.sims.arms.privileged import ArmTruth
+from wonderful_team.sims.arms.robot import AWAY_M, Moved
+from wonderful_team.sims.arms.rows import ArmRow, check_ready, find_arm
+from wonderful_team.sims.arms.table import ArmTable
+from wonderful_team.sims.arms.tasks import find_arm_task
+from wonderful_team.sims.tabletop.cameras import CAMERA_NAMES
+from wonderful_team.sims.tabletop.table import Snapshot
+
+LEANS_RAD = 0.01
+LOW_M = 0.14
+"""A path whose points lie lower than this runs along a surface; in the air it lies at the clearance or higher [m]."""
+SEEK_M = 0.006
+"""How far below its first low point a path's surface is looked for by touch [m]."""
+REASONS = {
+    "reach": "out of the arm's reach",
+    "collision": "stopped: something pressed on the arm",
+    "contact": "stopped: the tool touched something on its way down",
+    "stop": "the world was stopped",
+}
+
+
+LOST = "the fingers have closed on nothing: what they held slipped or was knocked out"
+
+
+class ArmWorld:
+    """Implements the World protocol with an arm that really grips; time is simulated, and everything follows from the seed.
+
+    Attributes:
+        task, seed, arm: Which scene this is; a task's name may say more of it, see `options.py`: "block_in_bowl@depth=2".
+        horizon: How many actions may run.
+        privileged: The truth, for scorers and simulated models only.
+    """
+
+    def __init__(
+        self, task: str, seed: int = 0, *, arm: str | None = None, depth: int = 0, calibration: int = 0
+    ) -> None:
+        check_ready()
+        if seed < 0:
+            raise ConfigError(f"seed {seed}: must be 0 or more")
+        wanted = read_options(task.removeprefix("arms/"), arm, depth, calibration)
+        found, row = find_arm_task(wanted.task), find_arm(wanted.arm)
+        self.task, self.seed, self.arm, self.horizon = found.name, seed, wanted.arm, found.horizon
+        self.vocabulary: Vocabulary = ARM
+        fingers = Fingers(row.opening_m, row.thickness_m, row.breadth_m)
+        self.limits = Limits(REACH_LOW_M, REACH_HIGH_M, fingers=fingers)
+        self._table = ArmTable(found, seed, wanted)
+        self.facts = _facts(row, self._table)
+        self._stopped, self._held = False, self._table.robot.holding
+        self._seen: tuple[Snapshot, Observation] | None = None
+        self.privileged = ArmTruth(self._table)
+
+    @property
+    def instruction(self) -> Instruction:
+        """Words."""
+        return self._table.instruction()
+
+    @property
+    def renderer(self) -> str:
+        """How pictures are drawn: egl, osmesa or rays."""
+        return self._table.renderer().name
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What a user should know of how this world runs, such as a missing OpenGL."""
+        return self._table.notes
+
+    @property
+    def time_s(self) -> float:
+        """Simulated time [s]."""
+        return self._table.time_s
+
+    def observe(self) -> Observation:
+        """Both views as they are now, the arm in them where it is; drawn again only when something moved."""
+        at = self._table.snapshot()
+        if self._seen is not None and not self._table.closed:
+            before, seen = self._seen
+            if before.same_as(at) and seen.main.time_s == self.time_s:
+                return seen
+        views = {}
+        for name in CAMERA_NAMES:
+            drawn = self._table.look(name)
+            views[name] = View(name, name, self.time_s, drawn.rgb, drawn.depth_m, self._table.built.lenses[name].camera)
+        robot = self._table.robot
+        share = min(1.0, robot.opening_m / self._table.built.row.opening_m)
+        observation = Observation(views, RobotState(robot.tool_m.copy(), share, robot.holding))
+        self._seen = at, observation
+        self.privileged.saw(observation)
+        return observation
+
+    def execute(self, action: Action) -> StepReport:
+        """Run one action to its end under physics.
+
+        Raises:
+            ConfigError: The world is closed, or does not run such actions.
+        """
+        if self._table.closed:
+            raise ConfigError("this world is closed; make a new one")
+        if action.kind not in self.vocabulary.kinds:
+            raise ConfigError(f"this world runs {', '.join(self.vocabulary.kinds)}; got {action.kind}")
+        if self._stopped:
+            return StepReport(action, False, self._measured(None), REASONS["stop"])
+        robot = self._table.robot
+        match action:
+            case MoveTo(pose=pose):
+                fault = self._out_of_reach(pose.position_m[None])
+                if upright(pose.quaternion_wxyz) > LEANS_RAD:
+                    fault = "the pose leans over; this arm points straight down"
+                moved = None if fault else robot.move(pose.position_m, pose.yaw_rad)
+            case Gripper(state=state):
+                fault, moved = "", self._table.grip(state != "open", state == "tight")
+            case RotateGripper(yaw_rad=yaw):
+                fault, moved = "", robot.move(robot.tool_m, robot.yaw_rad + yaw)
+            case Trajectory(waypoints_m=points):
+                fault = self._out_of_reach(points)
+                moved = None if fault else self._follow(points)
+            case _:
+                assert isinstance(action, Home)
+                fault, moved = "", robot.park()
+        report = self._report(action, fault, moved)
+        held, self._held = self._held, robot.holding
+        if held and not robot.holding and not isinstance(action, Gripper):
+            return StepReport(action, False, report.measured, LOST)
+        return report
+
+    def _follow(self, points_m: Array) -> Moved:
+        """Along a path: where it is low, down until the tool touches the surface, and then along it."""
+        robot, off_m, before_low = self._table.robot, 0.0, False
+        moved, force = Moved(0.0, 0.0, 0.0), 0.0
+        # How it stands at its parking place says nothing: from there it comes straight.
+        yaw = 0.0 if robot.parked else robot.yaw_rad
+        for point in points_m:
+            low = float(point[2]) < LOW_M
+            goal = np.asarray(point) + np.array([0.0, 0.0, off_m if low else 0.0])
+            moved = robot.move(goal, yaw, touching=low and before_low)
+            if low and not before_low:
+                if not moved.stopped_by:
+                    moved = robot.move(goal - np.array([0.0, 0.0, SEEK_M]), yaw)
+                if moved.stopped_by == "contact":
+                    off_m = float(robot.tool_m[2]) - float(point[2])
+                    moved = Moved(0.0, moved.error_rad, moved.force_n)
+                    robot.press()
+            before_low = low
+            force = max(force, moved.force_n)
+            if moved.stopped_by:
+                break
+        return Moved(moved.error_m, moved.error_rad, force, moved.stopped_by)
+
+    def _report(self, action: Action, fault: str, moved: Moved | None) -> StepReport:
+        measured = self._measured(moved)
+        if moved is None:
+            return StepReport(action, False, measured, fault)
+        if moved.stopped_by == "contact":
+            # What is held comes to lie where it touches; an empty tool that touches something early is not where it should be.
+            short = moved.error_m > AWAY_M
+            said = f"{REASONS['contact']}, {1000 * moved.error_m:.0f} mm before its goal (limit {1000 * AWAY_M:.0f} mm)"
+            return StepReport(action, not short or self._table.robot.holding, measured, said if short else None)
+        if moved.stopped_by:
+            return StepReport(action, False, measured, REASONS[moved.stopped_by])
+        if moved.error_m > AWAY_M and not isinstance(action, Gripper):
+            said = f"ended {1000 * moved.error_m:.0f} mm from its goal (limit {1000 * AWAY_M:.0f} mm)"
+            return StepReport(action, False, measured, said)
+        return StepReport(action, True, measured)
+
+    def _measured(self, moved: Moved | None) -> dict[str, Any]:
+        robot = self._table.robot
+        found: dict[str, Any] = {
+            "tool_m": tuple(round(float(v), 4) for v in robot.tool_m),
+            "yaw_rad": round(robot.yaw_rad, 4),
+            "opening_m": round(robot.opening_m, 4),
+            "holding": robot.holding,
+            "held_width_m": round(robot.opening_m, 4) if robot.holding else None,
+        }
+        if moved is not None:
+            found |= {
+                "pose_error_m": round(moved.error_m, 4),
+                "force_n": round(moved.force_n, 1),
+                "contact": moved.stopped_by == "contact" or moved.force_n > 0.5,
+            }
+        return found
+
+    def _out_of_reach(self, points_m: Array) -> str:
+        for point in points_m:
+            for axis in range(3):
+                low, high, value = REACH_LOW_M[axis], REACH_HIGH_M[axis], float(point[axis])
+                if not low - 1e-6 <= value <= high + 1e-6:
+                    return f"{'xyz'[axis]} = {value:.3f} m is out of reach [{low}, {high}] m"
+        return ""
+
+    def film(self, each: Callable[[Mapping[str, Array]], None] | None, every_s: float = 0.1) -> None:
+        """Hand pictures of all cameras to `each` while an action runs; for people: no planner is shown them."""
+
+        def picture() -> None:
+            if each is not None:
+                each({name: self._table.draw(name).rgb for name in ("front", "top")})
+
+        self._table.film(None if each is None else picture, every_s)
+
+    def stop(self) -> None:
+        """The arm stays where it is from the next command on, and what it holds stays held, until a new world is made."""
+        self._stopped = True
+        self._table.robot.halt()
+
+    def close(self) -> None:
+        """Give everything back; safe to call twice."""
+        self._table.close()
+
+
+def _facts(row: ArmRow, table: ArmTable) -> str:
+    """What planners are told, one fact a line."""
+    width = 1000 * row.opening_m
+    tool = (
+        table.work.facts
+        if table.work is not None
+        else f"Tool: a gripper with two parallel fingers that points straight down. It opens {width:.0f} mm and holds one thing at a "
+        "time, from two opposite sides; what is wider across its narrowest side cannot be held. The fingers need free space on "
+        f"both sides of the thing. How the gripper is turned to grip is computed from depth."
+    )
+    return "\n".join(
+        (
+            f"Robot: {row.words}, bolted down at the upper edge of the top view.",
+            *tool.splitlines(),
+            "End every task with home: the arm then stands beside the table, out of the top view, and everything can be seen.",
+            "Every way across the table is made clear of everything; the tool goes down only over where it is to be.",
+            f"Reach: {100 * (REACH_HIGH_M[0] - REACH_LOW_M[0]):.0f} by {100 * (REACH_HIGH_M[1] - REACH_LOW_M[1]):.0f} cm in the "
+            "middle of the table, and nothing beyond.",
+            "Views: the top camera looks straight down; the front camera looks from the side that is the lower edge of the top view.",
+            "North is the upper edge of the top view, south the lower, west the left, east the right.",
+            "A turn without a direction is clockwise, seen from above.",
+        )
+    )

@@ -1,0 +1,58 @@
+"""Whole episodes, planner and gate included."""
+
+from __future__ import annotations
+
+import pytest
+
+import wonderful_team as wt
+from tests.sims.arms.needed import needs_arms
+
+
+@needs_arms
+@pytest.mark.parametrize("model", ["offline", pytest.param("simulated:perfect", marks=pytest.mark.slow)])
+def test_a_block_goes_into_the_bowl(model: str) -> None:
+    world = wt.make_world("arms/block_in_bowl", seed=2)
+    try:
+        trial = wt.rollout(wt.Team(model=model), world)
+    finally:
+        world.close()
+    assert trial.outcome == "success", trial.reason
+    assert all(report.executed for report in trial.reports)
+    assert [report.action.kind for report in trial.reports][-1] == "home"
+
+
+@needs_arms
+@pytest.mark.slow
+@pytest.mark.parametrize("variation", ["all_match", "no_area", "misplaced", "both"])
+def test_fruits_go_onto_papers_of_their_colour(variation: str) -> None:
+    world = wt.make_world(f"arms/fruit_placement/{variation}", seed=2)
+    try:
+        trial = wt.rollout(wt.Team(model="simulated:perfect"), world)
+    finally:
+        world.close()
+    assert trial.outcome == "success", trial.reason
+
+
+@needs_arms
+@pytest.mark.parametrize("task", ["star", pytest.param("wipe", marks=pytest.mark.slow)])
+def test_a_written_path_is_run_in_the_sandbox_reviewed_and_followed_by_touch(task: str) -> None:
+    world = wt.make_world(f"arms/{task}", seed=2)
+    try:
+        trial = wt.rollout(wt.Team(model="simulated:perfect"), world)
+    finally:
+        world.close()
+    assert trial.outcome == "success", trial.reason
+    (path,) = (report.action for report in trial.reports if report.action.kind == "trajectory")
+    assert path.waypoints_m[0][2] > 0.15  # type: ignore[union-attr]
+    assert trial.plans[-1].subgoals[0].function
+
+
+@needs_arms
+def test_offline_says_which_words_of_a_drawing_it_does_not_know() -> None:
+    world = wt.make_world("arms/star", seed=2)
+    try:
+        plan = wt.Team(model="offline").plan(world.observe(), world.instruction, limits=world.limits)
+    finally:
+        world.close()
+    assert plan.status == "not_understood"
+    assert "draw" in plan.message

@@ -1,0 +1,59 @@
+"""One row per arm: every row is whole, and what needs a checkout of other people's models says so."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tests.sims.arms.needed import needs_arms
+from wonderful_team.core.actions import Gripper
+from wonderful_team.errors import ConfigError
+from wonderful_team.sims.arms import ARMS, make_world
+from wonderful_team.sims.arms.rows import MENAGERIE_VARIABLE
+
+needs_menagerie = pytest.mark.skipif(
+    not os.environ.get(MENAGERIE_VARIABLE), reason=f"{MENAGERIE_VARIABLE} names no checkout of MuJoCo Menagerie"
+)
+
+
+@needs_arms
+def test_an_arm_of_menagerie_names_what_is_missing(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.delenv(MENAGERIE_VARIABLE, raising=False)
+    with pytest.raises(ConfigError, match=f"{MENAGERIE_VARIABLE} is not set"):
+        make_world("block_in_bowl@xarm7", seed=1)
+    monkeypatch.setenv(MENAGERIE_VARIABLE, str(tmp_path))
+    with pytest.raises(ConfigError, match=r"xarm7\.xml is not there"):
+        make_world("block_in_bowl@xarm7", seed=1)
+
+
+@needs_arms
+def test_kinematics_finds_the_same_pose_again_all_over_the_workspace() -> None:
+    from wonderful_team.sims.arms.kinematics import Kinematics, downwards
+
+    arm = Kinematics(ARMS["ur5e"])
+    rng = np.random.default_rng(3)
+    for _ in range(25):
+        point = rng.uniform((0.27, -0.35, 0.15), (0.69, 0.35, 0.4))
+        turn = downwards(float(rng.uniform(-1.5, 1.5)))
+        q = arm.reach(point, turn, arm.parked())
+        assert q is not None, point
+        at, turned = arm.flange(q)
+        assert np.linalg.norm(at - point) < 0.001
+        assert np.abs(turned - turn).max() < 0.01
+    assert arm.reach(np.array([1.4, 0.0, 0.3]), downwards(0.0), arm.parked()) is None
+
+
+@needs_arms
+@needs_menagerie
+def test_the_papers_arm_picks_and_places_too() -> None:
+    world = make_world("block_in_bowl@xarm7", seed=1000)
+    try:
+        reports = [world.execute(action) for action in world.privileged.oracle()]
+        closed = next(r for r in reports if isinstance(r.action, Gripper) and r.action.state == "close")
+        assert closed.measured["held_width_m"] == pytest.approx(0.045, abs=0.004)
+        assert world.privileged.score().success
+    finally:
+        world.close()

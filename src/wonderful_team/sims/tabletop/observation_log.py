@@ -167,7 +167,7 @@ def _words(thing: Thing) -> str:
         return thing.shape
     if thing.texture.startswith(prints.PREFIX):
         return f"{thing.shape} that says {thing.texture.removeprefix(prints.PREFIX)}"
-    return f"{thing.texture} {thing.shape}"
+    return thing.texture if thing.texture.endswith(thing.shape) else f"{thing.texture} {thing.shape}"
 
 
 def _outline(footprint: BaseGeometry) -> Array:

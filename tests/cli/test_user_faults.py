@@ -170,3 +170,15 @@ def test_a_world_is_given_its_address(mine, capsys):
     assert "is not NAME=VALUE" in capsys.readouterr().err
     with pytest.raises(wt.WonderfulTeamError, match="takes no arguments"):
         wt.make_world("tabletop/rotate", address="10.0.0.5")
+
+
+def test_a_world_that_shows_no_observation_is_its_owners_fault_in_a_check_too(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = tmp_path / "odd.py"
+    file.write_text(
+        "import wonderful_team as wt\nclass W:\n    vocabulary = limits = 3\n    instruction = wt.Instruction('x')\n"
+        "    observe = execute = stop = close = lambda *_: 1\n"
+    )
+    assert run(["check", f"{file}:W", "--seeds", "1", "--sheet", str(tmp_path / "s.png")]) == 6
+    assert "what observe() of world W returned is a int; valid: Observation" in capsys.readouterr().err

@@ -5,7 +5,7 @@ from __future__ import annotations
 import inspect
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 
@@ -15,7 +15,7 @@ from wonderful_team.api.trial import run_trial
 from wonderful_team.core.geometry import Box
 from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.intervals import Rate
-from wonderful_team.core.protocols import privileged
+from wonderful_team.core.protocols import World, privileged
 from wonderful_team.core.text import counted
 from wonderful_team.detectors import detect
 from wonderful_team.errors import ConfigError, DetectorCodeError, FileNotWrittenError, NotUnderstoodError
@@ -25,6 +25,7 @@ from wonderful_team.evals.trials import Condition, RunSettings, TrialRow, TrialS
 from wonderful_team.evals.workers import run_safely
 from wonderful_team.registry.files import load_from_file
 from wonderful_team.runtime.loop import Caller
+from wonderful_team.runtime.user_code import GuardedWorld
 
 TRIED_IN = "tabletop/rotate"
 """Where methods, models and detectors are tried."""
@@ -69,7 +70,10 @@ def check(name: str, sheet: Path, seeds: int | None = None) -> Findings:
 
 
 def _check_world(name: str, sheet: Path, seeds: Sequence[int], findings: Findings) -> None:
-    tiles = check_looks(lambda seed: registry.make_world(name, seed), seeds, findings)
+    def guarded(seed: int) -> World:
+        return cast(World, GuardedWorld(registry.make_world(name, seed)))
+
+    tiles = check_looks(guarded, seeds, findings)
     try:
         contact_sheet(tiles, sheet)
         findings.notes.append(f"contact sheet: {sheet}")

@@ -160,21 +160,20 @@ def branch(
     rival = registry.team_mode(_method_name(folder, record)) is None
     if rival:
         check_asked_at(stage, record)
-    models = {
-        role: Branching(recorded, registry.make_model(one), stage, as_asked=rival) for role, one in wanted.items()
-    }
-    parent = {"run": folder.name, "from": stage}
-    arguments = {**caps, "out": out, "subscribers": tuple(subscribers), "command": command, "parent": parent}
+    arguments = {**caps, "out": out, "subscribers": tuple(subscribers), "command": command}
     if "detector" in record["configuration"]:
         # Another model may look for other things: the detector itself is asked.
-        arguments["detector"] = caps.get("detector") or _detector_again(
-            folder, str(record["configuration"]["detector"])
-        )
-    method = _method(folder, record, models, **arguments)
-    if _is_ours(setup):
-        with names_no_code(f"{folder}: the scene of this record"):
-            return _trial_again(folder, record, setup, method)
-    return _plan_again(folder, record, setup, method)
+        named = str(record["configuration"]["detector"])
+        arguments["detector"] = caps.get("detector") or _detector_again(folder, named)
+    with contextlib.ExitStack() as closing:
+        world = closing.enter_context(_world_again(folder, record, setup)) if _is_ours(setup) else None
+        made = {role: registry.make_model(one, world=world) for role, one in wanted.items()}
+        models = {role: Branching(recorded, one, stage, as_asked=rival) for role, one in made.items()}
+        parent = {"run": folder.name, "from": stage}
+        method = _method(folder, record, models, parent=parent, world=world, **arguments)
+        if world is None:
+            return _plan_again(folder, record, setup, method)
+        return _trial_again(folder, record, setup, method, world)
 
 
 def _detector_again(folder: Path, named: str) -> str:
@@ -217,16 +216,12 @@ def _truth_again(folder: Path, record: Mapping[str, Any], setup: Setup) -> Itera
             f"{why}, and its world cannot be made again: it is called {setup.scene!r}; valid: a task of {', '.join(registry.WORLDS)} "
             "that was run by its name, or with scene= and seed= of wt.rollout"
         )
-    with names_no_code(f"{folder}: the scene of this record"):
-        world = registry.make_world(setup.scene.rpartition("#")[0], setup.seed or 0)
-    try:
-        with reading(f"{folder}: the record"):
-            then = stored_observation(folder, record, 0)
+    with reading(f"{folder}: the record"):
+        then = stored_observation(folder, record, 0)
+    with _world_again(folder, record, setup) as world:
         if world.observe().hash != then.hash:
             raise ReplayError(f"{why}; {setup.scene}, made again, does not look as it did then")
         yield world
-    finally:
-        world.close()
 
 
 def _method_name(folder: Path, record: Mapping[str, Any]) -> str:
@@ -292,29 +287,36 @@ def _plan_again(folder: Path, record: Mapping[str, Any], setup: Setup, team: Met
     )
 
 
-def _trial_again(folder: Path, record: Mapping[str, Any], setup: Setup, method: Method) -> TrialResult:
+@contextlib.contextmanager
+def _world_again(folder: Path, record: Mapping[str, Any], setup: Setup) -> Iterator[World]:
+    """The simulator of a recorded trial, set up again as it was at its start."""
     name = setup.scene.rpartition("#")[0]
     with reading(f"{folder}: the record"):
         wanted = stored_instruction(folder, record)
-    world = registry.make_world(name, setup.seed or 0)
-    if world.instruction.text != wanted.text:
-        world.close()
-        world = registry.make_world(name, setup.seed or 0, wanted)
+    with names_no_code(f"{folder}: the scene of this record"):
+        world = registry.make_world(name, setup.seed or 0)
+        if world.instruction.text != wanted.text:
+            world.close()
+            world = registry.make_world(name, setup.seed or 0, wanted)
     # Regions that the user kept out belong to the run, not to the simulator.
     getattr(world, "inner", world).limits = same_limits(setup)
     try:
-        return rollout(
-            method,
-            world,
-            plan=None if setup.plan is None else recorded_plan(folder, record, setup.plan),
-            replans=setup.replans,
-            reobserve=setup.reobserve,
-            seed=setup.seed,
-            scene=setup.scene,
-            scored=setup.scored,
-        )
+        yield world
     finally:
         world.close()
+
+
+def _trial_again(folder: Path, record: Mapping[str, Any], setup: Setup, method: Method, world: World) -> TrialResult:
+    return rollout(
+        method,
+        world,
+        plan=None if setup.plan is None else recorded_plan(folder, record, setup.plan),
+        replans=setup.replans,
+        reobserve=setup.reobserve,
+        seed=setup.seed,
+        scene=setup.scene,
+        scored=setup.scored,
+    )
 
 
 def _write_words(place: Path, words: Mapping[str, str]) -> None:

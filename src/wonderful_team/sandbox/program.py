@@ -19,7 +19,7 @@ from wonderful_team.sandbox.errors import SandboxError
 from wonderful_team.sandbox.explained import explained
 from wonderful_team.sandbox.returned import cut
 from wonderful_team.sandbox.run import MAX_CODE_CHARACTERS
-from wonderful_team.sandbox.worker import WorkerLostError, discarded_output, in_worker
+from wonderful_team.sandbox.worker import WorkerLostError, discarded_output, in_worker, without_value
 
 MAX_CALLS = 100
 """Most calls of host functions in one program."""
@@ -124,7 +124,7 @@ def run_program(
             prelude, inputs={"_answers": given, "_unanswered": sorted(unanswered)}, print_callback=discarded_output()
         )
         try:
-            interpreter.feed_run(code, print_callback=output)
+            interpreter.feed_run(without_value(code), print_callback=output)
         except (pydantic_monty.MontySyntaxError, pydantic_monty.MontyRuntimeError) as error:
             failed.append(error)
         return str(output.output)

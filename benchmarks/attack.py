@@ -16,7 +16,7 @@
 | writes  | every write of every command fails, once and from then on (a full disk)             | --writes   |
 
 Each group draws from what the tests draw from (`tests/`), for longer. Printed, for each: attempts; crashes (an error that is none of ours,
-or an exit code that means nothing); hangs (past the stated limit: a plan 90 s, a program 2 s more than it was given, a sweep 120 s, a
+or an exit code that means nothing); hangs (past the stated limit: a plan 90 s, each run of a program 2 s more than it was given, a sweep 120 s, a
 command 60 s); lost (a result lost, doubled or booked wrongly, a plan that is not the right one); outside (admitted outside the rules, a cap
 passed, a key told, something touched outside of the sandbox). Exit 1 when anything gave way. No model of a vendor takes part, and nothing
 is sent to another machine.

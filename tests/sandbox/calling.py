@@ -109,7 +109,7 @@ def ran_calling(code: str, timeout_s: float = 0.3, over_s: float = 2.0) -> Ran:
         )
     seconds = time.monotonic() - started
     checks = {
-        f"took {seconds:.1f} s for {runs} runs": seconds > runs * timeout_s + over_s,
+        f"took {seconds:.1f} s for {runs} runs": seconds > runs * (timeout_s + over_s),
         "was run more often than it may call": runs > MAX_CALLS,
         "a file was written": planted.exists() and not there,
         "a file was read": "root:" in text or (home := os.environ.get("HOME", "")) != "" and f"{home}'" in text,

@@ -7,7 +7,7 @@
 | group   | what is tried                                                                       | option     |
 |---------|-------------------------------------------------------------------------------------|------------|
 | model   | faults of models over real sockets in five formats, whole plans made under them     | --faults   |
-| sandbox | programs that reach outside, never end or exhaust whoever reads their result        | --programs |
+| sandbox | programs that reach outside, never end, exhaust whoever reads them or lie of calls  | --programs |
 | gate    | random plans, judged by the gate and by an oracle of its own                        | --plans    |
 | edited  | admitted plans in which one thing is changed                                        | --edited   |
 | kills   | kill -9 of sweeps with their workers, at random moments                             | --kills    |
@@ -16,7 +16,7 @@
 | writes  | every write of every command fails, once and from then on (a full disk)             | --writes   |
 
 Each group draws from what the tests draw from (`tests/`), for longer. Printed, for each: attempts; crashes (an error that is none of ours,
-or an exit code that means nothing); hangs (past the stated limit: a plan 90 s, a program 2 s more than it was given, a sweep 120 s, a
+or an exit code that means nothing); hangs (past the stated limit: a plan 90 s, each run of a program 2 s more than it was given, a sweep 120 s, a
 command 60 s); lost (a result lost, doubled or booked wrongly, a plan that is not the right one); outside (admitted outside the rules, a cap
 passed, a key told, something touched outside of the sandbox). Exit 1 when anything gave way. No model of a vendor takes part, and nothing
 is sent to another machine.
@@ -40,6 +40,7 @@ from benchmarks.random_plans import through_the_gate
 from tests.evals.claims_walk import walk
 from tests.evals.sweeps import killed
 from tests.fuzzing import KINDS, AgentSession
+from tests.sandbox.calling import calling_program, ran_calling
 from tests.sandbox.programs import program, ran
 from tests.write_fault_cases import CASES, fail_writes, prepare
 
@@ -92,22 +93,23 @@ def model(faults: int, seed: int) -> Found:
 
 
 def sandbox(programs: int, seed: int) -> Found:
-    """Programs of models."""
-    found, points = Found(programs, ""), 0
+    """Programs of models: in turn functions that give a path, and programs that call the host's functions."""
+    found, fine = Found(programs, ""), 0
     for number in range(programs):
-        code = program(random.Random(f"{seed}/{number}"))
+        rng = random.Random(f"{seed}/{number}")
+        code = calling_program(rng) if number % 2 else program(rng)
         try:
-            one = ran(code)
+            one = ran_calling(code) if number % 2 else ran(code)
         except Exception as error:  # noqa: BLE001  a crash is what is looked for
             found.crashes += 1
             found.words.append(f"program {number}: {error!r}\n{code[:400]}")
             continue
-        points += one.ended == "points"
+        fine += one.ended != "error"
         late = any(words.startswith("took") for words in one.wrong)
         found.hangs += late
         found.outside += len(one.wrong) > late
         found.words += [f"program {number}: {'; '.join(one.wrong)}\n{code[:400]}"] if one.wrong else []
-    found.what = f"programs, {points} gave points"
+    found.what = f"programs, half of them calling; {fine} ended without an error"
     return found
 
 

@@ -10,11 +10,12 @@ import subprocess
 import sys
 import threading
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from tests.sandbox.programs import BOXES, LARGE, OVERRIDES, body, program, ran
-from wonderful_team.sandbox import SandboxError, SandboxUnavailableError, run_path, worker
+from wonderful_team.sandbox import SandboxError, SandboxUnavailableError, run_path, run_program, worker
 from wonderful_team.sandbox.returned import MAX_ERROR_CHARACTERS, parsed
 
 GOOD = "def path(boxes):\n    return [(1, 2), (3, 4)]"
@@ -33,6 +34,25 @@ def test_no_returned_value_or_error_text_is_large_here(code: str) -> None:
     assert len(str(caught.value)) < MAX_ERROR_CHARACTERS + 400
     # The worst of these needed gigabytes when the value itself was passed on.
     assert most_memory_kb() - before < 512 * 1024
+
+
+@pytest.mark.parametrize("last", ["'x' * 3_000_000", "list(range(1000))", "path", "1 # 2"])
+def test_no_value_of_a_last_line_leaves_the_worker(last: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    left: list[object] = []
+
+    class Watched:
+        def __init__(self, inner: Any) -> None:
+            self.inner = inner
+
+        def feed_run(self, *given: Any, **more: Any) -> object:
+            left.append(self.inner.feed_run(*given, **more))
+            return left[-1]
+
+    once = worker._once
+    monkeypatch.setattr(worker, "_once", lambda run, timeout_s: once(lambda one: run(Watched(one)), timeout_s))
+    assert run_path(f"{GOOD}\n{last}", BOXES) == ((1.0, 2.0), (3.0, 4.0))
+    assert run_program(f"path = print\n{last}", {}).calls == ()
+    assert all(value is None for value in left)
 
 
 @pytest.mark.parametrize("override", OVERRIDES)

@@ -1,29 +1,31 @@
 """Run a recorded run again: exactly (replay), or with another model from some stage on (branch).
 
-Nothing real moves. A replay puts the planner into the recorded situations, with the pictures and reports of that time.
-A branch may lead elsewhere, so a trial branches only in a simulator of ours, which is set up from its seed; of any
+Nothing real moves. A replay puts the method into the recorded situations, with the pictures and reports of that time.
+Programs that a model wrote run again in the sandbox; what a detector found comes from the record. A branch may lead elsewhere, so a trial branches only in a simulator of ours, which is set up from its seed; of any
 other trial the first plan is made again.
 """
 
 from __future__ import annotations
 
+import contextlib
 import tempfile
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from wonderful_team import registry
 from wonderful_team.agents import Prompts
+from wonderful_team.api.method import Method
 from wonderful_team.api.results import PlanResult, TrialResult
 from wonderful_team.api.rollout import rollout
 from wonderful_team.api.team import Team
 from wonderful_team.core.actions import Vocabulary
 from wonderful_team.core.filesystem import write_public
-from wonderful_team.core.protocols import Event, Model, Subscriber
+from wonderful_team.core.protocols import Event, Model, Subscriber, World
 from wonderful_team.core.values import AskUser, Observation, Plan
-from wonderful_team.errors import ConfigError, WonderfulTeamError, reading
-from wonderful_team.models.replay import Branching, ReplayModel
+from wonderful_team.errors import ConfigError, ReplayError, WonderfulTeamError, reading
+from wonderful_team.models.replay import Branching, ReplayModel, check_asked_at
 from wonderful_team.record.detections import RecordedDetector
 from wonderful_team.record.plan_file import has_short_id
 from wonderful_team.record.record_schema import read_record
@@ -58,6 +60,8 @@ class Replayed:
 def replay(folder: Path, *, tolerant: bool = False, subscribers: Sequence[Subscriber] = ()) -> Replayed:
     """Make a recorded run's plans again from its own answers; no model and no network. Leaves no run folder behind.
 
+    A method marked PRIVILEGED was told a simulator's truth: its world is made again from task and seed, and nothing moves in it.
+
     Args:
         folder: The run's folder.
         tolerant: Go on where words or pictures differ from the record (a later release has other words), and say so.
@@ -71,11 +75,15 @@ def replay(folder: Path, *, tolerant: bool = False, subscribers: Sequence[Subscr
     setup = read_setup(record, str(folder))
     model, plans = ReplayModel(record, tolerant=tolerant), _Plans()
     detector = RecordedDetector(record) if "detector" in record["configuration"] else None
-    with tempfile.TemporaryDirectory(prefix="wonderful-team-replay-") as place:
-        team = _team(folder, record, model, out=place, subscribers=(plans, *subscribers), detector=detector)
+    with (
+        tempfile.TemporaryDirectory(prefix="wonderful-team-replay-") as place,
+        _truth_again(folder, record, setup) as world,
+    ):
+        everyone = (plans, *subscribers)
+        method = _method(folder, record, model, out=place, subscribers=everyone, detector=detector, world=world)
         try:
             if setup.entry == "run":
-                policy = team.policy()
+                policy = method.policy()
                 with reading(f"{folder}: the record"):
                     asked = list(situations(folder, record, setup))
                 with Caller() as caller:
@@ -83,7 +91,7 @@ def replay(folder: Path, *, tolerant: bool = False, subscribers: Sequence[Subscr
                         plans.seen(situation.observation)
                         caller.wait_for(policy.decide(situation))
             else:
-                _plan_again(folder, record, setup, team)
+                _plan_again(folder, record, setup, method)
         except WonderfulTeamError as error:
             # What ended the run then ends it again; anything else did not happen then.
             if error not in model.failed:
@@ -148,39 +156,95 @@ def branch(
     record = read_record(folder)
     recorded = ReplayModel(record)
     wanted: Mapping[str, str | Model] = model if isinstance(model, Mapping) else {registry.DEFAULT_ROLE: model}
-    models = {role: Branching(recorded, registry.make_model(one), stage) for role, one in wanted.items()}
-    parent = {"run": folder.name, "from": stage}
     setup = read_setup(record, str(folder))
-    arguments = {**caps, "out": out, "subscribers": tuple(subscribers), "command": command, "parent": parent}
+    rival = registry.team_mode(_method_name(folder, record)) is None
+    if rival:
+        check_asked_at(stage, record)
+    arguments = {**caps, "out": out, "subscribers": tuple(subscribers), "command": command}
     if "detector" in record["configuration"]:
-        # Another model may look for other things: the detector itself is asked, unless the record names code.
+        # Another model may look for other things: the detector itself is asked.
         named = str(record["configuration"]["detector"])
-        arguments.setdefault("detector", check_names_no_code(named, f"{folder}: the record"))
-    team = _team(folder, record, models, **arguments)
-    if setup.entry == "run" and setup.scene.partition("/")[0] in registry.WORLDS:
-        with names_no_code(f"{folder}: the scene of this record"):
-            return _trial_again(folder, record, setup, team)
-    return _plan_again(folder, record, setup, team)
+        arguments["detector"] = caps.get("detector") or _detector_again(folder, named)
+    with contextlib.ExitStack() as closing:
+        world = closing.enter_context(_world_again(folder, record, setup)) if _is_ours(setup) else None
+        made = {role: registry.make_model(one, world=world) for role, one in wanted.items()}
+        models = {role: Branching(recorded, one, stage, as_asked=rival) for role, one in made.items()}
+        parent = {"run": folder.name, "from": stage}
+        method = _method(folder, record, models, parent=parent, world=world, **arguments)
+        if world is None:
+            return _plan_again(folder, record, setup, method)
+        return _trial_again(folder, record, setup, method, world)
 
 
-def _team(folder: Path, record: Mapping[str, Any], model: Model | Mapping[str, Model], **more: Any) -> Team:
-    """The team as it was set up then, with its words of then, over another model.
+def _detector_again(folder: Path, named: str) -> str:
+    """The detector of a record, if it can be made here.
 
     Raises:
-        ConfigError: The method was not the team.
+        ConfigError: It cannot, or it is code.
     """
-    configuration = record["configuration"]
-    missing = [name for name in ("method", "concurrency", "strict") if name not in configuration]
+    try:
+        registry.make_detector(check_names_no_code(named, f"{folder}: the record"))
+    except ConfigError as error:
+        raise ConfigError(
+            f"{folder}: this run looked with detector {named!r}, which a branch needs and does not have here: {error}; hand one in, "
+            "as in branch(folder, stage, model, detector=…)"
+        ) from error
+    return named
+
+
+def _is_ours(setup: Setup) -> bool:
+    """Whether the run was a trial in a simulator of ours, which its task and seed set up again."""
+    return setup.entry == "run" and setup.scene.partition("/")[0] in registry.WORLDS
+
+
+@contextlib.contextmanager
+def _truth_again(folder: Path, record: Mapping[str, Any], setup: Setup) -> Iterator[World | None]:
+    """The world whose truth a method marked PRIVILEGED was told, looked at once; None for every other method.
+
+    Raises:
+        ConfigError: It cannot be made again.
+        ReplayError: It does not look as it did then.
+    """
+    named = _method_name(folder, record)
+    row = registry.method_row(named)
+    if row is None or not row.privileged:
+        yield None
+        return
+    why = f"{folder}: method {named!r} was told a simulator's truth, which the record does not hold"
+    if not _is_ours(setup):
+        raise ConfigError(
+            f"{why}, and its world cannot be made again: it is called {setup.scene!r}; valid: a task of {', '.join(registry.WORLDS)} "
+            "that was run by its name, or with scene= and seed= of wt.rollout"
+        )
+    with reading(f"{folder}: the record"):
+        then = stored_observation(folder, record, 0)
+    with _world_again(folder, record, setup) as world:
+        if world.observe().hash != then.hash:
+            raise ReplayError(f"{why}; {setup.scene}, made again, does not look as it did then")
+        yield world
+
+
+def _method_name(folder: Path, record: Mapping[str, Any]) -> str:
+    """The method of a record, which can be run again.
+
+    Raises:
+        ConfigError: The record does not say what it was, or it is code.
+    """
+    missing = [name for name in ("method", "concurrency", "strict") if name not in record["configuration"]]
     if missing:
         raise ConfigError(f"{folder}: the record does not say its {', '.join(missing)}, so it cannot be run again")
-    method = str(configuration["method"])
-    if registry.team_mode(method) is None:
-        raise ConfigError(f"{folder}: method {method!r} is not the team; only runs of the team can be run again")
+    return check_names_no_code(str(record["configuration"]["method"]), f"{folder}: the method of this record")
+
+
+def _method(folder: Path, record: Mapping[str, Any], model: Model | Mapping[str, Model], **more: Any) -> Method:
+    """The method as it was set up then, a team with its words of then, over another model."""
+    configuration, named = record["configuration"], _method_name(folder, record)
+    kind = Method if registry.team_mode(named) is None else Team
     with tempfile.TemporaryDirectory(prefix="wonderful-team-words-") as words:
         _write_words(Path(words), record.get("words") or {})
-        return Team(
+        return kind(
             model=model,
-            method=method,
+            method=named,
             concurrency=int(configuration["concurrency"]),
             prompts=words,
             strict=bool(configuration["strict"]),
@@ -197,7 +261,12 @@ def _said_then(record: Mapping[str, Any]) -> AskUser | None:
     return (lambda question, choices: answers.get(question)) if answers else None
 
 
-def _plan_again(folder: Path, record: Mapping[str, Any], setup: Setup, team: Team) -> PlanResult:
+def _plan_again(folder: Path, record: Mapping[str, Any], setup: Setup, team: Method) -> PlanResult:
+    if not isinstance(team, Team):
+        raise ConfigError(
+            f"{folder}: method {team.method!r} plans in a world only, and the world of this run cannot be made again: it is called "
+            f"{setup.scene!r}; valid: a task of {', '.join(registry.WORLDS)}"
+        )
     if setup.plan is not None:
         raise ConfigError(f"{folder}: this run was given its plan {setup.plan}: there is nothing to plan again")
     with reading(f"{folder}: the record"):
@@ -218,29 +287,36 @@ def _plan_again(folder: Path, record: Mapping[str, Any], setup: Setup, team: Tea
     )
 
 
-def _trial_again(folder: Path, record: Mapping[str, Any], setup: Setup, team: Team) -> TrialResult:
+@contextlib.contextmanager
+def _world_again(folder: Path, record: Mapping[str, Any], setup: Setup) -> Iterator[World]:
+    """The simulator of a recorded trial, set up again as it was at its start."""
     name = setup.scene.rpartition("#")[0]
     with reading(f"{folder}: the record"):
         wanted = stored_instruction(folder, record)
-    world = registry.make_world(name, setup.seed or 0)
-    if world.instruction.text != wanted.text:
-        world.close()
-        world = registry.make_world(name, setup.seed or 0, wanted)
+    with names_no_code(f"{folder}: the scene of this record"):
+        world = registry.make_world(name, setup.seed or 0)
+        if world.instruction.text != wanted.text:
+            world.close()
+            world = registry.make_world(name, setup.seed or 0, wanted)
     # Regions that the user kept out belong to the run, not to the simulator.
     getattr(world, "inner", world).limits = same_limits(setup)
     try:
-        return rollout(
-            team,
-            world,
-            plan=None if setup.plan is None else recorded_plan(folder, record, setup.plan),
-            replans=setup.replans,
-            reobserve=setup.reobserve,
-            seed=setup.seed,
-            scene=setup.scene,
-            scored=setup.scored,
-        )
+        yield world
     finally:
         world.close()
+
+
+def _trial_again(folder: Path, record: Mapping[str, Any], setup: Setup, method: Method, world: World) -> TrialResult:
+    return rollout(
+        method,
+        world,
+        plan=None if setup.plan is None else recorded_plan(folder, record, setup.plan),
+        replans=setup.replans,
+        reobserve=setup.reobserve,
+        seed=setup.seed,
+        scene=setup.scene,
+        scored=setup.scored,
+    )
 
 
 def _write_words(place: Path, words: Mapping[str, str]) -> None:

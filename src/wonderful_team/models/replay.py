@@ -118,15 +118,17 @@ class Branching(AroundModel):
         replay: What was answered before.
         model: Who answers from the stage on.
         stage: plan, ground, act or replan.
+        as_asked: Stages come in the order in which the method asks, one after the other, as those of rivals do; else in the team's.
 
     Raises:
         UnknownNameError: Another stage.
     """
 
-    def __init__(self, replay: ReplayModel, model: Model, stage: str) -> None:
+    def __init__(self, replay: ReplayModel, model: Model, stage: str, *, as_asked: bool = False) -> None:
         super().__init__(model)
         self.replay, self.name = replay, f"{self.name} from {stage}"
         self._from = _branch_position(stage)
+        self._stage, self._as_asked = stage, as_asked
         self._left = False
 
     def __getattr__(self, name: str) -> Any:
@@ -134,6 +136,10 @@ class Branching(AroundModel):
         return self._reckon if name == "estimate" else value
 
     def _replays(self, request: Request) -> bool:
+        if self._as_asked:
+            attempt, stage = _attempt_and_stage(request.id)
+            begins = stage == self._stage or (self._stage == "replan" and attempt > 0)
+            return not self._left and not begins
         return _position(request) < self._from and (not self._left or self.replay.holds(request))
 
     def _reckon(self, request: Request) -> Estimate:
@@ -268,6 +274,18 @@ def _revived(told: Mapping[str, Any]) -> WonderfulTeamError:
     return error
 
 
+def check_asked_at(stage: str, record: Mapping[str, Any]) -> None:
+    """Whether a rival's run, which has not all of the team's stages, can branch at one.
+
+    Raises:
+        UnknownNameError: It asks nothing there; lists the stages at which it asks.
+    """
+    asked = {_attempt_and_stage(str(entry["id"]))[1] for entry in record["planner"]["requests"]}
+    if stage not in (*asked, "replan"):
+        valid = [one for one in STAGES if one in asked or one == "replan"]
+        raise UnknownNameError(f"stage at which {record['configuration']['method']!r} asks", stage, valid)
+
+
 def _branch_position(stage: str) -> tuple[int, int]:
     if stage not in STAGES:
         raise UnknownNameError("stage to branch at", stage, STAGES)
@@ -276,12 +294,17 @@ def _branch_position(stage: str) -> tuple[int, int]:
 
 def _position(request: Request) -> tuple[int, int]:
     """Where a request stands in the trial; what Memory is asked belongs to the stage that it is asked about."""
-    attempt, stage, branch = (request.id.split("/") + ["", "", ""])[:3]
+    attempt, stage = _attempt_and_stage(request.id)
+    return attempt, 0 if stage == "replan" else 1 + STAGES.index(stage)
+
+
+def _attempt_and_stage(request_id: str) -> tuple[int, str]:
+    attempt, stage, branch = (request_id.split("/") + ["", "", ""])[:3]
     if stage == "memory":
         stage = branch.partition(".")[0]
     if not attempt.isdigit() or stage not in STAGES:
-        raise ReplayError(f"{_called(request)}: only runs of the team have stages to branch at ({', '.join(STAGES)})")
-    return int(attempt), 0 if stage == "replan" else 1 + STAGES.index(stage)
+        raise ReplayError(f"request {request_id} belongs to no stage to branch at ({', '.join(STAGES)})")
+    return int(attempt), stage
 
 
 def _called(request: Request) -> str:

@@ -8,6 +8,7 @@ are small, and get the same clock and the same random numbers each time, so they
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -18,12 +19,18 @@ from wonderful_team.sandbox.errors import SandboxError
 from wonderful_team.sandbox.explained import explained
 from wonderful_team.sandbox.returned import cut
 from wonderful_team.sandbox.run import MAX_CODE_CHARACTERS
-from wonderful_team.sandbox.worker import WorkerLostError, discarded_output, in_worker
+from wonderful_team.sandbox.worker import WorkerLostError, discarded_output, in_worker, without_value
 
 MAX_CALLS = 100
 """Most calls of host functions in one program."""
 MAX_PRINTED_CHARACTERS = 4_000
 """Most of what a program prints that goes back to its author; the Trajectory Generators pass on at most 2,000."""
+MAX_NUMBER = 1e12
+"""Larger numbers are no quantity of anything on a table."""
+MAX_TEXT_CHARACTERS = 1_000
+"""Longest text in a call: names and descriptions."""
+MAX_DEPTH = 8
+"""Most lists and dictionaries inside each other in a call."""
 _MARK = "\x1d"
 """Begins the line of a call."""
 _AUTHORS_FILE = "<python-input-1>"
@@ -55,7 +62,7 @@ class HostCall:
     """A call of one of the host's functions.
 
     Attributes:
-        arguments: Plain JSON values, as untrusted as the program.
+        arguments: One for each parameter: plain JSON values, numbers finite, within the bounds above; else as untrusted as the program.
     """
 
     function: str
@@ -108,7 +115,7 @@ def run_program(
         for name, parameters in functions.items()
     )
     output = discarded_output()
-    failed: list[Exception] = []
+    failed: list[Any] = []
 
     def run(interpreter: Any) -> str:
         nonlocal output
@@ -117,7 +124,7 @@ def run_program(
             prelude, inputs={"_answers": given, "_unanswered": sorted(unanswered)}, print_callback=discarded_output()
         )
         try:
-            interpreter.feed_run(code, print_callback=output)
+            interpreter.feed_run(without_value(code), print_callback=output)
         except (pydantic_monty.MontySyntaxError, pydantic_monty.MontyRuntimeError) as error:
             failed.append(error)
         return str(output.output)
@@ -128,9 +135,13 @@ def run_program(
         raise SandboxError(f"the program had to be stopped from outside: {cut(str(error), 200)}") from error
     except pydantic_monty.MontyError as error:
         raise SandboxError(f"the program could not be run: {cut(str(error), 200)}") from error
-    calls, printed = _read(text, functions)
-    if len(calls) > MAX_CALLS:
-        raise SandboxError(f"the program calls more than {MAX_CALLS} functions")
+    try:
+        calls, printed = _read(text, functions)
+    except SandboxError:
+        # What it printed may be cut off in the middle of a call; then the reason is that it printed too much.
+        if failed and type(failed[0].exception()).__name__ != "KeyboardInterrupt":
+            raise SandboxError(cut(explained(failed[0], code, _AUTHORS_FILE))) from failed[0]
+        raise
     asked = [number for number, call in enumerate(calls, start=1) if call.function not in unanswered]
     if len(asked) > len(given):
         return ProgramRun(calls[: asked[len(given)]], printed, waits=True)
@@ -140,7 +151,11 @@ def run_program(
 
 
 def _names(parameters: str) -> str:
-    return ", ".join(part.partition("=")[0].strip() for part in parameters.split(",") if part.strip())
+    return ", ".join(_parameters(parameters))
+
+
+def _parameters(parameters: str) -> list[str]:
+    return [part.partition("=")[0].strip() for part in parameters.split(",") if part.strip()]
 
 
 def _read(text: str, functions: Mapping[str, str]) -> tuple[tuple[HostCall, ...], str]:
@@ -150,16 +165,45 @@ def _read(text: str, functions: Mapping[str, str]) -> tuple[tuple[HostCall, ...]
         if not line.startswith(_MARK):
             said += [line] if line.strip() else []
             continue
-        try:
-            name, arguments = json.loads(line[len(_MARK) :], parse_constant=_no_number)
-        except (ValueError, TypeError, RecursionError):
-            raise SandboxError(
-                f"call {len(calls) + 1} of a function: its values are not plain finite numbers, texts and lists"
-            ) from None
-        if not isinstance(name, str) or name not in functions or not isinstance(arguments, list):
-            raise SandboxError(f"call {len(calls) + 1} is of no function that there is; valid: {', '.join(functions)}")
-        calls.append(HostCall(name, tuple(arguments)))
+        if len(calls) == MAX_CALLS:
+            raise SandboxError(f"the program calls more than {MAX_CALLS} functions")
+        calls.append(_call(line[len(_MARK) :], functions, len(calls) + 1))
     return tuple(calls), cut("\n".join(said), MAX_PRINTED_CHARACTERS)
+
+
+def _call(text: str, functions: Mapping[str, str], number: int) -> HostCall:
+    """One call, checked: a program can print any line, whatever its functions would print."""
+    try:
+        name, arguments = json.loads(text, parse_constant=_no_number)
+        plain = _is_plain(arguments)
+    except (ValueError, TypeError, RecursionError):
+        plain = False
+    if not plain:
+        raise SandboxError(
+            f"call {number} of a function: its values are not plain finite numbers, texts and lists (numbers up to {MAX_NUMBER:g}, texts "
+            f"of up to {MAX_TEXT_CHARACTERS} characters, up to {MAX_DEPTH} lists inside each other)"
+        )
+    if not isinstance(name, str) or name not in functions or not isinstance(arguments, list):
+        raise SandboxError(f"call {number} is of no function that there is; valid: {', '.join(functions)}")
+    if len(arguments) != len(_parameters(functions[name])):
+        raise SandboxError(f"call {number} gives {name}({functions[name]}) {len(arguments)} values")
+    return HostCall(name, tuple(arguments))
+
+
+def _is_plain(value: Any, depth: int = 0) -> bool:
+    """Whether a parsed JSON value is within the bounds; a text of half a character cannot be written to a file."""
+    match value:
+        case None | bool():
+            return True
+        case int() | float():
+            return -MAX_NUMBER <= value <= MAX_NUMBER and math.isfinite(value)
+        case str():
+            return len(value) <= MAX_TEXT_CHARACTERS and not any("\ud800" <= one <= "\udfff" for one in value)
+        case list():
+            return depth < MAX_DEPTH and all(_is_plain(one, depth + 1) for one in value)
+        case dict():
+            return depth < MAX_DEPTH and all(_is_plain(one, depth + 1) for pair in value.items() for one in pair)
+    return False
 
 
 def _no_number(text: str) -> float:

@@ -12,7 +12,7 @@ from wonderful_team.core.pictures import Point
 from wonderful_team.sandbox.errors import SandboxError
 from wonderful_team.sandbox.explained import explained
 from wonderful_team.sandbox.returned import cut, describing, parsed
-from wonderful_team.sandbox.worker import WorkerLostError, discarded_output, in_worker
+from wonderful_team.sandbox.worker import WorkerLostError, discarded_output, in_worker, without_value
 
 MAX_CODE_CHARACTERS = 20_000
 
@@ -45,7 +45,7 @@ def run_path(code: str, boxes: Mapping[str, Box], *, max_points: int = 20, timeo
     plain = {name: box.as_tuple for name, box in boxes.items()}
 
     def run(interpreter: Any) -> str:
-        interpreter.feed_run(code, print_callback=discarded_output())
+        interpreter.feed_run(without_value(code), print_callback=discarded_output())
         interpreter.feed_run("_returned = path(boxes)", inputs={"boxes": plain}, print_callback=discarded_output())
         described = discarded_output()
         interpreter.feed_run(describing(max_points), print_callback=described)

@@ -136,6 +136,11 @@ def session(timeout_s: float) -> Any:
     )
 
 
+def without_value(code: str) -> str:
+    """The same program without a value: that of its last line would be rebuilt here, as large as the worker's memory."""
+    return f"{code}\nNone"
+
+
 def discarded_output() -> Any:
     """A sink for what a function prints, so that it reaches nobody's terminal."""
     return pydantic_monty.CollectString(PRINTED_BYTES)

@@ -102,6 +102,11 @@ BY_WORDS = (
         ("pick_place((1, 2), 'there')", "pick_place: place must be (x, y), it is 'there'"),
         ("pick_place((1, 2), (3, 4), 'far')", "rotate_deg must be a number"),
         ("open('/etc/passwd')", "PermissionError"),
+        (f"{ALL}retrieve([{{'id': [1]}}], 'red circle')", "needs a list of segments, as segment() returns them"),
+        (f"{ALL}retrieve(s, {{'id': [1]}})", "needs words, the name of a picture in braces, or a segment"),
+        ("pick_place((10 ** 400, 2), (3, 4))", "not plain finite numbers"),
+        ("print('\\x1d[\"pick_place\", []]')", "gives pick_place(pick, place, rotate_deg=0) 0 values"),
+        ("print('\\x1d[\"segment\", [1, 2]]')", "gives segment(picture='') 2 values"),
     ],
 )
 def test_a_program_that_fails_is_a_crash_and_is_not_asked_for_again(code: str, said: str, tmp_path: Path) -> None:

@@ -138,6 +138,9 @@ def test_a_program_that_fails_moves_nothing_and_its_error_goes_back(tmp_path: Pa
     [
         ("1 / 0", "crash", "ZeroDivisionError"),
         ("print('hm')", "plan", f"no program completed the task in {ROUNDS} turns"),
+        ("print('error: hm')", "plan", f"no program completed the task in {ROUNDS} turns"),
+        ("print('\\x1d[\"execute_trajectory\", []]')", "crash", "gives execute_trajectory(points) 0 values"),
+        ("print('\\x1d[\"detect_object\", [1, 2]]')", "crash", "gives detect_object(name) 2 values"),
         (f"{PICK}task_completed()", "plan", "closes on something and never opens again"),
         ("task_completed()", "", "nothing to do"),
         ("execute_trajectory([(9, 9, 0, 0)])\ntask_completed()", "plan", "the motions never close the gripper"),

@@ -121,9 +121,7 @@ class Segments:
 
     async def retrieve(self, segments: Any, query: Any) -> list[dict[str, Any]]:
         """Of these segments those that are like the query, best first."""
-        if not isinstance(segments, list) or not all(
-            isinstance(one, dict) and one.get("id") in self.kept for one in segments
-        ):
+        if not isinstance(segments, list) or not all(self._is_segment(one) for one in segments):
             raise ValueError("retrieve() needs a list of segments, as segment() returns them")
         if not segments:
             return []
@@ -141,9 +139,12 @@ class Segments:
         self.client.tell("stage", "retrieved", {"text": text, "attempt": self.attempt})
         return liked
 
+    def _is_segment(self, value: Any) -> bool:
+        return isinstance(value, dict) and isinstance(value.get("id"), str) and value["id"] in self.kept
+
     def _query(self, query: Any) -> tuple[str | Picture, str]:
         """What is looked for, as the classifier takes it, and in words."""
-        if isinstance(query, dict) and query.get("id") in self.kept:
+        if self._is_segment(query):
             view, one = self.kept[query["id"]]
             return _alone(view, one), f"like segment {query['id']}"
         if not isinstance(query, str) or not query.strip():

@@ -153,7 +153,7 @@ class TrajectoryGenerator(OpenLoop):
             facts=scene.task.facts, advice=advice,
         )  # fmt: skip
         motions: list[ToolMotion] = []
-        completed, said = False, ""
+        completed, failed, said = False, False, ""
         for number in range(1, ROUNDS + 1):
             answer = await self.ask(question, PROGRAMMER, "plan")
             program: Program = answer.value
@@ -161,11 +161,10 @@ class TrajectoryGenerator(OpenLoop):
                 run = await run_with(program.code, functions)
                 added, completed = _motions(run.calls, scene)
             except SandboxError as error:
-                said = f"error: {error}"
+                failed, said = True, f"error: {error}"
             else:
                 motions += added
-                said = run.printed or "it printed nothing"
-            failed = said.startswith("error: ")
+                failed, said = False, run.printed or "it printed nothing"
             came = said.splitlines()[0] if failed else f"{len(added)} motions{', task completed' if completed else ''}"
             self.stage("program", f"program {number} ran in the sandbox: {came}")
             if completed:

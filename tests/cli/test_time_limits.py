@@ -230,7 +230,7 @@ def test_endless_drawing(monkeypatch: pytest.MonkeyPatch, runs_folder: Path, cap
         while True:
             pass
 
-    monkeypatch.setattr(picture_store, "drawn", endless)
+    monkeypatch.setattr(picture_store, "drawn_png", endless)
     assert run(["plan", DESK, "put the red block into the blue bowl", "--max-seconds", LIMIT]) == 5
     out, err = capsys.readouterr()
     assert "the cap of 2 s is reached" in out + err

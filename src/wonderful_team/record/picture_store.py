@@ -49,7 +49,7 @@ class PictureStore:
 
     def keep_drawn(self, picture: Picture, ticks: Ticks = Ticks.PIXELS) -> str:
         """Store a picture that was sent nowhere, marks drawn; returns the hash of what was drawn."""
-        key = drawn_hash(picture, ticks)
+        key = for_record(DRAWING, drawn_hash, picture, ticks)
         if key not in self._sent:
             file = for_record(DRAWING, drawn_png, picture, ticks)
             self._write(key, self._numbered(key, picture.name, "png"), file)

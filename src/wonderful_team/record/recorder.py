@@ -206,6 +206,8 @@ class Recorder:
         self._draw(request, ticks)
 
     def _draw(self, request: Request, ticks: Ticks) -> None:
+        # What could not be drawn in time is not tried again: the rest of the record is written.
+        self._undrawn.pop(self._key_of(request), None)
         for number, part in enumerate(request.parts):
             if isinstance(part, Picture):
                 self._tell_part(request, number, {"drawn": self._store.keep_drawn(part, ticks)})

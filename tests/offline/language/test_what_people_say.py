@@ -59,8 +59,14 @@ def test_read_as_plain_words_are(text: str, plain: str) -> None:
     assert gist(understand(text)) == gist(understand(plain))
 
 
+BEYOND = "superhero_companions/"
+"""Its words are beyond the grammar, which says so."""
+
+
 @pytest.mark.parametrize("level", PHRASES)
-@pytest.mark.parametrize("task", sorted(task_names()))
+@pytest.mark.parametrize(
+    "task", sorted(name for name in task_names() if not name.startswith(("test/", "mine/", BEYOND)))
+)
 def test_sentences_round_an_instruction_change_nothing(task: str, level: int) -> None:
     scene = told(task, 0)
     assert gist(scene.read(PHRASES[level].format(text=scene.instruction))) == gist(scene.read(scene.instruction))

@@ -13,7 +13,7 @@ from wonderful_team.sims.tabletop.engine import mj
 HIGH_M = 0.1
 
 
-@wt.task("rest/stack", instruction="Put the {block} block away.")
+@wt.task("test/rest_stack", instruction="Put the {block} block away.")
 def stack(scene: wt.Scene, rng: np.random.Generator) -> None:
     low = scene.add("block", "red", at=(0.5, 0.0), yaw_rad=0.0, name="low")
     scene.add("block", "blue", at=(0.5, 0.0), yaw_rad=0.0, name="high", lifted_m=low.body.height_m + 0.001)
@@ -24,7 +24,7 @@ def stack(scene: wt.Scene, rng: np.random.Generator) -> None:
 
 def resting() -> object:
     """The stack a second later, when physics has put all of it to rest."""
-    world = registry.make_world("tabletop/rest/stack", 1)
+    world = registry.make_world("tabletop/test/rest_stack", 1)
     state = world._table._state
     for _ in range(500):
         mj.mj_step(world._table.built.model, state)

@@ -32,6 +32,8 @@ RETURNED_M = 0.02
 """So near to where it was seen a thing has returned [m]."""
 GONE_M = -1e6
 """Where points go that nothing shows any more [m]: far from every table."""
+MOSTLY = 0.5
+"""A patch of which this share or more belongs to what the plan has put there is that thing."""
 _MOST_POINTS = 4000
 """A thing is known well enough by so many points."""
 
@@ -71,6 +73,7 @@ class Stage:
         restored: It goes back to where it stood, so what was seen beside it there leaves room for it.
         put: Which points belong to things that the plan itself has put somewhere, but for the named place and what the
             plan puts there as well, shape (N,) bool.
+        support_m: What the thing stands on now, where that is not the table: points under it, shape (M, 3) [m]. They show once it is lifted.
     """
 
     motion: Motion
@@ -82,6 +85,7 @@ class Stage:
     stated: bool
     restored: bool = False
     put: Array | None = None
+    support_m: Array | None = None
 
 
 class Course:
@@ -94,7 +98,7 @@ class Course:
         self._held: tuple[str, Carried, Array, float] | None
         self._things: dict[str, Array] = {}
         # What was put somewhere and has no name that the plan knows.
-        self._nameless: list[Array] = []
+        self._nameless: list[tuple[Array, float]] = []
         self._bases: dict[str, float] = {}
         self._regions: dict[str, Any] = {}
         self._lies_at: dict[str, str] = {}
@@ -136,10 +140,18 @@ class Course:
         meant, level, stated = self._place(name, place, way, own)
         back = isinstance(place, OriginOf) and place.target == name and way.yaw_rad == 0 and self._returns(name, way)
         put = self._put("" if place is None else place.target)
-        stage = Stage(way, self._relief, own, carried, meant, level, stated, back, put)
+        stage = Stage(way, self._relief, own, carried, meant, level, stated, back, put, self._support(own, base))
         self._due = partial(self._move, name, own, base, way.start_m, way.end_m, way.yaw_rad)
         self._lies_at[name] = place.target if isinstance(place, At) else ""
         return stage
+
+    def _support(self, own: Array | None, base: float) -> Array | None:
+        """What shows under a thing once it is lifted off something that is not the table."""
+        if own is None or self._relief is None or not own.any() or base <= self._table_z_m + RAISED_M:
+            return None
+        under = self._relief.xyz_m[own].copy()
+        under[:, 2] = base
+        return under
 
     def _stated(self, place_m: Array, own: Array | None) -> Any | None:
         """What a height says that a thing is put on: what stands at the place, where the surface is not the table."""
@@ -225,7 +237,8 @@ class Course:
             return self._mask(self._things[name]), self._bases[name]
         target: GroundedTarget | None = self._grounded.get(name)
         if target is None or target.box is None:
-            return relief.patch(at_m[:2], self._table_z_m), self._table_z_m
+            patch = relief.patch(at_m[:2], self._table_z_m)
+            return patch, self._base_of(patch)
         box = target.box
         ring = max(LEAST_RING_PX, RING_SHARE * min(box.width, box.height))
         inside = relief.in_box(box)
@@ -237,6 +250,14 @@ class Course:
         base = max(float(np.quantile(lower, 0.25)), self._table_z_m) if len(lower) else min(top, self._table_z_m)
         raised = inside & (heights > base + RAISED_M * 0.75)
         return (raised if raised.any() else inside), base
+
+    def _base_of(self, patch: Array | None) -> float:
+        """The height of what a thing without a name stands on: where the plan has put it, else the table [m]."""
+        if patch is not None:
+            for indices, base in reversed(self._nameless):
+                if len(indices) and patch[indices].mean() > MOSTLY:
+                    return base
+        return self._table_z_m
 
     def _carried(self, name: str, own: Array | None, tool_m: Array, base: float) -> Carried:
         hanging = max(0.0, float(tool_m[2]) - base)
@@ -275,9 +296,9 @@ class Course:
         self._relief = Relief(points, px, relief.spacing_m)
         indices = np.flatnonzero(own)
         # A point belongs to what took it along last.
-        self._nameless = [others[~own[others]] for others in self._nameless]
+        self._nameless = [(others[~own[others]], at_m) for others, at_m in self._nameless]
         if name not in self._grounded:
-            self._nameless.append(indices)
+            self._nameless.append((indices, float(end[2])))
             return
         self._things[name] = indices
         self._bases[name] = float(end[2])
@@ -285,7 +306,7 @@ class Course:
     def _put(self, place: str) -> Array | None:
         """Which points belong to things that earlier actions have put elsewhere than at a place, shape (N,) bool."""
         moved = [indices for name, indices in self._things.items() if place not in (name, self._lies_at.get(name))]
-        moved += self._nameless
+        moved += [indices for indices, _ in self._nameless]
         return self._mask(np.concatenate(moved)) if moved else None
 
     def _mask(self, indices: Array) -> Array:

@@ -87,17 +87,20 @@ def place_checks(stage: Stage, limits: Limits) -> list[GateCheck]:
     motion = stage.motion
     if not isinstance(motion, Carry) or stage.relief is None:
         return []
-    others = np.ones(len(stage.relief.xyz_m), dtype=bool) if stage.own is None else ~stage.own
-    if stage.restored:
-        # What was seen beside it there left room for it; what the plan itself put there does not.
-        others &= np.isnan(stage.relief.px[:, 0])
-    put = stage.put if stage.put is not None else np.zeros(len(others), dtype=bool)
-    place_z_m = float(motion.end_m[2])
-    placed = _placed(motion, stage)
-    checks = free_checks(placed, place_z_m, stage.relief, others, stage.meant, stage.level, limits, put)
-    if stage.stated:
-        checks += _drop(placed, place_z_m, stage.relief, others if stage.own is None else ~stage.own)
-    return checks
+    relief = stage.relief
+    apart = np.ones(len(relief.xyz_m), dtype=bool) if stage.own is None else ~stage.own
+    put = stage.put if stage.put is not None else np.zeros(len(apart), dtype=bool)
+    if stage.support_m is not None:
+        # What it is lifted off stays there.
+        under = len(stage.support_m)
+        points, px = np.vstack([relief.xyz_m, stage.support_m]), np.vstack([relief.px, np.full((under, 2), np.nan)])
+        relief = Relief(points, px, relief.spacing_m)
+        apart, put = np.append(apart, np.ones(under, dtype=bool)), np.append(put, np.zeros(under, dtype=bool))
+    # What was seen beside its old place left room for it there; what the plan itself put there does not.
+    others = apart & np.isnan(relief.px[:, 0]) if stage.restored else apart
+    place_z_m, placed = float(motion.end_m[2]), _placed(motion, stage)
+    checks = free_checks(placed, place_z_m, relief, others, stage.meant, stage.level, limits, put)
+    return checks + (_drop(placed, place_z_m, relief, apart) if stage.stated else [])
 
 
 def still_free_checks(stage: Stage, view: View, limits: Limits) -> list[GateCheck]:

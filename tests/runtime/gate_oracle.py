@@ -62,9 +62,11 @@ def _pick_place(
     sure = [b for b in over if b.outline.buffer(-0.008).contains(Point(pick[:2]))]
     unsure = [b for b in over if b not in sure and abs(pick[2] - b.top) <= 0.025]
     held = max([*unsure, *sure], key=lambda b: b.top, default=None)
-    if held is not None and abs(pick[2] - held.top) > 0.025:
+    # Where something that was pushed lies no rule knows: it may be what is picked.
+    pushed = any(b.x > PUSHED_AWAY_M / 2 for b in blocks)
+    if held is not None and abs(pick[2] - held.top) > 0.025 and not pushed:
         found.append(f"picks at {pick[2]:.3f} m, the top is at {held.top:.3f} m{SEEN}")
-    if not over and pick[2] > 0.025 and not any(b.x > PUSHED_AWAY_M / 2 for b in blocks):
+    if not over and pick[2] > 0.025 and not pushed:
         found.append(f"picks in the air{SEEN}")
     shape = held.outline if held is not None else Point(pick[:2]).buffer(0.001)
     moved = affinity.rotate(shape, action.yaw_rad, origin=(pick[0], pick[1]), use_radians=True)

@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 
-from wonderful_team.core.geometry import Pose
-from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.values import Instruction
-from wonderful_team.errors import ConfigError
 from wonderful_team.sims.arms.cameras import SIZE_PX, lenses, sensed
 from wonderful_team.sims.arms.model import BuiltArm, build
 from wonderful_team.sims.arms.options import Asked
@@ -20,16 +17,14 @@ from wonderful_team.sims.arms.robot import Moved, Robot
 from wonderful_team.sims.arms.rows import find_arm
 from wonderful_team.sims.arms.scene import ArmScene
 from wonderful_team.sims.tabletop.appearance import PLAIN_LIGHT, Look
-from wonderful_team.sims.tabletop.drawing import open_renderer
 from wonderful_team.sims.tabletop.engine import mj
 from wonderful_team.sims.tabletop.goals import Poses, footprint_of
 from wonderful_team.sims.tabletop.model import TIMESTEP_S, Thing
-from wonderful_team.sims.tabletop.moving import put_body
 from wonderful_team.sims.tabletop.registering import TabletopTask, filled
-from wonderful_team.sims.tabletop.renderer import Drawn, Renderer
+from wonderful_team.sims.tabletop.renderer import Drawn
 from wonderful_team.sims.tabletop.rules import Rules
 from wonderful_team.sims.tabletop.seeds import generator
-from wonderful_team.sims.tabletop.table import Snapshot
+from wonderful_team.sims.tabletop.simulated_table import SimulatedTable
 
 CALIBRATION_M, CALIBRATION_RAD = (0.002, 0.004, 0.008), (0.002, 0.004, 0.008)
 """How far off planners are told that the top camera stands, along both of its axes, and how it is rolled, by tier."""
@@ -50,16 +45,16 @@ class Grip:
     held: tuple[str, ...]
 
 
-class ArmTable:
+class ArmTable(SimulatedTable):
     """Everything that a world keeps from planners.
 
     Attributes:
         things: As they stood at the start, by name.
-        start: Where they stood once everything was at rest.
         grips: Every closing of the fingers so far.
     """
 
     def __init__(self, task: TabletopTask, seed: int, asked: Asked) -> None:
+        super().__init__()
         self.task, self.seed, self.asked = task, seed, asked
         scene = task.scene(seed, made=ArmScene)
         assert isinstance(scene, ArmScene)
@@ -90,12 +85,9 @@ class ArmTable:
             self.robot.each_step = self.work.step
             self.rest()
         self._state.time = 0.0
-        self.start: Poses = self.poses()
+        self._start = self.poses()
         self.grips: list[Grip] = []
-        self._opened: Renderer | None = None
-        self._notes: tuple[str, ...] = ()
         self._looks = 0
-        self.closed = False
 
     @staticmethod
     def _lenses(seed: int, asked: Asked) -> Any:
@@ -108,26 +100,12 @@ class ArmTable:
         return found
 
     @property
-    def time_s(self) -> float:
-        """Simulated time [s]."""
-        return float(self._state.time)
+    def mover(self) -> Robot:
+        return self.robot
 
     @property
-    def notes(self) -> tuple[str, ...]:
-        """What the choice of a renderer has to say."""
-        self.renderer()
-        return self._notes
-
-    def poses(self) -> Poses:
-        """True pose of each thing now."""
-        return self._poses(self._state)
-
-    def _poses(self, state: Any) -> Poses:
-        found = {}
-        for name in self.things:
-            body = self.built.body_id(name)
-            found[name] = Pose(state.xpos[body].copy(), state.xquat[body].copy())
-        return found
+    def start(self) -> Poses:
+        return self._start
 
     def held(self) -> tuple[str, ...]:
         """Things that both fingers touch now."""
@@ -181,26 +159,6 @@ class ArmTable:
         ]
         return max(under)[1] if under else None
 
-    def put(self, name: str, position_m: Array, yaw_rad: float) -> None:
-        """Set a thing down elsewhere, upright, and let everything come to rest."""
-        put_body(self.built, self._state, name, Pose.at(position_m, yaw_rad))
-        mj.mj_forward(self.built.model, self._state)
-        self.rest()
-
-    # Pictures.
-
-    def renderer(self) -> Renderer:
-        """What draws this table, opened when it is first needed."""
-        if self.closed:
-            raise ConfigError("this world is closed; make a new one")
-        if self._opened is None:
-            self._opened, self._notes = open_renderer(self.built)
-        return self._opened
-
-    def draw(self, camera: str) -> Drawn:
-        """A picture of the table as it stands now, its depth as it is."""
-        return self.renderer().draw(self._state, camera)
-
     def look(self, camera: str) -> Drawn:
         """A picture of the table as its camera sees it: the depth sensor has its faults."""
         drawn = self.draw(camera)
@@ -209,47 +167,6 @@ class ArmTable:
         self._looks += 1
         return Drawn(drawn.rgb, sensed(drawn.depth_m, self.asked.depth, generator(self.seed, "depth", self._looks)))
 
-    def film(self, each: Callable[[], None] | None, every_s: float) -> None:
-        """Call `each` about every `every_s` of simulated time while the arm moves; None stops it."""
-        due = [self.time_s]
-
-        def watch() -> None:
-            if each is not None and self.time_s >= due[0]:
-                due[0] = self.time_s + every_s
-                each()
-
-        self.robot.watch = None if each is None else watch
-
-    def snapshot(self) -> Snapshot:
-        """Where everything stands now, kept."""
-        state = self._state
-        return Snapshot(state.qpos.copy(), state.mocap_pos.copy(), state.mocap_quat.copy())
-
-    def masks_at(self, at: Snapshot, camera: str) -> dict[str, Array]:
-        """Which pixels of a view showed each thing at an earlier instant, shape (H, W) bool by name."""
-        ids = self.renderer().bodies(self._state_at(at), camera)
-        return {name: ids == self.built.body_id(name) for name in self.things}
-
-    def poses_at(self, at: Snapshot) -> Poses:
-        """True pose of each thing at an earlier instant."""
-        return self._poses(self._state_at(at))
-
-    def _state_at(self, at: Snapshot) -> Any:
-        state = mj.MjData(self.built.model)
-        state.qpos[:], state.mocap_pos[:], state.mocap_quat[:] = at.qpos, at.mocap_pos, at.mocap_quat
-        mj.mj_kinematics(self.built.model, state)
-        mj.mj_comPos(self.built.model, state)
-        mj.mj_camlight(self.built.model, state)
-        return state
-
-    def slot_masks(self, slot: str, camera: str) -> dict[str, Array]:
-        """Instructions of these tasks have no pictures."""
-        return {}
-
-    def slot_stands(self, slot: str) -> list[tuple[Thing, Pose]]:
-        """Instructions of these tasks have no pictures."""
-        return []
-
     @cached_property
     def _instruction(self) -> Instruction:
         return Instruction(filled(self.task.instruction, self.scene.words))
@@ -257,10 +174,3 @@ class ArmTable:
     def instruction(self) -> Instruction:
         """Words with their slots filled."""
         return self._instruction
-
-    def close(self) -> None:
-        """Give the renderer back; safe to call twice."""
-        self.closed = True
-        if self._opened is not None:
-            self._opened.close()
-            self._opened = None

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
 
 from wonderful_team.core.actions import ARM, Action, Gripper, Home, MoveTo, RotateGripper, Trajectory, Vocabulary
 from wonderful_team.core.geometry.arrays import Array
-from wonderful_team.core.values import Fingers, Instruction, Limits, Observation, RobotState, StepReport, View
+from wonderful_team.core.values import Fingers, Limits, RobotState, StepReport
 from wonderful_team.errors import ConfigError
 from wonderful_team.sims.arms.model import REACH_HIGH_M, REACH_LOW_M, upright
 from wonderful_team.sims.arms.options import asked as read_options
@@ -18,8 +17,7 @@ from wonderful_team.sims.arms.robot import AWAY_M, Moved
 from wonderful_team.sims.arms.rows import ArmRow, check_ready, find_arm
 from wonderful_team.sims.arms.table import ArmTable
 from wonderful_team.sims.arms.tasks import find_arm_task
-from wonderful_team.sims.tabletop.cameras import CAMERA_NAMES
-from wonderful_team.sims.tabletop.table import Snapshot
+from wonderful_team.sims.tabletop.simulated_world import SimulatedWorld
 
 LEANS_RAD = 0.01
 LOW_M = 0.14
@@ -37,7 +35,7 @@ REASONS = {
 LOST = "the fingers have closed on nothing: what they held slipped or was knocked out"
 
 
-class ArmWorld:
+class ArmWorld(SimulatedWorld[ArmTable, ArmTruth]):
     """Implements the World protocol with an arm that really grips; time is simulated, and everything follows from the seed.
 
     Attributes:
@@ -61,46 +59,12 @@ class ArmWorld:
         self._table = ArmTable(found, seed, wanted)
         self.facts = _facts(row, self._table)
         self._stopped, self._held = False, self._table.robot.holding
-        self._seen: tuple[Snapshot, Observation] | None = None
         self.privileged = ArmTruth(self._table)
 
-    @property
-    def instruction(self) -> Instruction:
-        """Words."""
-        return self._table.instruction()
-
-    @property
-    def renderer(self) -> str:
-        """How pictures are drawn: egl, osmesa or rays."""
-        return self._table.renderer().name
-
-    @property
-    def notes(self) -> tuple[str, ...]:
-        """What a user should know of how this world runs, such as a missing OpenGL."""
-        return self._table.notes
-
-    @property
-    def time_s(self) -> float:
-        """Simulated time [s]."""
-        return self._table.time_s
-
-    def observe(self) -> Observation:
-        """Both views as they are now, the arm in them where it is; drawn again only when something moved."""
-        at = self._table.snapshot()
-        if self._seen is not None and not self._table.closed:
-            before, seen = self._seen
-            if before.same_as(at) and seen.main.time_s == self.time_s:
-                return seen
-        views = {}
-        for name in CAMERA_NAMES:
-            drawn = self._table.look(name)
-            views[name] = View(name, name, self.time_s, drawn.rgb, drawn.depth_m, self._table.built.lenses[name].camera)
+    def _robot(self) -> RobotState:
         robot = self._table.robot
         share = min(1.0, robot.opening_m / self._table.built.row.opening_m)
-        observation = Observation(views, RobotState(robot.tool_m.copy(), share, robot.holding))
-        self._seen = at, observation
-        self.privileged.saw(observation)
-        return observation
+        return RobotState(robot.tool_m.copy(), share, robot.holding)
 
     def execute(self, action: Action) -> StepReport:
         """Run one action to its end under physics.
@@ -201,23 +165,10 @@ class ArmWorld:
                     return f"{'xyz'[axis]} = {value:.3f} m is out of reach [{low}, {high}] m"
         return ""
 
-    def film(self, each: Callable[[Mapping[str, Array]], None] | None, every_s: float = 0.1) -> None:
-        """Hand pictures of all cameras to `each` while an action runs; for people: no planner is shown them."""
-
-        def picture() -> None:
-            if each is not None:
-                each({name: self._table.draw(name).rgb for name in ("front", "top")})
-
-        self._table.film(None if each is None else picture, every_s)
-
     def stop(self) -> None:
         """The arm stays where it is from the next command on, and what it holds stays held, until a new world is made."""
         self._stopped = True
         self._table.robot.halt()
-
-    def close(self) -> None:
-        """Give everything back; safe to call twice."""
-        self._table.close()
 
 
 def _facts(row: ArmRow, table: ArmTable) -> str:

@@ -23,7 +23,7 @@ from wonderful_team.sims.tabletop import prints
 from wonderful_team.sims.tabletop.goals import footprint_of
 from wonderful_team.sims.tabletop.model import Thing
 from wonderful_team.sims.tabletop.oracle import grasp_point
-from wonderful_team.sims.tabletop.table import Snapshot
+from wonderful_team.sims.tabletop.simulated_table import Snapshot
 
 LOOKS = 24
 """How many different looks are kept; a task of the suite has at most 17 actions."""

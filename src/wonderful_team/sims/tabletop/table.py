@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping
 from functools import cached_property
 from typing import Any
-
-import numpy as np
 
 from wonderful_team.core.actions import PickPlace, Push
 from wonderful_team.core.geometry import Pose
@@ -15,39 +12,21 @@ from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.values import Instruction
 from wonderful_team.errors import ConfigError
 from wonderful_team.sims.tabletop.appearance import look_of
-from wonderful_team.sims.tabletop.drawing import open_renderer
 from wonderful_team.sims.tabletop.engine import mj
 from wonderful_team.sims.tabletop.goals import Poses
 from wonderful_team.sims.tabletop.judging import Happened
 from wonderful_team.sims.tabletop.model import Thing, ToolName, build
-from wonderful_team.sims.tabletop.moving import put_body, settle
+from wonderful_team.sims.tabletop.moving import settle
 from wonderful_team.sims.tabletop.options import Tiers
 from wonderful_team.sims.tabletop.registering import TabletopTask, filled
-from wonderful_team.sims.tabletop.renderer import Drawn, Renderer
 from wonderful_team.sims.tabletop.rules import Rules
 from wonderful_team.sims.tabletop.showing import Studio
+from wonderful_team.sims.tabletop.simulated_table import SimulatedTable
 from wonderful_team.sims.tabletop.spatula import Spatula
 from wonderful_team.sims.tabletop.suction import Picked, Suction
 
 
-@dataclass(frozen=True, eq=False)
-class Snapshot:
-    """Where every body stood at one instant: enough to draw it again."""
-
-    qpos: Array
-    mocap_pos: Array
-    mocap_quat: Array
-
-    def same_as(self, other: Snapshot) -> bool:
-        """Whether nothing at all moved between the two."""
-        return (
-            np.array_equal(self.qpos, other.qpos)
-            and np.array_equal(self.mocap_pos, other.mocap_pos)
-            and np.array_equal(self.mocap_quat, other.mocap_quat)
-        )
-
-
-class Table:
+class Table(SimulatedTable):
     """Everything that a world keeps from planners.
 
     Attributes:
@@ -66,6 +45,7 @@ class Table:
         partition: str | None = None,
         tiers: Tiers | None = None,
     ) -> None:
+        super().__init__(renderer)
         self.task, self.seed = task, seed
         tiers = tiers or Tiers()
         self.scene = scene = task.scene(seed, recolour, partition, tiers)
@@ -93,34 +73,20 @@ class Table:
         settle(self.built, self._state)
         self._state.time = 0.0
         self._start_qpos = self._state.qpos.copy()
-        self._size_px, self._wanted_renderer = size_px, renderer
-        self._opened: Renderer | None = None
-        self._notes: tuple[str, ...] = ()
-        self.closed = False
+        self._size_px = size_px
         poses = self.poses()
         self.history: list[Happened] = [Happened(poses, self.rules.start(poses, self.things))]
 
     @property
-    def time_s(self) -> float:
-        """Simulated time [s]."""
-        return float(self._state.time)
+    def mover(self) -> Suction | Spatula:
+        return self.tool
 
     @property
-    def notes(self) -> tuple[str, ...]:
-        """What the choice of a renderer has to say."""
-        self.renderer()
-        return self._notes
+    def start(self) -> Poses:
+        return self.history[0].poses
 
-    def poses(self) -> Poses:
-        """True pose of each thing now."""
-        return self._poses(self._state)
-
-    def _poses(self, state: Any) -> Poses:
-        found = {}
-        for name in self.things:
-            body = self.built.body_id(name)
-            found[name] = Pose(state.xpos[body].copy(), state.xquat[body].copy())
-        return found
+    def rest(self) -> None:
+        settle(self.built, self._state)
 
     def run(self, action: PickPlace | Push) -> Mapping[str, Any]:
         """Run one action under physics, judge what came of it, and tell what the robot measured.
@@ -144,60 +110,9 @@ class Table:
         self.history.append(Happened(poses, progress, action, picked))
         return measured
 
-    def put(self, name: str, position_m: Array, yaw_rad: float) -> None:
-        """Set a thing down elsewhere, upright, and let everything come to rest."""
-        put_body(self.built, self._state, name, Pose.at(position_m, yaw_rad))
-        mj.mj_forward(self.built.model, self._state)
-        settle(self.built, self._state)
-
-    def renderer(self) -> Renderer:
-        """What draws this table, opened when it is first needed."""
-        if self.closed:
-            raise ConfigError("this world is closed; make a new one")
-        if self._opened is None:
-            self._opened, self._notes = open_renderer(self.built, self._wanted_renderer)
-        return self._opened
-
-    def draw(self, camera: str) -> Drawn:
-        """A picture of the table as it stands now."""
-        return self.renderer().draw(self._state, camera)
-
-    def film(self, each: Callable[[], None] | None, every_s: float) -> None:
-        """Call `each` about every `every_s` of simulated time while the tool moves; None stops it."""
-        due = [self.time_s]
-
-        def watch() -> None:
-            if each is not None and self.time_s >= due[0]:
-                due[0] = self.time_s + every_s
-                each()
-
-        self.tool.watch = None if each is None else watch
-
     def body_picture(self, camera: str) -> Array:
         """Id of the body that each pixel of a view shows, shape (H, W)."""
         return self.renderer().bodies(self._state, camera)
-
-    def snapshot(self) -> Snapshot:
-        """Where everything stands now, kept."""
-        state = self._state
-        return Snapshot(state.qpos.copy(), state.mocap_pos.copy(), state.mocap_quat.copy())
-
-    def masks_at(self, at: Snapshot, camera: str) -> dict[str, Array]:
-        """Which pixels of a view showed each thing at an earlier instant, shape (H, W) bool by name."""
-        ids = self.renderer().bodies(self._state_at(at), camera)
-        return {name: ids == self.built.body_id(name) for name in self.things}
-
-    def poses_at(self, at: Snapshot) -> Poses:
-        """True pose of each thing at an earlier instant."""
-        return self._poses(self._state_at(at))
-
-    def _state_at(self, at: Snapshot) -> Any:
-        state = mj.MjData(self.built.model)
-        state.qpos[:], state.mocap_pos[:], state.mocap_quat[:] = at.qpos, at.mocap_pos, at.mocap_quat
-        mj.mj_kinematics(self.built.model, state)
-        mj.mj_comPos(self.built.model, state)
-        mj.mj_camlight(self.built.model, state)
-        return state
 
     def slot_masks(self, slot: str, camera: str) -> dict[str, Array]:
         """Which pixels of an instruction's picture show each thing or prop, shape (H, W) bool by name."""
@@ -219,10 +134,3 @@ class Table:
     def instruction(self) -> Instruction:
         """Words with their slots filled, and a picture for every picture slot; drawn once."""
         return self._instruction
-
-    def close(self) -> None:
-        """Give the renderer back; safe to call twice."""
-        self.closed = True
-        if self._opened is not None:
-            self._opened.close()
-            self._opened = None

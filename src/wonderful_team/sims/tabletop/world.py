@@ -3,27 +3,25 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
-from functools import cached_property
 
 from wonderful_team.core.actions import Action, PickPlace, Push, Vocabulary
-from wonderful_team.core.geometry.arrays import Array
-from wonderful_team.core.values import Instruction, Limits, Observation, RobotState, StepReport, View
+from wonderful_team.core.values import Limits, RobotState, StepReport
 from wonderful_team.errors import ConfigError
 from wonderful_team.sims.facts import blade_facts, suction_facts
-from wonderful_team.sims.tabletop.cameras import CAMERA_NAMES, TABLE_HIGH_M, TABLE_LOW_M
+from wonderful_team.sims.tabletop.cameras import TABLE_HIGH_M, TABLE_LOW_M
 from wonderful_team.sims.tabletop.model import BLADE_HALF_M
 from wonderful_team.sims.tabletop.options import Tiers, asked
 from wonderful_team.sims.tabletop.privileged import TabletopTruth
 from wonderful_team.sims.tabletop.registering import find_task
+from wonderful_team.sims.tabletop.simulated_world import SimulatedWorld
 from wonderful_team.sims.tabletop.spatula import SHORTEST_M
 from wonderful_team.sims.tabletop.suction import CUP_RADIUS_M
-from wonderful_team.sims.tabletop.table import Snapshot, Table
+from wonderful_team.sims.tabletop.table import Table
 
 MOST_TURN_RAD = 2 * math.pi + 1e-6
 
 
-class TabletopWorld:
+class TabletopWorld(SimulatedWorld[Table, TabletopTruth]):
     """Implements the World protocol; time is simulated, and everything follows from the seed.
 
     Attributes:
@@ -63,46 +61,11 @@ class TabletopWorld:
             found, seed, wanted.size_px, recolour=recolour, renderer=renderer, partition=partition, tiers=wanted.tiers
         )
         self._stopped = False
-        self._seen: tuple[Snapshot, Observation] | None = None
         self.privileged = TabletopTruth(self._table)
 
-    @cached_property
-    def instruction(self) -> Instruction:
-        """Words and pictures; the pictures are drawn when they are first asked for."""
-        return self._table.instruction()
-
-    @property
-    def renderer(self) -> str:
-        """How pictures are drawn: egl, osmesa or rays."""
-        return self._table.renderer().name
-
-    @property
-    def notes(self) -> tuple[str, ...]:
-        """What a user should know of how this world runs, such as a missing OpenGL."""
-        return self._table.notes
-
-    @property
-    def time_s(self) -> float:
-        """Simulated time [s]."""
-        return self._table.time_s
-
-    def observe(self) -> Observation:
-        """Both views of the table as it stands now, the robot out of the way; drawn again only when something moved."""
-        at = self._table.snapshot()
-        if self._seen is not None and not self._table.closed:
-            before, seen = self._seen
-            if before.same_as(at) and seen.main.time_s == self.time_s:
-                return seen
-        views = {}
-        for name in CAMERA_NAMES:
-            drawn = self._table.draw(name)
-            camera = self._table.built.lenses[name].camera
-            views[name] = View(name, name, self.time_s, drawn.rgb, drawn.depth_m, camera)
+    def _robot(self) -> RobotState:
         tool = self._table.tool
-        observation = Observation(views, RobotState(tool.tool_m.copy(), None, tool.holding))
-        self.privileged.saw(observation)
-        self._seen = (at, observation)
-        return observation
+        return RobotState(tool.tool_m.copy(), None, tool.holding)
 
     def execute(self, action: Action) -> StepReport:
         """Run one action.
@@ -119,22 +82,9 @@ class TabletopWorld:
             return StepReport(action, False, {}, fault)
         return StepReport(action, True, self._table.run(action))
 
-    def film(self, each: Callable[[Mapping[str, Array]], None] | None, every_s: float = 0.1) -> None:
-        """Hand pictures of all cameras to `each` while an action runs; for people: no planner is shown them."""
-
-        def picture() -> None:
-            if each is not None:
-                each({name: self._table.draw(name).rgb for name in CAMERA_NAMES})
-
-        self._table.film(None if each is None else picture, every_s)
-
     def stop(self) -> None:
         """Nothing moves any more until a new world is made."""
         self._stopped = True
-
-    def close(self) -> None:
-        """Give everything back; safe to call twice."""
-        self._table.close()
 
 
 def _out_of_reach(action: PickPlace | Push) -> str:

@@ -1,0 +1,176 @@
+"""What every table in simulated time has, whatever moves things on it: poses, pictures, a renderer, earlier instants."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+import numpy as np
+
+from wonderful_team.core.geometry import Pose
+from wonderful_team.core.geometry.arrays import Array
+from wonderful_team.core.values import Instruction
+from wonderful_team.errors import ConfigError
+from wonderful_team.sims.tabletop.drawing import open_renderer
+from wonderful_team.sims.tabletop.engine import mj
+from wonderful_team.sims.tabletop.goals import Poses
+from wonderful_team.sims.tabletop.model import BuiltModel, Thing
+from wonderful_team.sims.tabletop.moving import put_body
+from wonderful_team.sims.tabletop.registering import TabletopTask
+from wonderful_team.sims.tabletop.renderer import Drawn, Renderer
+
+
+@dataclass(frozen=True, eq=False)
+class Snapshot:
+    """Where every body stood at one instant: enough to draw it again."""
+
+    qpos: Array
+    mocap_pos: Array
+    mocap_quat: Array
+
+    def same_as(self, other: Snapshot) -> bool:
+        """Whether nothing at all moved between the two."""
+        return (
+            np.array_equal(self.qpos, other.qpos)
+            and np.array_equal(self.mocap_pos, other.mocap_pos)
+            and np.array_equal(self.mocap_quat, other.mocap_quat)
+        )
+
+
+class Mover(Protocol):
+    """What moves things: a tool or an arm. `watch` is called again and again while it does."""
+
+    watch: Callable[[], None] | None
+
+
+class SimulatedTable(ABC):
+    """A MuJoCo state and its pictures.
+
+    Attributes:
+        things: As they stood at the start, by name.
+        built: The compiled model.
+    """
+
+    task: TabletopTask
+    seed: int
+    things: Mapping[str, Thing]
+    built: BuiltModel
+    _state: Any
+
+    def __init__(self, renderer: str | None = None) -> None:
+        self._wanted_renderer = renderer
+        self._opened: Renderer | None = None
+        self._notes: tuple[str, ...] = ()
+        self.closed = False
+
+    @property
+    @abstractmethod
+    def mover(self) -> Mover:
+        """What moves things here."""
+
+    @property
+    @abstractmethod
+    def start(self) -> Poses:
+        """Where things stood once everything was at rest."""
+
+    @abstractmethod
+    def rest(self) -> None:
+        """Let time pass until everything lies still."""
+
+    @abstractmethod
+    def instruction(self) -> Instruction:
+        """What is asked; made once."""
+
+    @property
+    def time_s(self) -> float:
+        """Simulated time [s]."""
+        return float(self._state.time)
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What the choice of a renderer has to say."""
+        self.renderer()
+        return self._notes
+
+    def poses(self) -> Poses:
+        """True pose of each thing now."""
+        return self._poses(self._state)
+
+    def _poses(self, state: Any) -> Poses:
+        found = {}
+        for name in self.things:
+            body = self.built.body_id(name)
+            found[name] = Pose(state.xpos[body].copy(), state.xquat[body].copy())
+        return found
+
+    def put(self, name: str, position_m: Array, yaw_rad: float) -> None:
+        """Set a thing down elsewhere, upright, and let everything come to rest."""
+        put_body(self.built, self._state, name, Pose.at(position_m, yaw_rad))
+        mj.mj_forward(self.built.model, self._state)
+        self.rest()
+
+    def renderer(self) -> Renderer:
+        """What draws this table, opened when it is first needed."""
+        if self.closed:
+            raise ConfigError("this world is closed; make a new one")
+        if self._opened is None:
+            self._opened, self._notes = open_renderer(self.built, self._wanted_renderer)
+        return self._opened
+
+    def draw(self, camera: str) -> Drawn:
+        """A picture of the table as it stands now."""
+        return self.renderer().draw(self._state, camera)
+
+    def look(self, camera: str) -> Drawn:
+        """The same as its camera sees it."""
+        return self.draw(camera)
+
+    def film(self, each: Callable[[], None] | None, every_s: float) -> None:
+        """Call `each` about every `every_s` of simulated time while something is moved; None stops it."""
+        due = [self.time_s]
+
+        def watch() -> None:
+            if each is not None and self.time_s >= due[0]:
+                due[0] = self.time_s + every_s
+                each()
+
+        self.mover.watch = None if each is None else watch
+
+    def snapshot(self) -> Snapshot:
+        """Where everything stands now, kept."""
+        state = self._state
+        return Snapshot(state.qpos.copy(), state.mocap_pos.copy(), state.mocap_quat.copy())
+
+    def masks_at(self, at: Snapshot, camera: str) -> dict[str, Array]:
+        """Which pixels of a view showed each thing at an earlier instant, shape (H, W) bool by name."""
+        ids = self.renderer().bodies(self._state_at(at), camera)
+        return {name: ids == self.built.body_id(name) for name in self.things}
+
+    def poses_at(self, at: Snapshot) -> Poses:
+        """True pose of each thing at an earlier instant."""
+        return self._poses(self._state_at(at))
+
+    def _state_at(self, at: Snapshot) -> Any:
+        state = mj.MjData(self.built.model)
+        state.qpos[:], state.mocap_pos[:], state.mocap_quat[:] = at.qpos, at.mocap_pos, at.mocap_quat
+        mj.mj_kinematics(self.built.model, state)
+        mj.mj_comPos(self.built.model, state)
+        mj.mj_camlight(self.built.model, state)
+        return state
+
+    def slot_masks(self, slot: str, camera: str) -> dict[str, Array]:
+        """Which pixels of an instruction's picture show each thing or prop, shape (H, W) bool by name; {} without pictures."""
+        return {}
+
+    def slot_stands(self, slot: str) -> list[tuple[Thing, Pose]]:
+        """What an instruction's picture shows, props too, and where it stands in it; [] without pictures."""
+        return []
+
+    def close(self) -> None:
+        """Give the renderer back; safe to call twice."""
+        self.closed = True
+        if self._opened is not None:
+            self._opened.close()
+            self._opened = None

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import replace
 from typing import Any
 
@@ -43,12 +42,6 @@ from wonderful_team.simulated.model import ANSWERS
 from .tables import Set, set_table, show_views
 
 THING, BASE = "pink letter R", "yellow swirl frame"
-
-
-@pytest.fixture(scope="module")
-def table() -> Iterator[Set]:
-    with set_table("visual_manipulation", 500) as made:
-        yield made
 
 
 @pytest.fixture

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 from dataclasses import replace
 from typing import Any
 
 import pytest
 
 from tests.simulated.image_corruption import CHANGES, ImageCorruption
-from tests.simulated.tables import Set, set_table
+from tests.simulated.tables import Set
 from wonderful_team.contracts import (
     ChooseMotion,
     DescribePictures,
@@ -25,12 +24,6 @@ from wonderful_team.contracts import (
 from wonderful_team.core.pictures import Candidates, Grid
 from wonderful_team.errors import NotFoundError, NotUnderstoodError, UnsupportedQuestion
 from wonderful_team.simulated import PROFILES, SimulatedModel
-
-
-@pytest.fixture(scope="module")
-def table() -> Iterator[Set]:
-    with set_table("visual_manipulation", 500) as made:
-        yield made
 
 
 def erring(table: Set, **errors: Any) -> SimulatedModel:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import replace
 from typing import Any
 
@@ -10,7 +9,7 @@ import numpy as np
 import pytest
 
 from tests.simulated.image_corruption import CHANGES, ImageCorruption
-from tests.simulated.tables import Set, set_table
+from tests.simulated.tables import Set
 from wonderful_team.contracts import (
     ListedObject,
     ListObjects,
@@ -22,12 +21,6 @@ from wonderful_team.contracts import (
 from wonderful_team.core.pictures import Candidates
 from wonderful_team.errors import NotUnderstoodError
 from wonderful_team.simulated import PROFILES, SimulatedModel
-
-
-@pytest.fixture(scope="module")
-def table() -> Iterator[Set]:
-    with set_table("visual_manipulation", 500) as made:
-        yield made
 
 
 def blind(table: Set) -> ImageCorruption:

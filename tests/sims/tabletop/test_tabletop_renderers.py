@@ -63,7 +63,7 @@ def test_an_unknown_renderer_is_refused() -> None:
 
 
 def test_nothing_is_drawn_unless_something_looks(monkeypatch: pytest.MonkeyPatch) -> None:
-    from wonderful_team.sims.tabletop import table
+    from wonderful_team.sims.tabletop import simulated_table as table
 
     opened = []
     real = table.open_renderer

@@ -41,11 +41,7 @@ class PinholeLens(Lens):
     def camera(self) -> Camera:
         """The same camera for planners, as far as its calibration goes: base frame to pixels and depth."""
         width, height = self.size_px
-        right, down, position = self.right, self.down, self.position_m
-        if self.wrong_rad or any(self.wrong_m):
-            position = position + self.wrong_m[0] * right + self.wrong_m[1] * down
-            turn, across = math.cos(self.wrong_rad), math.sin(self.wrong_rad)
-            right, down = turn * right + across * down, turn * down - across * right
+        right, down, position = self.told()
         K = np.array([[self.focal_px, 0.0, width / 2], [0.0, self.focal_px, height / 2], [0.0, 0.0, 1.0]])
         T = np.eye(4)
         T[:3, :3], T[:3, 3] = np.column_stack([right, down, self.forward]), position

@@ -19,7 +19,6 @@ from wonderful_team.sims.tabletop.model import (
     FLOOR_RGB,
     TABLE_GROUP,
     TABLE_RGB,
-    TIMESTEP_S,
     BuiltModel,
     Thing,
     add_lights,
@@ -28,6 +27,7 @@ from wonderful_team.sims.tabletop.model import (
     add_thing,
     camera_quaternion,
     covers_of,
+    set_physics,
 )
 
 TABLE_M = (0.16, 0.82, 0.52)
@@ -78,7 +78,7 @@ def build(
         decorate: See `BuiltModel`.
     """
     spec = mj.MjSpec()
-    _set_options(spec, size_px)
+    set_physics(spec, size_px, IMPRATIO)
     _add_surroundings(spec, look)
     for name in sorted({thing.texture for thing in things}):
         add_texture(spec, name)
@@ -98,20 +98,6 @@ def build(
     return BuiltArm(
         model, tuple(things), covers_of(model, things), look, "gripper", decorate, row=row, bodies=frozenset(root)
     )
-
-
-def _set_options(spec: Any, size_px: tuple[int, int]) -> None:
-    spec.option.timestep = TIMESTEP_S
-    spec.option.integrator = mj.mjtIntegrator.mjINT_IMPLICITFAST
-    spec.option.cone = mj.mjtCone.mjCONE_ELLIPTIC
-    spec.option.impratio = IMPRATIO
-    spec.visual.global_.offwidth, spec.visual.global_.offheight = size_px
-    spec.visual.quality.offsamples = 0
-    spec.visual.quality.shadowsize = 0
-    spec.visual.headlight.active = 0
-    spec.visual.map.znear, spec.visual.map.zfar = 0.1, 4.0
-    spec.stat.extent = 1.0
-    spec.stat.center = (0.5, 0.0, 0.0)
 
 
 def _add_surroundings(spec: Any, look: Look) -> None:

@@ -52,15 +52,20 @@ class Lens:
     def seen_height_m(self) -> float:
         return self.size_px[1] / self.scale_px_m
 
-    @property
-    def camera(self) -> Camera:
-        """The same camera for planners, as far as its calibration goes: base frame to pixels and depth."""
-        width, height = self.size_px
+    def told(self) -> tuple[Array, Array, Array]:
+        """Right, down and position that planners are told, as far as the calibration goes, shape (3,) each."""
         right, down, position = self.right, self.down, self.position_m
         if self.wrong_rad or any(self.wrong_m):
             position = position + self.wrong_m[0] * right + self.wrong_m[1] * down
             turn, across = math.cos(self.wrong_rad), math.sin(self.wrong_rad)
             right, down = turn * right + across * down, turn * down - across * right
+        return right, down, position
+
+    @property
+    def camera(self) -> Camera:
+        """The same camera for planners, as far as its calibration goes: base frame to pixels and depth."""
+        width, height = self.size_px
+        right, down, position = self.told()
         rows = []
         for axis, offset, scale in (
             (right, width / 2, self.scale_px_m),

@@ -127,15 +127,21 @@ def build(
 
 
 def _set_options(spec: Any, size_px: tuple[int, int], look: Look) -> None:
+    set_physics(spec, size_px, impratio=5.0)
+    # What rests is left out of the computation until something touches it.
+    spec.option.enableflags |= int(mj.mjtEnableBit.mjENBL_SLEEP)
+    spec.visual.quality.offsamples = 4
+    spec.visual.quality.shadowsize = SHADOW_PX if look.light.shadows else 0
+
+
+def set_physics(spec: Any, size_px: tuple[int, int], impratio: float) -> None:
+    """What holds for every table: time step, friction, and pictures without smoothing or shadows unless asked for."""
     spec.option.timestep = TIMESTEP_S
     spec.option.integrator = mj.mjtIntegrator.mjINT_IMPLICITFAST
     spec.option.cone = mj.mjtCone.mjCONE_ELLIPTIC
-    spec.option.impratio = 5.0
-    # What rests is left out of the computation until something touches it.
-    spec.option.enableflags |= int(mj.mjtEnableBit.mjENBL_SLEEP)
+    spec.option.impratio = impratio
     spec.visual.global_.offwidth, spec.visual.global_.offheight = size_px
-    spec.visual.quality.offsamples = 4
-    spec.visual.quality.shadowsize = SHADOW_PX if look.light.shadows else 0
+    spec.visual.quality.offsamples = spec.visual.quality.shadowsize = 0
     spec.visual.headlight.active = 0
     spec.visual.map.znear, spec.visual.map.zfar = 0.1, 4.0
     spec.stat.extent = 1.0

@@ -12,6 +12,7 @@ import pytest
 from wonderful_team import registry
 from wonderful_team.api.known_suites import known_suites
 from wonderful_team.cli.app import run
+from wonderful_team.errors import ConfigError
 from wonderful_team.evals.paper_tables import PAPER_TABLES, filled
 from wonderful_team.evals.summary import Summary
 from wonderful_team.evals.trials import Condition, Row, TrialRow, TrialSpec
@@ -122,3 +123,52 @@ def test_an_estimate_runs_nothing(capsys: pytest.CaptureFixture[str], tmp_path: 
 def test_an_unknown_table_is_told_the_known_ones(capsys: pytest.CaptureFixture[str]) -> None:
     assert run(["paper", "tabel"]) == 2
     assert "vima17" in capsys.readouterr().err
+
+
+def test_rivals_stand_beside_the_papers_figures_of_them(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    words = ("--model", "simulated:perfect", "--seeds", "1000:1001", "--no-control", "all", "--jobs", "1")
+    found = told(capsys, "training-based", *words, "--method", "instruct2act", "--folder", str(tmp_path))
+    table = found["tables"]["training-based"]
+    lines = {line[0]: dict(zip(table["head"], line, strict=True)) for line in table["lines"]}
+    assert lines["Instruct2Act"]["ours: as printed"].endswith("(n = 1 a task)")
+    assert lines["Instruct2Act"]["paper: as printed"].startswith("79.67 %")
+    assert lines["team"]["ours: as printed"] == "not run yet"
+
+
+def test_a_method_that_the_table_lacks_is_told_those_that_it_has(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    assert run(["paper", "vima17", "--method", "pivot", "--folder", str(tmp_path)]) == 2
+    said = capsys.readouterr().err
+    assert "pivot" in said
+    assert "nlap:privileged" in said
+
+
+def test_of_all_tables_those_whose_world_is_missing_are_left_out_and_say_why(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def refuse(names: Any) -> None:
+        if any(name.startswith("arms/") for name in names):
+            raise ConfigError("the arms are not installed: get them so")
+
+    monkeypatch.setattr(registry, "check_ready", refuse)
+    for name in [name for name in PAPER_TABLES if name not in ("toy", "real-robot")]:
+        monkeypatch.delitem(PAPER_TABLES, name)
+    words = ("--model", "simulated:perfect", "--seeds", "1000:1001", "--no-control", "all", "--jobs", "1")
+    assert run(["paper", "all", *words, "--method", "team:paper", "--folder", str(tmp_path)]) == 0
+    said = capsys.readouterr().out
+    assert "Not run: the arms are not installed: get them so" in said
+    assert "100 % (n = 1;" in said
+
+
+def test_variations_of_an_implicit_goal_are_counted_together() -> None:
+    team = Condition("team", "m")
+    results = [("all_match", "success"), ("both", "failure"), ("no_area", "success"), ("misplaced", "success")]
+    rows = [
+        Row(TrialSpec(f"tabletop/fruit_placement/{task}", 1000, team), TrialRow(outcome, None))
+        for task, outcome in results
+    ]
+    head, lines = filled(PAPER_TABLES["real-robot"], Summary(tuple(rows), (), (team,), ()))
+    line = dict(zip(head, next(line for line in lines if line[0] == "fruit_placement"), strict=True))
+    assert line["ours: team"].startswith("75 % (n = 4;")
+    assert line["paper: team:paper"].startswith("100 % (n = 8;")

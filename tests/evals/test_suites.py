@@ -45,6 +45,15 @@ def test_suites_grow_with_the_registered_tasks_and_say_what_is_missing() -> None
     assert all_suites([*KNOWN, *goals])["implicit"].tasks == (*KNOWN[2:], *goals)
 
 
+def test_spatial_planning_is_run_closed_loop() -> None:
+    known = [*KNOWN, "arms/star", "arms/wipe", "arms/block_in_bowl"]
+    suites = all_suites(known)
+    assert suites["spatial"].tasks == ("arms/star", "arms/wipe")
+    assert (suites["spatial"].protocol.runs, suites["spatial"].protocol.replans) == (5, 3)
+    alone, other = resolve(["arms/star", "arms/block_in_bowl"], known, suites, _is_own)
+    assert (alone.protocol.replans, other.protocol.replans) == (3, 0)
+
+
 def test_the_papers_protocols() -> None:
     suites = all_suites(KNOWN)
     assert default_seeds(suites["vima17"].protocol) == tuple(range(1000, 1010))

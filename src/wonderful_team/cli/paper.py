@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shlex
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -23,18 +24,24 @@ OWN = ("suites", "methods", "store", "open_page", "photo_set", "set_format")
 SHARED = [option for option in bench.command.params if option.name not in OWN]
 
 
-def _command(table: str | None, folder: Path, open_page: bool, **options: Any) -> int:
+def _command(table: str | None, folder: Path, open_page: bool, only: tuple[str, ...], **options: Any) -> int:
     """List the paper's tables; or run what TABLE needs (what ended stays, and the same command resumes) and print ours beside the paper's."""
     from wonderful_team.errors import UnknownNameError
     from wonderful_team.evals.paper_tables import PAPER_TABLES
+    from wonderful_team.evals.plan import split_names
 
     if table is None:
         return _list(options["as_json"])
     if table != "all" and table not in PAPER_TABLES:
         raise UnknownNameError("table of the paper", table, ["all", *PAPER_TABLES])
     names = [table] if table != "all" else [name for name, one in PAPER_TABLES.items() if one.suites]
+    named = split_names(only)
+    for method in named:
+        known = dict.fromkeys(other for name in names for other in PAPER_TABLES[name].methods)
+        if method not in known:
+            raise UnknownNameError(f"method of {table}", method, known)
     with limited(options["max_seconds"]):
-        return _run(names, folder, open_page, options)
+        return _run(names, folder, open_page, {**options, "only": named})
 
 
 def _list(as_json: bool) -> int:
@@ -68,7 +75,10 @@ def _run(names: list[str], folder: Path, open_page: bool, options: dict[str, Any
     for name in names:
         table = PAPER_TABLES[name]
         summary, report = None, None
-        if table.suites and not stopped:
+        not_run = _missing(table, options["only"]) if len(names) > 1 else ""
+        if not_run:
+            click.echo(f"{name}: not run: {not_run}", err=True)
+        elif table.suites and not stopped:
             study = Study.from_options(**bench.by_new_names(_options(table, options)), store=store, command=words)
             if options["estimate"]:
                 code = bench.tell_estimate("paper", study, options)
@@ -77,7 +87,7 @@ def _run(names: list[str], folder: Path, open_page: bool, options: dict[str, Any
             ended, code = bench.run_study(study, options)
             summary, stopped = study.summary(), ended.why
             report = study.report(store.with_suffix(".html"))
-        parts.append(Part(name, table, summary, report))
+        parts.append(Part(name, table, summary, report, not_run))
     if options["estimate"] and not parts:
         return code
     written = write_paper(parts, folder / f"{names[0] if len(names) == 1 else 'all'}-table.html", command=words)
@@ -95,6 +105,24 @@ def _run(names: list[str], folder: Path, open_page: bool, options: dict[str, Any
     return finish("paper", text="\n".join(lines), result=result, as_json=options["as_json"], code=code, last_line=last)
 
 
+def _missing(table: PaperTable, only: Sequence[str]) -> str:
+    """Why a table of several is left out: its worlds cannot be started here, or it has none of the methods asked for; "" else."""
+    from wonderful_team import registry
+    from wonderful_team.api.known_suites import known_suites
+    from wonderful_team.errors import ConfigError
+
+    if only and not set(only) & set(table.methods):
+        return f"it has none of {', '.join(only)}"
+    suites = known_suites()
+    try:
+        registry.check_ready(
+            task for name in table.suites for task in (suites[name].tasks if name in suites else (name,))
+        )
+    except ConfigError as error:
+        return str(error)
+    return ""
+
+
 def _options(table: PaperTable, options: dict[str, Any]) -> dict[str, Any]:
     """What `bench` would be asked."""
     from wonderful_team.evals.trials import DEVELOPMENT_BELOW
@@ -102,7 +130,8 @@ def _options(table: PaperTable, options: dict[str, Any]) -> dict[str, Any]:
     seeds = options["seeds"]
     if seeds is None and table.runs is not None:
         seeds = f"{DEVELOPMENT_BELOW}:{DEVELOPMENT_BELOW + table.runs}"
-    return {**options, "suites": table.suites, "methods": table.methods, "seeds": seeds}
+    methods = [name for name in table.methods if name in options["only"]] or table.methods
+    return {**options, "suites": table.suites, "methods": methods, "seeds": seeds}
 
 
 def _told(table: PaperTable, summary: Summary | None) -> dict[str, Any]:
@@ -130,6 +159,10 @@ command = click.Command(
         click.Option(
             ["--folder"], type=PATH, default=Path("paper"), show_default=True, metavar="DIR",
             help="Where trials are kept and tables are written.",
+        ),
+        click.Option(
+            ["--method", "only"], multiple=True, metavar="A,B",
+            help="Only these of the table's methods, such as the team without its rivals. [default: all]",
         ),
         *SHARED,
         click.Option(["--open", "open_page"], is_flag=True, help="Open the page when done."),

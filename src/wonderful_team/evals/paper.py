@@ -65,8 +65,9 @@ def paper_figure(task: str, method: str) -> PaperFigure | None:
         return None
     table, key = ("settings", name) if column.startswith("s") else ("vima17", name)
     folder = name.partition("/")[0]
-    if folder in published()["implicit"]["success_percent"]:
-        table, key = "implicit", folder
+    for real_robot in ("implicit", "spatial"):
+        if folder in published()[real_robot]["success_percent"]:
+            table, key = real_robot, folder
     part = published()[table]
     percent = part["success_percent"].get(key, {}).get(column)
     if percent is None:

@@ -24,6 +24,8 @@ IMPLICIT_GOALS = {
     "prices": ("fruit_price_ranking", "rank fruits by price tags and discounts"),
 }
 """The paper's implicit goals: by suite, the folder of its variations and what they want."""
+SPATIAL_TASKS = ("shake", "star", "wipe", "cap")
+"""The paper's spatial planning, as the world `arms` has it: shake a bottle, draw a star, wipe a plate, open a bottle."""
 ABLATED = (
     "visual_manipulation", "scene_understanding", "rotate", "novel_adj", "novel_noun", "sweep_without_exceeding", "same_shape",
     "manipulate_old_neighbor", "pick_in_order_then_restore",
@@ -99,6 +101,10 @@ def all_suites(known_tasks: Sequence[str], partitions: Mapping[str, Sequence[str
     if implicit:
         words = f"the paper's implicit goals, {counted(len(implicit), 'variation')}"
         suites["implicit"] = Suite("implicit", tuple(implicit), IMPLICIT_GOAL, words)
+    spatial = tuple(f"arms/{name}" for name in SPATIAL_TASKS if f"arms/{name}" in known_tasks)
+    if spatial:
+        words = "the paper's spatial planning, on an arm that grips by contact"
+        suites["spatial"] = Suite("spatial", spatial, SPATIAL, words)
     suites["pointing"] = Suite(
         "pointing", (POINTING,), Protocol("toy table: one question a picture (the paper states no number; 100 here)", 100, 0),
         "point at a circle on the toy table: the paper's Appendix F.1",
@@ -157,10 +163,16 @@ def _one(name: str, known: Sequence[str], suites: Mapping[str, Suite], is_own: C
             return Suite(name, (name,), suite.protocol, suite.help)
     for task in (name, f"tabletop/{name}"):
         if task.partition("@")[0] in known:
-            implicit = task.split("/")[1] in (folder for folder, _ in IMPLICIT_GOALS.values())
-            protocol = IMPLICIT_GOAL if implicit else OPEN_LOOP
-            return Suite(task, (task,), protocol)
+            return Suite(task, (task,), _protocol_of(task.partition("@")[0]))
     raise UnknownNameError("suite or task", name, [*suites, *known])
+
+
+def _protocol_of(task: str) -> Protocol:
+    """What the paper does with a task of that kind."""
+    world, folder = task.split("/")[:2]
+    if world == "arms" and folder in SPATIAL_TASKS:
+        return SPATIAL
+    return IMPLICIT_GOAL if folder in (folder for folder, _ in IMPLICIT_GOALS.values()) else OPEN_LOOP
 
 
 def read_seeds(words: str) -> tuple[int, ...]:

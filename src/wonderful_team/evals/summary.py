@@ -140,9 +140,13 @@ class Summary:
         return tuple(dict.fromkeys(row.spec.task for row in self.rows))
 
     def cell(self, condition: Condition, task: str | None = None) -> Cell:
-        """The trials of a condition, of one task or of all."""
+        """The trials of a condition: of one task, of all variations of FOLDER/, or of all tasks."""
         mine = self.by_condition.get(condition, [])
-        return cell(condition, mine if task is None else [row for row in mine if row.spec.task == task])
+        if task is None:
+            return cell(condition, mine)
+        if task.endswith("/"):
+            return cell(condition, [row for row in mine if row.spec.task.startswith(task)])
+        return cell(condition, [row for row in mine if row.spec.task == task])
 
     @cached_property
     def by_condition(self) -> Mapping[Condition, list[Row]]:

@@ -26,12 +26,13 @@ _HERE = Path(__file__).parent
 
 @dataclass(frozen=True)
 class Part:
-    """A table of the paper and the study that was run for it, if one was."""
+    """A table of the paper and the study that was run for it, if one was; else why not, where it could not be run."""
 
     name: str
     table: PaperTable
     summary: Summary | None
     report: Path | None = None
+    not_run: str = ""
 
 
 @dataclass(frozen=True)
@@ -52,6 +53,7 @@ def write_paper(parts: Sequence[Part], page: Path, *, command: str = "") -> Pape
         head, lines = filled(part.table, part.summary)
         warnings = [] if part.summary is None else part.summary.warnings()
         notes = [f"Cannot be run yet: it needs {part.table.lacks}."] if part.table.lacks else []
+        notes += [f"Not run: {part.not_run}"] if part.not_run else []
         notes += [part.table.note] if part.table.note else []
         title = f"{part.table.title} ({part.table.where})"
         texts.append("\n".join([f"## {part.name}: {title}", "", markdown_table(head, lines), "", *notes, *warnings]))

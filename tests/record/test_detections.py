@@ -13,7 +13,8 @@ import wonderful_team as wt
 from wonderful_team.api.replay import branch, replay
 from wonderful_team.cli.app import run
 from wonderful_team.core.values import mask_from_runs
-from wonderful_team.errors import ConfigError, ReplayError
+from wonderful_team.errors import ConfigError, DetectorCodeError, ReplayError
+from wonderful_team.offline.detector import ClassicalDetector
 from wonderful_team.record.detections import RecordedDetector
 
 DESK = Path(__file__).parents[2] / "examples" / "desk.png"
@@ -76,8 +77,6 @@ def test_the_page_names_the_detector_and_shows_its_picture(planned: wt.PlanResul
 def test_a_replay_finds_what_was_found_without_the_detector(
     planned: wt.PlanResult, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    from wonderful_team.offline.detector import ClassicalDetector
-
     monkeypatch.setattr(ClassicalDetector, "detect", lambda *_: pytest.fail("the detector itself was asked"))
     assert replay(planned.folder).same
 
@@ -134,6 +133,26 @@ def test_ground_with_a_detector_of_ones_own_on_the_command_line(
     assert replay(folder).same
     with pytest.raises(ConfigError, match="names code"):
         branch(folder, "ground", "offline", out=tmp_path)
+
+
+def test_a_run_whose_detector_broke_says_so_on_its_page_and_replays(
+    planned: wt.PlanResult, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def out_of_memory(*_: object) -> None:
+        raise MemoryError("no memory left on the card")
+
+    with monkeypatch.context() as broken:
+        broken.setattr(ClassicalDetector, "detect", out_of_memory)
+        team = wt.Team(method="detector-grounding", out=tmp_path)
+        with pytest.raises(DetectorCodeError, match="no memory left on the card"):
+            team.plan(DESK, "put the red block into the blue bowl")
+    (folder,) = (path.parent for path in tmp_path.rglob("record.json"))
+    (look,) = record_of(folder)["planner"]["detections"]
+    assert (look["found"], look["refused"]) == ([], "")
+    assert "no memory left on the card" in look["failed"]
+    assert "and broke: " in next(folder.glob("*.html")).read_text(encoding="utf-8")
+    # The detector works again by now: a replay breaks as the run did.
+    assert replay(folder).same
 
 
 def test_a_detector_that_would_change_nothing_is_refused(capsys: pytest.CaptureFixture[str]) -> None:

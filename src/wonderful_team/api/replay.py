@@ -94,7 +94,7 @@ def replay(folder: Path, *, tolerant: bool = False, subscribers: Sequence[Subscr
                 _plan_again(folder, record, setup, method)
         except WonderfulTeamError as error:
             # What ended the run then ends it again; anything else did not happen then.
-            if error not in model.failed:
+            if error not in (*model.failed, *(detector.broke if detector else ())):
                 raise
     plans_then = record["planner"]["plans"]
     then = dict.fromkeys(str(entry["id"]) for entry in plans_then)

@@ -37,20 +37,21 @@ async def look(
         BudgetReached: The cap on seconds was met.
     """
     asked, started = tuple(dict.fromkeys(words)), time.monotonic()
-    left, refused, found = budget.seconds_left, None, tuple[Detection, ...]()
+    error: DetectorCodeError | NotUnderstoodError | None = None
+    left, found = budget.seconds_left, tuple[Detection, ...]()
     try:
         found = await detect(
             detector, view.rgb, asked, within_s=WITHIN_S if left is None else min(WITHIN_S, max(left, 0.001))
         )
-    except DetectorCodeError as error:
+    except DetectorCodeError as broke:
         if left is not None and not budget.seconds_left:
-            raise budget.time_is_up(f"looking with detector {name_of(detector)!r}") from error
-        raise
-    except NotUnderstoodError as error:
-        refused = error
-    said = "" if refused is None else str(refused)
-    run = DetectorRun(identity_of(detector), view, asked, found, time.monotonic() - started, said)
+            raise budget.time_is_up(f"looking with detector {name_of(detector)!r}") from broke
+        error = broke
+    except NotUnderstoodError as refused:
+        error = refused
+    said = {} if error is None else {"failed" if isinstance(error, DetectorCodeError) else "refused": str(error)}
+    run = DetectorRun(identity_of(detector), view, asked, found, time.monotonic() - started, **said)
     tell("detector", run.detector["name"], run)
-    if refused is not None:
-        raise refused
+    if error is not None:
+        raise error
     return found

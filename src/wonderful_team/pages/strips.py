@@ -149,6 +149,7 @@ def detected(record: dict[str, Any], album: Album) -> list[dict[str, Any]]:
             ),
             "words": [(words, sum(one["words"] == words for one in look["found"])) for words in look["words"]],
             "refused": look.get("refused", ""),
+            "failed": look.get("failed", ""),
             "drawing": album.image(look["drawn"], f"what {look['detector'].get('name', 'the detector')} found", "wide"),
         }
         for look in record["planner"].get("detections", [])

@@ -9,7 +9,7 @@ from wonderful_team.core.geometry import Box
 from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.pictures import BoxMark, picture_hash
 from wonderful_team.core.values import Detection, DetectorRun, mask_from_runs, mask_to_runs
-from wonderful_team.errors import NotUnderstoodError, ReplayError, reading
+from wonderful_team.errors import DetectorCodeError, NotUnderstoodError, ReplayError, reading
 from wonderful_team.images import whole
 from wonderful_team.record.picture_store import PictureStore
 
@@ -30,6 +30,7 @@ def detector_entry(run: DetectorRun, store: PictureStore) -> dict[str, Any]:
         "found": [_detection_entry(one) for one in run.found],
         "drawn": store.keep_drawn(picture.marked(*marks)),
         "refused": run.refused,
+        "failed": run.failed,
     }
 
 
@@ -47,12 +48,16 @@ class RecordedDetector:
 
     Args:
         record: The content of a record.json.
+
+    Attributes:
+        broke: The errors of the record that were raised again.
     """
 
     def __init__(self, record: Mapping[str, Any]) -> None:
         with reading("the detections of the record"):
             self._left = list(record["planner"].get("detections", []))
             self.setting = dict(self._left[0]["detector"]) if self._left else {}
+        self.broke: list[DetectorCodeError] = []
         self.name = str(self.setting.pop("name", "recorded"))
 
     def detect(self, rgb: Array, words: Sequence[str]) -> list[Detection]:
@@ -60,6 +65,7 @@ class RecordedDetector:
 
         Raises:
             NotUnderstoodError: It refused these words then.
+            DetectorCodeError: It broke then.
             ReplayError: The detector was not asked for these words in this picture.
         """
         view = picture_hash(rgb)
@@ -68,6 +74,9 @@ class RecordedDetector:
                 del self._left[number]
                 if entry.get("refused"):
                     raise NotUnderstoodError(entry["refused"], stage="grounding")
+                if entry.get("failed"):
+                    self.broke.append(DetectorCodeError(entry["failed"]))
+                    raise self.broke[-1]
                 with reading("the detections of the record"):
                     return [_detection(one, entry["size_px"]) for one in entry["found"]]
         raise ReplayError(

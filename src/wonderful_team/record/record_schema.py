@@ -240,7 +240,7 @@ class DetectionEntry(_Part):
 
 
 class DetectorEntry(_Part):
-    """One look of a detector at a view: who, at what (a key of `files`), for which words, what it found, drawn (another key), or why it refused."""
+    """One look of a detector at a view: who, at what (a key of `files`), for which words, what it found, drawn (another key), or why it refused or how it broke."""
 
     detector: dict[str, str]
     view: str
@@ -250,6 +250,7 @@ class DetectorEntry(_Part):
     found: list[DetectionEntry]
     drawn: str
     refused: str = ""
+    failed: str = ""
 
 
 class Planner(_Part):

@@ -79,6 +79,7 @@ class DetectorRun:
         found: In the order of the words, the surest first; boxes in pixels of the view.
         seconds: How long it took [s].
         refused: Why it could not be asked for these words; "" where it looked.
+        failed: How it broke; "" where it did not.
     """
 
     detector: Mapping[str, str]
@@ -87,6 +88,7 @@ class DetectorRun:
     found: tuple[Detection, ...]
     seconds: float
     refused: str = ""
+    failed: str = ""
 
 
 def mask_to_runs(mask: Array) -> list[int]:

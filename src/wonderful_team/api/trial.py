@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 
 from wonderful_team import registry
+from wonderful_team.api.judgements import Judgements
 from wonderful_team.api.method import Method
 from wonderful_team.api.photo_trial import run_photo
 from wonderful_team.api.rollout import rollout
@@ -56,8 +57,8 @@ def _trial(spec: TrialSpec, settings: RunSettings) -> TrialRow:
     started = time.monotonic()
     world = make_scene(spec)
     try:
-        count = UsageCounter()
-        trial, page = _run(spec, settings, world, count)
+        count, judgements = UsageCounter(), Judgements(world)
+        trial, page = _run(spec, settings, world, count, judgements)
         usage = trial.usage if trial.usage_by_role else sum(count.by_role.values(), Usage())
         by_role = trial.usage_by_role or count.by_role
         return TrialRow(
@@ -75,7 +76,7 @@ def _trial(spec: TrialSpec, settings: RunSettings) -> TrialRow:
             page=page,
             instruction="" if spec.condition.method in CONTROLS else world.instruction.plain_text,
             versions=fingerprint(spec, settings.extra),
-            facts=_facts(world) if trial.outcome in ("success", "failure") else {},
+            facts=_facts(world) | judgements.facts if trial.outcome in ("success", "failure") else {},
         )
     finally:
         with contextlib.suppress(Exception):
@@ -130,7 +131,9 @@ def make_scene(spec: TrialSpec) -> World:
     return perturbed(registry.make_world(spec.task, spec.seed), tier, spec.seed)
 
 
-def _run(spec: TrialSpec, settings: RunSettings, world: World, count: UsageCounter) -> tuple[Trial, str]:
+def _run(
+    spec: TrialSpec, settings: RunSettings, world: World, count: UsageCounter, judgements: Judgements
+) -> tuple[Trial, str]:
     truth = privileged(world)
     condition = spec.condition
     if condition.method in CONTROLS:
@@ -150,6 +153,7 @@ def _run(spec: TrialSpec, settings: RunSettings, world: World, count: UsageCount
             scene=spec.scene,
             replans=condition.replans,
             reobserve=condition.reobserve,
+            subscribers=(judgements,),
             max_age_s=None,
         )
         return trial, ""
@@ -163,7 +167,7 @@ def _run(spec: TrialSpec, settings: RunSettings, world: World, count: UsageCount
         seed=spec.seed,
         scene=spec.scene,
         out=out,
-        subscribers=(count,),
+        subscribers=(count, judgements),
     )
     if settings.record == "failures" and recorded.outcome == "success":
         shutil.rmtree(out, ignore_errors=True)

@@ -12,6 +12,13 @@ from wonderful_team.core.caps import Caps
 from wonderful_team.errors import ConfigError
 
 VALID_SUBGOAL = "at least one valid subgoal"
+JUDGED = {
+    (True, True): "judged done, rightly",
+    (True, False): "judged done, wrongly",
+    (False, False): "judged not done, rightly",
+    (False, True): "judged not done, wrongly",
+}
+"""Facts that count a trial's judgements of what it did: what was said, whether it was so, and the fact's name."""
 """Fact of a trial: after some action a goal of the task held that did not hold before (the paper's Appendix A)."""
 OUTCOMES = ("success", "failure", "error", "unscored")
 Outcome: TypeAlias = Literal["success", "failure", "error", "unscored"]

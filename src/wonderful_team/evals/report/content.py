@@ -17,7 +17,7 @@ from wonderful_team.evals.ablation import Ablation, ablations, ends_of
 from wonderful_team.evals.again import command_again
 from wonderful_team.evals.pairing import Pair
 from wonderful_team.evals.paper import published
-from wonderful_team.evals.report import ablation, tables
+from wonderful_team.evals.report import ablation, judgements, tables
 from wonderful_team.evals.report.plots import cost_plot, ends_plot, rate_plot, task_plot
 from wonderful_team.evals.summary import Summary
 from wonderful_team.evals.trials import Condition, Row
@@ -58,6 +58,9 @@ def page_content(summary: Summary, warnings: Sequence[str], baseline: str | None
             for whole, members in summary.variants()
         ],
         "facts": tables.fact_tables(summary),
+        "judged_title": tables.JUDGEMENTS,
+        "judged_head": judgements.HEAD,
+        "judged": judgements.lines(summary),
         "gallery": _gallery(summary, page),
         "versions": sorted({f"{k} {v}" for row in summary.rows if row.result for k, v in row.result.versions.items()}),
     }

@@ -14,12 +14,13 @@ from wonderful_team.errors import MissingExtraError
 from wonderful_team.evals.ablation import ablations
 from wonderful_team.evals.pairing import Pair
 from wonderful_team.evals.paper import paper_beside
-from wonderful_team.evals.report import ablation
+from wonderful_team.evals.report import ablation, judgements
 from wonderful_team.evals.report.paired import paired_figures
 from wonderful_team.evals.schema import CONDITION
 from wonderful_team.evals.summary import Cell, Summary
-from wonderful_team.evals.trials import Condition, Row
+from wonderful_team.evals.trials import JUDGED, Condition, Row
 
+_JUDGED = frozenset(JUDGED.values())
 _RESULT = (
     "outcome",
     "stage",
@@ -101,6 +102,7 @@ def condition_json(cell: Cell) -> dict[str, Any]:
     }
 
 
+JUDGEMENTS = "What methods said became of their actions, against the simulator's truth at that moment"
 HEAD = (
     "method · model",
     "success",
@@ -217,7 +219,9 @@ def fact_tables(summary: Summary) -> list[tuple[tuple[str, ...], list[tuple[str,
     for task in summary.tasks:
         for one in summary.compared:
             cell = summary.cell(one, task)
-            names = tuple(dict.fromkeys(name for result in cell.results for name in result.facts))
+            names = tuple(
+                dict.fromkeys(name for result in cell.results for name in result.facts if name not in _JUDGED)
+            )
             if names:
                 line = (one.label, task, str(len(cell.results)), *(number(cell.fact(name), 3) for name in names))
                 found.setdefault(names, []).append(line)
@@ -247,6 +251,9 @@ def to_markdown(summary: Summary, baseline: str | None = None) -> str:
         lines = [variant_words(summary.cell(one), against) for one, against in members]
         parts.append(markdown_table((whole.label, *VARIANT_HEAD[1:]), lines))
     parts += [markdown_table(head, lines) for head, lines in fact_tables(summary)]
+    judged = judgements.lines(summary)
+    if judged:
+        parts += [JUDGEMENTS, markdown_table(judgements.HEAD, judged)]
     return visible("\n\n".join(parts) + "\n", layout=True)
 
 

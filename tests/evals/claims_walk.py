@@ -164,6 +164,25 @@ class Walked:
     wrong: list[str]
 
 
+def _kept(store: Store, study: str) -> tuple[float, ...]:
+    total = store._totals(study)
+    return tuple(total[name] for name in ("wanted", "done", "success", "calls", "tokens"))
+
+
+def _sums(store: Store, study: str) -> tuple[float, ...]:
+    """The same, added up from the trials and the attempts that were thrown away."""
+    mine = "(SELECT trial FROM wanted WHERE study = ?)"
+    trials = store._base.execute(
+        "SELECT COUNT(*), SUM(state = 'done'), SUM(state = 'done' AND outcome IS 'success'), "
+        f"SUM((state = 'done') * COALESCE(calls, 0)), SUM((state = 'done') * COALESCE(tokens, 0)) FROM trials WHERE id IN {mine}",
+        (study,),
+    ).fetchone()
+    lost = store._base.execute(
+        f"SELECT COALESCE(SUM(calls), 0), COALESCE(SUM(tokens), 0) FROM discarded WHERE trial IN {mine}", (study,)
+    ).fetchone()
+    return (*tuple(trials)[:3], trials[3] + lost[0], trials[4] + lost[1])
+
+
 def walk(file: Path, seed: int) -> Walked:
     """One random walk over a new store, and its end, in which nothing breaks any more."""
     cap = CAPS[seed % len(CAPS)]
@@ -187,6 +206,7 @@ def walk(file: Path, seed: int) -> Walked:
         check(
             len(world.written) == len(set(world.written)) == done, f"{len(world.written)} results written, {done} done"
         )
+        check(_sums(store, world.study) == _kept(store, world.study), "the totals are not the sums of the trials")
         check(world.capped or done == store.count_all(world.study), "trials are left although no cap is reached")
     for one in world.processes:
         one.store.close()

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import itertools
+import math
+from fractions import Fraction
 
 import numpy as np
 import pytest
@@ -92,3 +94,10 @@ def test_the_plan_keeps_the_trials_of_a_scene_together_in_one_shard() -> None:
         scenes = {(spec.task, spec.seed) for spec in part}
         assert len(part) == 2 * len(scenes)
     assert quick(parts[0][0], None).outcome in ("success", "failure")  # type: ignore[arg-type]
+
+
+def test_many_discordant_pairs_are_tested_as_exactly_as_few() -> None:
+    for first, second in ((700, 620), (1005, 1005), (2000, 1700), (0, 1500)):
+        whole = sum(math.comb(first + second, k) for k in range(min(first, second) + 1))
+        right = min(1.0, float(Fraction(2 * whole, 2 ** (first + second))))
+        assert mcnemar_exact(first, second) == pytest.approx(right, rel=1e-9)

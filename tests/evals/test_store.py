@@ -9,6 +9,8 @@ import subprocess
 import sys
 import time
 from collections import Counter
+from contextlib import closing
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -164,6 +166,7 @@ def test_a_store_of_the_first_release_opens_and_goes_on(tmp_path: Path) -> None:
     path = tmp_path / "s.db"
     run_study(toy_plan(2), path, runners.quick, jobs=1)
     base = sqlite3.connect(path)
+    _without_what_came_fourth(base)
     for column in ("how", "looks", "held_calls", "held_tokens", "held_usd"):
         base.execute(f"ALTER TABLE trials DROP COLUMN {column}")
     _without_what_came_third(base)
@@ -178,12 +181,57 @@ def test_a_store_of_the_second_schema_opens_and_goes_on(tmp_path: Path) -> None:
     path = tmp_path / "s.db"
     run_study(toy_plan(2), path, runners.quick, jobs=1)
     base = sqlite3.connect(path)
+    _without_what_came_fourth(base)
     _without_what_came_third(base)
     base.execute("UPDATE meta SET value='2'")
     base.commit()
     base.close()
     again = run_study(toy_plan(3), path, runners.quick, jobs=1)
     assert (again.status.here, again.status.done) == (4, 12)
+
+
+def _without_what_came_fourth(base: sqlite3.Connection) -> None:
+    for kind, name in base.execute("SELECT type, name FROM sqlite_master WHERE type = 'trigger'").fetchall():
+        base.execute(f"DROP {kind} {name}")
+    for table in ("totals", "dearest"):
+        base.execute(f"DROP TABLE {table}")
+
+
+def test_totals_of_a_store_that_had_none_are_those_that_were_kept(tmp_path: Path) -> None:
+    path = tmp_path / "s.db"
+    run_study(toy_plan(3), path, runners.quick, jobs=1)
+
+    def kept() -> list[list[tuple[object, ...]]]:
+        with closing(sqlite3.connect(path)) as base:
+            return [base.execute(f"SELECT * FROM {table} ORDER BY 1, 2").fetchall() for table in ("totals", "dearest")]
+
+    before = kept()
+    assert all(before)
+    with closing(sqlite3.connect(path)) as base:
+        _without_what_came_fourth(base)
+        base.execute("UPDATE meta SET value='3'")
+        base.commit()
+    Store(path).close()
+    assert kept() == before
+
+
+def test_a_claim_reads_no_more_rows_in_a_large_study_than_in_a_small_one(tmp_path: Path) -> None:
+    steps = []
+    for seeds in (20, 400):
+        with Store(tmp_path / f"{seeds}.db") as store:
+            plan = toy_plan(seeds)
+            store.want(plan.name, plan.trials(), plan.request())
+            owner = Owner.this_process()
+            for _ in range(seeds):
+                claim = store.claim(plan.name, owner, Caps(calls=10**6))
+                assert claim is not None
+                store.finish(claim.trial, owner, TrialRow("success", calls=1))
+            counted: list[int] = []
+            # SQLite calls this once in ten of its own steps.
+            store._base.set_progress_handler(partial(counted.append, 0), 10)
+            assert store.claim(plan.name, owner, Caps(calls=10**6)) is not None
+            steps.append(len(counted))
+    assert steps[1] <= 2 * steps[0] + 10, steps
 
 
 def _without_what_came_third(base: sqlite3.Connection) -> None:

@@ -20,6 +20,10 @@ FEWEST_DISCORDANT = 6
 """So many discordant pairs, all one way, are the fewest with an exact two-sided p below 5 % (2 / 2**6)."""
 
 
+WHOLE_BINOMIALS = 1000
+"""Up to so many discordant pairs binomials are whole numbers."""
+
+
 def mcnemar_exact(only_first: int, only_second: int) -> float:
     """Two-sided exact p of McNemar's test: the discordant pairs against a fair coin.
 
@@ -32,8 +36,12 @@ def mcnemar_exact(only_first: int, only_second: int) -> float:
     if only_first < 0 or only_second < 0:
         raise ValueError(f"counts must not be negative, got {only_first} and {only_second}")
     n = only_first + only_second
-    tail = sum(math.comb(n, k) for k in range(min(only_first, only_second) + 1))
-    return min(1.0, float(2 * tail / 2**n))
+    fewer = range(min(only_first, only_second) + 1)
+    if n <= WHOLE_BINOMIALS:
+        return min(1.0, float(2 * sum(math.comb(n, k) for k in fewer) / 2**n))
+    # Whole numbers of thousands of digits take minutes: the same terms by their logarithms.
+    logs = (math.lgamma(n + 1) - math.lgamma(k + 1) - math.lgamma(n - k + 1) - n * math.log(2) for k in fewer)
+    return min(1.0, 2 * math.fsum(map(math.exp, logs)))
 
 
 def newcombe_paired(both: int, only_first: int, only_second: int, neither: int, z: float = Z_95) -> tuple[float, float]:

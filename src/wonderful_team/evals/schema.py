@@ -5,10 +5,11 @@ from __future__ import annotations
 import sqlite3
 
 from wonderful_team.errors import ConfigError
+from wonderful_team.evals import totals
 
-SCHEMA_VERSION = 3
+SCHEMA_VERSION = 4
 """1: first release. 2: `how` and `reobserve` of a condition, and what a trial in flight holds of the study's caps. 3: leases by a clock that
-does not jump; whose a discarded attempt was, and what it was allowed."""
+does not jump; whose a discarded attempt was, and what it was allowed. 4: totals of studies, kept as trials end."""
 SPEC = ("task", "seed", "repeat", "method", "model", "isolate", "perturb", "replans", "how", "looks")
 CONDITION = SPEC[3:]
 """Columns of a condition, in the order of its fields; `looks` holds its `reobserve`."""
@@ -52,13 +53,21 @@ def make_tables(base: sqlite3.Connection) -> str:
         base.execute("ALTER TABLE trials ADD COLUMN looks INTEGER NOT NULL DEFAULT 0")
         for name in _HELD:
             base.execute(f"ALTER TABLE trials ADD COLUMN {name} REAL NOT NULL DEFAULT 0")
+    before_totals = version in ("1", "2", "3")
     if version in ("1", "2"):
         base.execute("ALTER TABLE trials ADD COLUMN lease_steady_s REAL NOT NULL DEFAULT 0")
         base.execute("ALTER TABLE discarded ADD COLUMN owner TEXT NOT NULL DEFAULT ''")
         for name in _ALLOWED:
             base.execute(f"ALTER TABLE discarded ADD COLUMN {name} REAL NOT NULL DEFAULT 0")
+    for statement in totals.TABLES:
+        base.execute(statement)
+    if before_totals:
+        totals.fill(base)
         version = str(SCHEMA_VERSION)
         base.execute("UPDATE meta SET value=? WHERE name='schema_version'", (version,))
+    if version == str(SCHEMA_VERSION):
+        for statement in totals.TRIGGERS:
+            base.execute(statement)
     return version
 
 

@@ -9,7 +9,8 @@ from __future__ import annotations
 import json
 import sqlite3
 import time
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
@@ -24,6 +25,7 @@ from wonderful_team.evals.names import NO_MODEL
 from wonderful_team.evals.schema import CONDITION, JSON, RESULT, SCHEMA_VERSION, SPEC, check_values, make_tables
 from wonderful_team.evals.spending import UNITS, Allowance, Likely, Spending, WaitForCost, allow
 from wonderful_team.evals.stored_rows import Claim, costs_of, result_of, spec_of, spec_values
+from wonderful_team.evals.totals import OUTCOMES
 from wonderful_team.evals.trials import Row, TrialRow, TrialSpec
 from wonderful_team.redaction import redact_all
 
@@ -31,6 +33,7 @@ CUT = "cut by the study's cap"
 """Why an attempt was discarded that had all it was allowed and wanted more."""
 _REQUEST = TypeAdapter(dict[str, Any])
 """What is read out of the file is of the type that it was written with."""
+_FLYING = "FROM trials t INDEXED BY trials_by_state CROSS JOIN wanted w ON w.study = ? AND w.trial = t.id WHERE t.state = 'claimed'"
 MAX_CRASHES = 3
 """A trial whose worker process died so often is written as an error, ours, and not tried again."""
 
@@ -181,17 +184,11 @@ class Store:
 
     def _likely(self, row: sqlite3.Row) -> Likely:
         """What the trials of the same condition took, and those of any; trials that broke before a call tell nothing."""
-        taken = (
-            "SELECT COUNT(*), MAX(calls), MAX(tokens), MAX(COALESCE(usd, 0)) FROM ("
-            "SELECT id, calls, tokens, usd FROM trials WHERE state='done' AND (calls > 0 OR outcome IN ('success', 'failure')) "
-            "UNION ALL SELECT trial, calls, tokens, usd FROM discarded WHERE calls > 0 AND owner = '')"
-        )
         if row["model"] == NO_MODEL:
             return Likely((0, 0, 0))
+        taken = "SELECT COUNT(*), MAX(calls), MAX(tokens), MAX(usd) FROM dearest"
         alike = " AND ".join(f"{name} IS ?" for name in CONDITION)
-        own = self._base.execute(
-            f"{taken} WHERE id IN (SELECT id FROM trials WHERE {alike})", [row[name] for name in CONDITION]
-        ).fetchone()
+        own = self._base.execute(f"{taken} WHERE {alike}", [row[name] for name in CONDITION]).fetchone()
         others = self._base.execute(taken).fetchone()
         cut = self._base.execute(
             "SELECT allowed_calls, allowed_tokens, allowed_usd FROM discarded WHERE trial=? AND why=? ORDER BY rowid DESC LIMIT 1",
@@ -200,13 +197,14 @@ class Store:
         return Likely(costs_of(own), costs_of(others), (0, 0, 0.0) if cut is None else tuple(cut))
 
     def _next(self, base: sqlite3.Connection, study: str) -> sqlite3.Row | None:
-        mine = "SELECT t.* FROM trials t JOIN wanted w ON w.trial = t.id AND w.study = ?"
-        row = base.execute(f"{mine} WHERE t.state = 'pending' ORDER BY t.id LIMIT 1", (study,)).fetchone()
+        # Along the index of what is pending, in order: SQLite itself would go through all that the study wants.
+        mine = "FROM trials t INDEXED BY trials_by_state CROSS JOIN wanted w ON w.study = ? AND w.trial = t.id"
+        row = base.execute(f"SELECT t.* {mine} WHERE t.state = 'pending' ORDER BY t.id LIMIT 1", (study,)).fetchone()
         return row  # type: ignore[no-any-return]
 
     def _free_abandoned(self, study: str) -> None:
         """Make the claims of processes that are gone pending again, before anything is counted: they hold part of the caps."""
-        mine = "SELECT t.* FROM trials t JOIN wanted w ON w.trial = t.id AND w.study = ? WHERE t.state = 'claimed'"
+        mine = f"SELECT t.* {_FLYING}"
 
         def abandoned() -> list[sqlite3.Row]:
             rows: list[sqlite3.Row] = self._base.execute(mine, (study,)).fetchall()
@@ -304,45 +302,40 @@ class Store:
 
     def spending(self, study: str) -> Spending:
         """What the trials of a study cost so far, those retried or cut short included, and what is in flight."""
-        of_study = "JOIN wanted w ON w.trial = {id} AND w.study = ?"
-        cost = "COALESCE(SUM(calls), 0), COALESCE(SUM(tokens), 0), COALESCE(SUM(usd), 0)"
-        done = self._base.execute(
-            f"SELECT {cost}, COUNT(*) - COUNT(usd) FROM trials {of_study.format(id='trials.id')} WHERE state='done'",
-            (study,),
-        ).fetchone()
-        lost = self._base.execute(
-            f"SELECT {cost} FROM discarded {of_study.format(id='discarded.trial')}", (study,)
-        ).fetchone()
         flying = self._base.execute(
-            "SELECT COUNT(*), COALESCE(SUM(held_calls), 0), COALESCE(SUM(held_tokens), 0), COALESCE(SUM(held_usd), 0) "
-            f"FROM trials {of_study.format(id='trials.id')} WHERE state='claimed'",
+            f"SELECT COUNT(*), COALESCE(SUM(held_calls), 0), COALESCE(SUM(held_tokens), 0), COALESCE(SUM(held_usd), 0) {_FLYING}",
             (study,),
         ).fetchone()
+        total = self._totals(study)
         return Spending(
-            calls=done[0] + lost[0],
-            tokens=done[1] + lost[1],
-            usd=done[2] + lost[2],
-            unpriced=done[3],
+            calls=total["calls"],
+            tokens=total["tokens"],
+            usd=total["usd"],
+            unpriced=total["unpriced"],
             in_flight=flying[0],
             held=tuple(flying)[1:],
         )
 
+    def _totals(self, study: str) -> Mapping[str, Any]:
+        row = self._base.execute("SELECT * FROM totals WHERE study = ?", (study,)).fetchone()
+        return Counter() if row is None else dict(row)
+
     def count(self, study: str, state: str) -> int:
         """How many trials of a study are pending, claimed or done."""
-        query = "SELECT COUNT(*) FROM trials JOIN wanted w ON w.trial = id AND w.study = ? WHERE state = ?"
-        return int(self._base.execute(query, (study, state)).fetchone()[0])
+        total = self._totals(study)
+        if state == "done":
+            return int(total["done"])
+        claimed = int(self._base.execute(f"SELECT COUNT(*) {_FLYING}", (study,)).fetchone()[0])
+        return claimed if state == "claimed" else int(total["wanted"] - total["done"] - claimed)
 
     def count_all(self, study: str) -> int:
         """How many trials a study has."""
-        return int(self._base.execute("SELECT COUNT(*) FROM wanted WHERE study = ?", (study,)).fetchone()[0])
+        return int(self._totals(study)["wanted"])
 
     def outcomes(self, study: str) -> dict[str, int]:
         """How many ended trials of a study there are of each outcome."""
-        query = (
-            "SELECT outcome, COUNT(*) FROM trials JOIN wanted w ON w.trial = id AND w.study = ? "
-            "WHERE state='done' GROUP BY outcome"
-        )
-        return {str(name): int(number) for name, number in self._base.execute(query, (study,))}
+        total = self._totals(study)
+        return {name: int(total[name]) for name in OUTCOMES if total[name]}
 
     def rows(self, study: str | None = None) -> list[Row]:
         """Every trial, in the order in which they were asked for."""
@@ -352,7 +345,7 @@ class Store:
             f"FROM trials t {chosen} ORDER BY t.id"
         )
         with reading(f"store {str(self.path)!r}", "a store that bench wrote and nothing changed"):
-            found: Sequence[sqlite3.Row] = self._base.execute(query, {"study": study}).fetchall()
+            found = self._base.execute(query, {"study": study})
             return [Row(spec_of(row), result_of(row) if row["state"] == "done" else None, row["lost"]) for row in found]
 
 

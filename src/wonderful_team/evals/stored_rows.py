@@ -4,6 +4,11 @@ from __future__ import annotations
 
 import json
 import sqlite3
+import sys
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from functools import lru_cache
+from types import MappingProxyType
 from typing import Any
 
 from pydantic import TypeAdapter
@@ -37,11 +42,60 @@ def spec_values(spec: TrialSpec) -> tuple[Any, ...]:
     return (spec.key, spec.task, spec.seed, spec.repeat, *spec.condition.values)
 
 
+@lru_cache(maxsize=4096)
+def _condition(*values: Any) -> Condition:
+    return Condition(*values)
+
+
 def spec_of(row: sqlite3.Row) -> TrialSpec:
-    condition = Condition(*(row[name] for name in CONDITION))
-    return TrialSpec(row["task"], row["seed"], condition, row["repeat"])
+    return TrialSpec(
+        sys.intern(row["task"]), row["seed"], _condition(*(row[name] for name in CONDITION)), row["repeat"]
+    )
+
+
+class StoredMapping(Mapping[str, Any]):
+    """A mapping that is kept as its JSON text and read when it is asked: a tenth of the memory, for studies of many trials."""
+
+    __slots__ = ("_text",)
+
+    def __init__(self, text: str) -> None:
+        self._text = text
+
+    def __getitem__(self, key: str) -> Any:
+        return self._read()[key]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._read())
+
+    def __len__(self) -> int:
+        return len(self._read())
+
+    def _read(self) -> dict[str, Any]:
+        found: dict[str, Any] = json.loads(self._text)
+        return found
 
 
 def result_of(row: sqlite3.Row) -> TrialRow:
+    """The result of a trial; what many trials say alike is held once."""
     values = {name: json.loads(row[name]) if name in JSON else row[name] for name in RESULT}
-    return _RESULT.validate_python(values)
+    read = _RESULT.validate_python(values)
+    return replace(
+        read,
+        outcome=sys.intern(read.outcome),  # type: ignore[arg-type]
+        reason=sys.intern(read.reason),
+        instruction=sys.intern(read.instruction),
+        provenance=_alike(read.provenance),
+        versions=_stored(row["versions"]),
+        by_role=StoredMapping(row["by_role"]),
+        facts=_stored(row["facts"]),
+    )
+
+
+@lru_cache(maxsize=4096)
+def _alike(provenance: tuple[str, ...]) -> tuple[str, ...]:
+    return provenance
+
+
+@lru_cache(maxsize=4096)
+def _stored(text: str) -> Mapping[str, Any]:
+    return MappingProxyType(json.loads(text))

@@ -29,7 +29,7 @@ DEVELOPMENT_BELOW = 1000
 """Seeds below this one are for development and docs; suites start here (INTERFACE)."""
 
 
-@dataclass(frozen=True, order=True)
+@dataclass(frozen=True, order=True, slots=True)
 class Condition:
     """What is compared: everything of a trial but its scene.
 
@@ -72,7 +72,7 @@ CONDITION = tuple(item.name for item in fields(Condition))
 """Names of the fields of a condition, in their order."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, slots=True)
 class TrialSpec:
     """One trial to run. Two specs with the same fields are the same trial and run once."""
 
@@ -94,7 +94,7 @@ class TrialSpec:
         return f"{self.task}#{self.seed}"
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, slots=True)
 class TrialRow:
     """What came of one trial.
 
@@ -130,7 +130,7 @@ class TrialRow:
             raise ValueError(f"outcome {self.outcome!r}: valid are {', '.join(OUTCOMES)}")
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, slots=True)
 class Row:
     """A trial of a store: what was asked for and, once it ended, what came of it."""
 

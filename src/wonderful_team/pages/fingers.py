@@ -13,7 +13,7 @@ from markupsafe import Markup
 from wonderful_team.core.geometry import Camera, Pose
 from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.pages.figures import crop_drawing, window_round
-from wonderful_team.pages.legs import camera_of
+from wonderful_team.pages.legs import camera_of, positions
 from wonderful_team.pages.look_up import main_key, scene_of
 from wonderful_team.pages.pictures import Album
 
@@ -156,9 +156,8 @@ def _drawing(
 
 def _measured_pose(grasp: _Grasp, measured: Mapping[str, Any]) -> tuple[Array, float]:
     """Where the fingers came to hold, as far as the robot says so."""
-    tool, yaw = measured.get("tool_m"), measured.get("yaw_rad")
-    centre = np.array(tool, dtype=np.float64) if isinstance(tool, list) and len(tool) == 3 else grasp.centre_m
-    return centre, float(yaw) if isinstance(yaw, int | float) else grasp.yaw_rad
+    tool, yaw = positions([measured.get("tool_m")]), measured.get("yaw_rad")
+    return tool[0] if len(tool) else grasp.centre_m, float(yaw) if isinstance(yaw, int | float) else grasp.yaw_rad
 
 
 def held_width_m(measured: Mapping[str, Any] | None) -> float | None:

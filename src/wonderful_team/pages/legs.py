@@ -64,13 +64,13 @@ def leg_of(profile: Mapping[str, Any], executed: list[dict[str, Any]]) -> Leg:
     points = np.array(profile["points_m"], dtype=np.float64)
     action = profile["action"]
     measured = executed[action]["measured"] if action < len(executed) else {}
-    path = _positions(measured.get("path_m"))
-    end = _positions([measured.get("tool_m")]) if profile.get("stays") else np.zeros((0, 3))
+    path = positions(measured.get("path_m"))
+    end = positions([measured.get("tool_m")]) if profile.get("stays") else np.zeros((0, 3))
     off = [distance_to(point, points) for point in path] + [float(np.linalg.norm(one - points[-1])) for one in end]
     return Leg(action + 1, points, profile, np.vstack([path, end]), max(off) if off else None)
 
 
-def _positions(value: Any) -> Array:
+def positions(value: Any) -> Array:
     """Positions that a robot reported, shape (N, 3) [m]; none where it is something else: reports are a user's own."""
     try:
         points = np.array(value, dtype=np.float64)

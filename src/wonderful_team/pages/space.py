@@ -46,11 +46,11 @@ def picture_drawing(album: Album, key: str | None, legs: Sequence[Leg], camera: 
 
 
 def measured_paths(legs: Sequence[Leg]) -> list[Array]:
-    """Measured positions as lines: from action to action as long as each of them has some."""
+    """Measured positions as lines, from action to action as long as each has some; none where the world went its own way."""
     found: list[list[Array]] = []
     last = -1
     for leg in legs:
-        if len(leg.measured_m):
+        if len(leg.measured_m) and leg.profile.get("stays"):
             if not found or leg.number != last + 1:
                 found.append([])
             found[-1].append(leg.measured_m)

@@ -26,7 +26,7 @@ STATION_M = 0.005
 UPRIGHT_M, NARROW_M = 1e-9, 0.015
 """A way that leads no farther than this over the table is straight up or down, or so steep that all of it is over one place [m]."""
 MOST_POINTS, MOST_OF_A_PLAN = 96, 4000
-"""Most points of one action's profile, and about so many of all profiles of one passage."""
+"""An action's profile has about so many points, and all profiles of one passage; twice as many at most, where a way has many corners."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -158,7 +158,7 @@ def profile_of(action: int, pieces: Sequence[Piece], least_m: float, actions: in
             marked = sum(map(len, points)) + at
         points.append(there)
     table = np.vstack(points)
-    kept = _thinned(len(table), most + 2 * len(pieces), marked)
+    kept = _thinned(len(table), 2 * most, marked)
     found = np.isfinite(nearest.clearance_m)
     return HeightProfile(
         action,

@@ -5,20 +5,14 @@ from __future__ import annotations
 import json
 import re
 import shutil
-from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
-from tests.motion.block_scenes import LIMITS, Block, affine_top, area, found, scene
+from tests.pages.arm_run import FINGERS, PX_PER_M, ArmWorld, Carrying
 from tests.pages.test_page import read
-from tests.runtime.test_gate_arm import carried
-from wonderful_team.core.actions import ARM, Action, Gripper, MoveTo
-from wonderful_team.core.protocols import Act, Decision, Done, Situation
-from wonderful_team.core.values import Fingers, Instruction, Observation, Plan, RobotState, StepReport
-from wonderful_team.motion import ground_actions
 from wonderful_team.pages import write_page
 from wonderful_team.pages.fingers import pads_m
 from wonderful_team.pages.height_profile import profile_drawing
@@ -27,64 +21,6 @@ from wonderful_team.record import Recorder
 from wonderful_team.runtime import rollout
 
 NUMBER = r"-?\d+(?:\.\d+)?"
-CAMERA = affine_top()
-PX_PER_M = 240.0
-CUBE, TOWER = Block(0.40, -0.27, 0.44, -0.23), Block(0.40, -0.02, 0.44, 0.02, 0.12)
-FINGERS = Fingers(0.085, 0.02, 0.02)
-ARM_LIMITS = replace(LIMITS, fingers=FINGERS)
-
-
-@dataclass
-class ArmWorld:
-    """Stands still in the picture, and reports what it is told to."""
-
-    fingers: bool = True
-    silent: bool = False
-    off: dict[int, float] = field(default_factory=dict)
-    ran: int = 0
-    tool: Any = None
-
-    vocabulary = ARM
-    instruction = Instruction("put the cube behind the tower")
-
-    def __post_init__(self) -> None:
-        self.limits = ARM_LIMITS if self.fingers else LIMITS
-        self.tool = np.array([0.5, 0.3, 0.25])
-
-    def observe(self) -> Observation:
-        return Observation({"top": scene(CAMERA, CUBE, TOWER)}, RobotState(self.tool.copy(), 1.0, False))
-
-    def execute(self, action: Action) -> StepReport:
-        self.ran += 1
-        measured: dict[str, Any] = {}
-        if isinstance(action, MoveTo):
-            self.tool = action.pose.position_m + (self.off.get(self.ran, 0.001), 0.0, 0.0)
-        if not self.silent:
-            measured["tool_m"] = tuple(float(value) for value in self.tool)
-        if isinstance(action, Gripper) and action.state == "close":
-            measured |= {"held_width_m": 0.0391, "holding": True, "yaw_rad": 0.0}
-        return StepReport(action, True, measured)
-
-    def stop(self) -> None: ...
-
-    def close(self) -> None: ...
-
-
-@dataclass
-class Carrying:
-    """Carries the cube past the tower, once."""
-
-    name: str = "test"
-
-    def decide(self, situation: Situation) -> Decision:
-        if situation.attempt:
-            return Done("done")
-        view = situation.observation.main
-        (place,) = CAMERA.project([(0.42, 0.22, 0.0)])
-        grounded = {"T1": found(CAMERA, "T1", CUBE), "A1": area("A1", (float(place[0]), float(place[1])))}
-        actions = ground_actions(carried("T1", "A1"), grounded, view, situation.limits)
-        seen = situation.observation.hash
-        return Act(actions, Plan(situation.instruction, "planned", actions=actions, grounded=grounded, scene_hash=seen))
 
 
 def ran(folder: Path, **options: Any) -> tuple[dict[str, Any], str]:

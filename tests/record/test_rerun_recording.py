@@ -161,6 +161,19 @@ def test_a_robot_that_reports_odd_things_is_recorded_all_the_same(tmp_path: Path
     assert "/robot/force_n" not in held
 
 
+@needs_rerun
+def test_a_key_stays_out_of_it_and_it_is_its_owners_alone(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    key = "sk-ant-api03-" + "K3y" * 12
+    monkeypatch.setenv("ANTHROPIC_API_KEY", key)
+    world = ArmWorld()
+    world.instruction = wt.Instruction(f"put {key} behind the tower")  # type: ignore[misc]
+    wt.rollout(Carrying(), world, rerun=tmp_path / "a.rrd", out=tmp_path / "runs")
+    held = rows(tmp_path / "a.rrd")
+    assert key not in str(held)
+    assert "[redacted]" in held["/instruction"][0]["text"][0]
+    assert (tmp_path / "a.rrd").stat().st_mode & 0o777 == 0o600
+
+
 def test_without_the_optional_part_nothing_moves(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

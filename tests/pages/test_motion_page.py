@@ -107,7 +107,7 @@ def test_a_record_of_an_earlier_release_opens_and_says_what_it_lacks(folder: Pat
             gate.pop("profiles", None)
 
     text = changed(folder, tmp_path / "run", older)
-    assert "the gate's profiles are not in this record" in text
+    assert "No path and no heights: the record holds none of the gate's for this plan" in text
     assert "Smallest clearance" not in text
     assert "held, measured 39.1 mm" in text
 
@@ -131,6 +131,15 @@ def test_before_anything_ran_the_plan_is_drawn_alone(folder: Path, tmp_path: Pat
     assert "Smallest clearance" in text
     assert "held, measured not run" in text
     assert "No measured path" not in text
+
+
+def test_a_plan_in_pixels_has_no_section_of_motion(folder: Path, tmp_path: Path) -> None:
+    def in_pixels(planner: dict[str, Any]) -> None:
+        for plan in planner["plans"]:
+            for planned in plan["plan"]["actions"]:
+                planned["action"] = None
+
+    assert "planned and measured" not in changed(folder, tmp_path / "run", in_pixels)
 
 
 def a_leg(number: int, clearance_m: float | None) -> Leg:

@@ -21,7 +21,8 @@ def motions(record: dict[str, Any], album: Album) -> list[dict[str, Any]]:
     found = []
     for number, name, content in chapters(record):
         gates = [gate for gate in record["planner"]["gates"] if gate["plan"] == number]
-        if content["actions"] and gates:
+        # A plan in pixels has no way in metres, and the page warns of that already.
+        if gates and any(planned["action"] is not None for planned in content["actions"]):
             found.append({"name": name, **_motion(record, album, number, content, gates)})
     return found
 
@@ -35,7 +36,7 @@ def _motion(
     scene = scene_of(record, content)
     camera = camera_of(scene)
     shown: dict[str, Any] = {"profile": None, "space": None, "picture": None, "deviation": "", "smallest": ""}
-    missing = _missing(content, legs, camera is not None)
+    missing = _missing(legs, camera is not None)
     if legs:
         if any(value is not None for leg in legs for value in leg.profile["surface_m"]):
             shown["profile"] = profile_drawing(legs)
@@ -53,12 +54,12 @@ def _motion(
     return {**shown, "fingers": fingers, "missing": [*missing, *lacking]}
 
 
-def _missing(content: dict[str, Any], legs: list[Leg], camera: bool) -> list[str]:
+def _missing(legs: list[Leg], camera: bool) -> list[str]:
     if legs:
         return [] if camera else ["No path over the picture: no camera was given."]
-    if all(planned["action"] is None for planned in content["actions"]):
-        return ["No path and no heights: the plan is in pixels only."]
-    return ["No path and no heights: the gate's profiles are not in this record, as in those of earlier releases."]
+    return [
+        "No path and no heights: the record holds none of the gate's for this plan; those of earlier releases have none."
+    ]
 
 
 def _deviation(legs: list[Leg]) -> str:

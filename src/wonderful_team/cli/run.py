@@ -50,6 +50,13 @@ REOBSERVE = 16
 )
 @click.option("--keep-out", multiple=True, metavar="[NAME=]x0,y0,x1,y1[px|m]", help="A region nothing may enter.")
 @click.option("--video", type=PATH, metavar="FILE", help="Write an animation of the run (.webp, .gif or .png).")
+@click.option(
+    "--rerun",
+    is_flag=False,
+    flag_value="",
+    metavar="[FILE.rrd]",
+    help="Write a recording for Rerun's viewer; without a FILE, recording.rrd in the run folder.",
+)
 @common
 def command(
     common: Common,
@@ -62,6 +69,7 @@ def command(
     approve: bool,
     keep_out: tuple[str, ...],
     video: Path | None,
+    rerun: str | None,
 ) -> int:
     """Run a method in a world: WORLD/TASK such as tabletop/rotate, or FILE.py:NAME.
 
@@ -79,12 +87,15 @@ def command(
     from wonderful_team.core.protocols import Filmed, offers
     from wonderful_team.errors import BudgetReached, FileNotWrittenError, reading
     from wonderful_team.record import read_run_plan
+    from wonderful_team.record.rerun_recording import RERUN_NAME, check_rerun
     from wonderful_team.registry.methods import team_mode
     from wonderful_team.registry.worlds import scene_name
     from wonderful_team.runtime.user_code import close_world
 
     if video is not None:
         check_video_name(video)
+    if rerun is not None:
+        check_rerun(Path(rerun) if rerun else None)
     plan = read_run_plan(find_run(plan_run, common.out)) if plan_run is not None else None
     if reobserve is None:
         reobserve = REOBSERVE if replans and plan is None else 0
@@ -110,6 +121,7 @@ def command(
             seed=seed,
             scene=scene_name(world, seed),
             subscribers=() if film is None else (film,),
+            rerun=False if rerun is None else rerun or True,
         )
     finally:
         close_world(place, progress.note)
@@ -120,4 +132,9 @@ def command(
             progress.note(f"video: {video} ({counted(len(film.frames), 'picture')})")
         except (FileNotWrittenError, BudgetReached) as error:
             unwritten.append(f"--video {error}")
-    return report_trial("run", trial, common, progress, {"video": None if video is None else str(video)}, unwritten)
+    written = None if rerun is None else Path(rerun) if rerun or trial.folder is None else trial.folder / RERUN_NAME
+    if written is not None and written.is_file():
+        progress.note(f"recording: {written} (`rerun FILE` shows it)")
+    files = {"video": video, "rerun": written}
+    told = {name: None if file is None else str(file) for name, file in files.items()}
+    return report_trial("run", trial, common, progress, told, unwritten)

@@ -4,17 +4,21 @@ from __future__ import annotations
 
 import base64
 import io
+from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 from markupsafe import Markup, escape
+from PIL import Image
 
+from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.text import PLACEHOLDER, recorded_names
 from wonderful_team.images import OWN_FORMATS, open_picture, to_jpeg
+from wonderful_team.pages.variants import Bases, Patch
 
 MOST_BYTES = 3_600_000
 """Bytes of pictures that a page may hold before base64 (4.8 MB of text); beyond, pictures get coarser, not fewer."""
@@ -22,6 +26,8 @@ _LEVELS = ((2000, 92), (1400, 82), (1000, 72), (640, 60), (400, 45), (240, 35))
 _LOSSLESS_BELOW_PX = 300 * 300
 _AS_IT_IS_BYTES = 12_000
 _JPEG_QUALITY = 88
+_OPENED_BYTES = 48_000_000
+"""So much of what was decoded is kept until it is coded."""
 _SAMPLED = 10
 """About so many pictures tell how large all will be."""
 
@@ -41,6 +47,10 @@ class Shown:
     file: str
 
 
+_Part: TypeAlias = tuple[Shown, Patch | None]
+"""A picture, or a place of one."""
+
+
 class Album:
     """All pictures of one page.
 
@@ -53,6 +63,7 @@ class Album:
         self._folder = folder
         self._files = files
         self._shown: dict[str, Shown | None] = {}
+        self._opened: dict[int, Array] = {}
 
     def get(self, key: str | None) -> Shown | None:
         """The picture with that hash, taken into the page; None when its file is missing."""
@@ -87,48 +98,95 @@ class Album:
         ).format(css, width, height, width, alt, alt, shown.number)
 
     def definitions(self) -> Markup:
-        """Every picture once, to be referred to."""
+        """Every picture once, to be referred to; of one that is another with a few changes, the changes alone."""
         taken = [shown for shown in self._shown.values() if shown is not None]
-        for way in self._ways(taken):
-            coded = [way(shown) for shown in taken]
+        variants = self._variants(taken)
+        parts = [
+            (shown, patch)
+            for shown in taken
+            for patch in (variants[shown.number][1] if shown.number in variants else (None,))
+        ]
+        for way in self._ways(parts):
+            coded = [way(part) for part in parts]
             if sum(len(code) for _, code in coded) <= MOST_BYTES:
                 break
-        lines = [
-            Markup('<image id="p{}" width="{}" height="{}" preserveAspectRatio="none" href="data:image/{};base64,{}"/>')
-            .format(shown.number, *shown.size_px, kind, base64.b64encode(code).decode("ascii"))
-            for shown, (kind, code) in zip(taken, coded, strict=True)
-        ]  # fmt: skip
+        held: dict[int, list[Markup]] = {shown.number: [] for shown in taken}
+        for (shown, patch), (kind, code) in zip(parts, coded if parts else (), strict=True):
+            held[shown.number].append(_held(shown, patch, kind, code))
+        self._opened.clear()
+        lines = []
+        for number, pieces in held.items():
+            if number in variants:
+                base = Markup('<use href="#p{}"/>').format(variants[number][0])
+                pieces = [Markup('<g id="p{}">{}{}</g>').format(number, base, Markup("").join(pieces))]
+            lines += pieces
         return Markup("\n").join(lines)
 
-    def _ways(self, taken: Sequence[Shown]) -> Iterator[Callable[[Shown], tuple[str, bytes]]]:
+    def _variants(self, taken: Sequence[Shown]) -> dict[int, tuple[int, tuple[Patch, ...]]]:
+        """From a picture's number to that of the one that it is a variant of, and where it differs."""
+        bases, found = Bases(), dict[int, tuple[int, tuple[Patch, ...]]]()
+        sizes = Counter(shown.size_px for shown in taken)
+        for shown in taken:
+            if sizes[shown.size_px] > 1 and (self._folder / shown.file).stat().st_size > _AS_IT_IS_BYTES:
+                variant = bases.place(shown.number, self._pixels(shown))
+                if variant is not None:
+                    found[shown.number] = variant
+        return found
+
+    def _pixels(self, shown: Shown, patch: Patch | None = None) -> Array:
+        rgb = self._opened.get(shown.number)
+        if rgb is None:
+            with open_picture(self._folder / shown.file, OWN_FORMATS) as opened:
+                rgb = np.asarray(opened.convert("RGB"))
+            while self._opened and sum(one.nbytes for one in self._opened.values()) + rgb.nbytes > _OPENED_BYTES:
+                self._opened.pop(next(iter(self._opened)))
+            self._opened[shown.number] = rgb
+        return rgb if patch is None else rgb[patch[1] : patch[3], patch[0] : patch[2]]
+
+    def _ways(self, parts: Sequence[_Part]) -> Iterator[Callable[[_Part], tuple[str, bytes]]]:
         """Ways to code pictures, the best first, without those after which all of them would be too large; never none."""
-        ways: list[Callable[[Shown], tuple[str, bytes]]] = [self._quickly]
+        ways: list[Callable[[_Part], tuple[str, bytes]]] = [self._quickly]
         ways += [partial(self._coarser, side, quality) for side, quality in _LEVELS]
-        few = taken[:: max(1, len(taken) // _SAMPLED)]
+        few = parts[:: max(1, len(parts) // _SAMPLED)]
         for number, way in enumerate(ways, start=1):
-            share = len(taken) / max(1, len(few))
+            share = len(parts) / max(1, len(few))
             # So few that each way is tried as well on all of them.
             known = share == 1.0 or number == len(ways)
-            if known or share * sum(len(way(shown)[1]) for shown in few) <= MOST_BYTES:
+            if known or share * sum(len(way(part)[1]) for part in few) <= MOST_BYTES:
                 yield way
 
-    def _quickly(self, shown: Shown) -> tuple[str, bytes]:
+    def _quickly(self, part: _Part) -> tuple[str, bytes]:
         """Small pictures and JPEG files as they are, others as JPEG: a fifth of the time of WebP, and twice its size."""
+        shown, patch = part
         path = self._folder / shown.file
         kind = "jpeg" if shown.file.endswith(".jpg") else "png"
-        if kind == "jpeg" or path.stat().st_size <= _AS_IT_IS_BYTES:
+        if patch is None and (kind == "jpeg" or path.stat().st_size <= _AS_IT_IS_BYTES):
             return kind, path.read_bytes()
-        with open_picture(path, OWN_FORMATS) as opened:
-            return "jpeg", to_jpeg(np.asarray(opened.convert("RGB")), _JPEG_QUALITY)
+        return "jpeg", to_jpeg(self._pixels(shown, patch), _JPEG_QUALITY)
 
-    def _coarser(self, most_px: int, quality: int, shown: Shown) -> tuple[str, bytes]:
-        with open_picture(self._folder / shown.file, OWN_FORMATS) as opened:
-            image = opened.convert("RGB")
-        lossless = image.width * image.height < _LOSSLESS_BELOW_PX and quality > 70
-        image.thumbnail((most_px, most_px))
+    def _coarser(self, most_px: int, quality: int, part: _Part) -> tuple[str, bytes]:
+        shown, patch = part
+        image = Image.fromarray(np.ascontiguousarray(self._pixels(shown, patch)))
+        lossless = shown.size_px[0] * shown.size_px[1] < _LOSSLESS_BELOW_PX and quality > 70
+        # A changed place as coarse as the picture that it belongs to.
+        scale = min(1.0, most_px / max(shown.size_px))
+        image.thumbnail((max(1, round(scale * image.width)), max(1, round(scale * image.height))))
         buffer = io.BytesIO()
         image.save(buffer, format="WEBP", quality=quality, lossless=lossless, method=0)
         return "webp", buffer.getvalue()
+
+
+def _held(shown: Shown, patch: Patch | None, kind: str, code: bytes) -> Markup:
+    """A picture of the page, or a changed place of one."""
+    text = base64.b64encode(code).decode("ascii")
+    if patch is None:
+        return Markup(
+            '<image id="p{}" width="{}" height="{}" preserveAspectRatio="none" href="data:image/{};base64,{}"/>'
+        ).format(shown.number, *shown.size_px, kind, text)
+    x0, y0, x1, y1 = patch
+    return Markup(
+        '<image x="{}" y="{}" width="{}" height="{}" preserveAspectRatio="none" href="data:image/{};base64,{}"/>'
+    ).format(x0, y0, x1 - x0, y1 - y0, kind, text)
 
 
 def text_in_svg(x: float, y: float, text: str, css: str, size: float) -> Markup:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from wonderful_team.core.text import counted
 from wonderful_team.pages.look_up import chapters, target_words
 from wonderful_team.pages.pictures import Album
 from wonderful_team.pages.words import step_words
@@ -80,11 +81,20 @@ def execution(record: dict[str, Any], album: Album) -> list[dict[str, Any]]:
                 "replan": run["plan"] or 0,
                 "before": album.image(_view(run, "before"), f"before {name}", "wide"),
                 "after": album.image(_view(run, "after"), f"after {name}", "wide"),
-                "reports": [{**report, "words": step_words(report["step"], target_words(plan))} for report in reports],
+                "reports": [_report(report, target_words(plan)) for report in reports],
                 "verdict": _verdict(planner["verdicts"], position, name),
             }
         )
     return found
+
+
+def _report(report: dict[str, Any], names: dict[str, str]) -> dict[str, Any]:
+    """One report; of a measured path, which is drawn elsewhere, only how many points it has."""
+    measured = {
+        name: counted(len(value), "point") if name == "path_m" and isinstance(value, list) else value
+        for name, value in report["measured"].items()
+    }
+    return {**report, "measured": measured, "words": step_words(report["step"], names)}
 
 
 def _view(run: dict[str, Any], when: str) -> str:

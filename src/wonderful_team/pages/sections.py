@@ -12,6 +12,7 @@ from wonderful_team.core.text import counted, ending_words, recorded_names, spok
 from wonderful_team.core.values import refusal_words
 from wonderful_team.pages import cost
 from wonderful_team.pages.look_up import grounded_plan, last_plan, main_key, scene_of
+from wonderful_team.pages.motion import motions
 from wonderful_team.pages.pictures import Album, pictured
 from wonderful_team.pages.plans import plans, replans
 from wonderful_team.pages.requests import Asked
@@ -26,6 +27,7 @@ __all__ = [
     "execution",
     "head",
     "instruction",
+    "motions",
     "overviews",
     "plans",
     "replans",

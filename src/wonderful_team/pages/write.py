@@ -95,6 +95,7 @@ def _content(record: dict[str, Any], album: Album) -> dict[str, Any]:
         "detected": sections.detected(record, album),
         "targets": sections.targets(record, album, asked),
         "actions": sections.actions(record),
+        "motions": sections.motions(record, album),
         "execution": sections.execution(record, album),
         "replans": sections.replans(record),
         "roles": cost.per_role(asked),

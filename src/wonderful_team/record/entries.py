@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from typing import Any
 
+from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.jsonable import to_jsonable
 from wonderful_team.core.pictures import Picture
 from wonderful_team.core.values import (
     Answer,
     GateReport,
+    HeightProfile,
     Instruction,
     Observation,
     PlannedAction,
@@ -144,7 +147,20 @@ def instruction_entry(instruction: Instruction, store: PictureStore) -> dict[str
 def gate_entry(where: str, report: GateReport) -> dict[str, Any]:
     """One passage through the gate."""
     checks = [{key: value for key, value in to_jsonable(check).items() if key != "type"} for check in report.checks]
-    return {"where": where, "admitted": report.admitted, "checks": checks}
+    entry = {"where": where, "admitted": report.admitted, "checks": checks}
+    return {**entry, "profiles": [profile_entry(one) for one in report.profiles]} if report.profiles else entry
+
+
+def profile_entry(profile: HeightProfile) -> dict[str, Any]:
+    """The tool's way in one action, to a tenth of a millimetre; null where no height is known."""
+    heights = {name: _tenths(getattr(profile, name)) for name in ("low_m", "surface_m", "goal_m")}
+    points = [_tenths(point) for point in profile.points_m]
+    nearest = {"clearance_m": profile.clearance_m, "least_m": profile.least_m, "nearest": profile.nearest}
+    return {"action": profile.action, "points_m": points, **heights, **nearest, "stays": profile.stays}
+
+
+def _tenths(values: Array) -> list[float | None]:
+    return [round(float(value), 4) if math.isfinite(value) else None for value in values]
 
 
 def execution_entry(number: int, planned: PlannedAction, report: StepReport) -> dict[str, Any]:

@@ -134,6 +134,24 @@ class DecisionEntry(_Part):
     so_far: SoFar
 
 
+class ProfileEntry(_Part):
+    """The tool's way in one action over what depth shows, point by point [m, base frame]; null where no height is known.
+
+    `low_m` is the lowest point of what passes, `surface_m` what it has to clear, `goal_m` what the action is meant to touch.
+    `clearance_m` is the smallest distance between, at the point numbered `nearest`, and `least_m` how small it may be.
+    """
+
+    action: int = Field(ge=0)
+    points_m: list[tuple[float, float, float]] = Field(min_length=1, max_length=4000)
+    low_m: list[float] = Field(max_length=4000)
+    surface_m: list[float | None] = Field(max_length=4000)
+    goal_m: list[float | None] = Field(max_length=4000)
+    clearance_m: float | None = None
+    least_m: float | None = None
+    nearest: int | None = None
+    stays: bool = False
+
+
 class GateEntry(_Part):
     """One passage through the safety gate."""
 
@@ -141,6 +159,7 @@ class GateEntry(_Part):
     where: str
     admitted: bool
     checks: list[dict[str, Any]]
+    profiles: list[ProfileEntry] = []
 
 
 class ExecutionEntry(_Part):

@@ -126,7 +126,9 @@ def _view(folder: Path, record: Mapping[str, Any], key: str, facts: Mapping[str,
     if picture_hash(rgb) != key:
         raise ConfigError(f"{path}: {what} is not the picture that was recorded (its hash is not {key})")
     depth = None if facts["depth"] is None else _depth(file_of_run(folder, facts["depth"], what), what)
-    return View(facts["id"], facts["camera_name"], facts["time_s"], rgb, depth, _camera(folder, facts["camera"], what))
+    return View(
+        facts["id"], facts["camera_name"], facts["time_s"], rgb, depth, stored_camera(folder, facts["camera"], what)
+    )
 
 
 def _depth(path: Path, what: str) -> Array:
@@ -137,7 +139,12 @@ def _depth(path: Path, what: str) -> Array:
         raise ConfigError(f"{path}: depth of {what} cannot be read: {error}") from error
 
 
-def _camera(folder: Path, told: Mapping[str, Any] | None, what: str) -> Camera | None:
+def stored_camera(folder: Path, told: Mapping[str, Any] | None, what: str) -> Camera | None:
+    """The camera of a view; None where it had none.
+
+    Raises:
+        ConfigError: It is of a kind that records do not keep, or broken.
+    """
     if told is None:
         return None
     if "unknown" in told:

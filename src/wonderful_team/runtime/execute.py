@@ -149,7 +149,8 @@ class Execution:
         )
         if read is None:
             return now, report
-        return now, GateReport((*read_plan_checks(read, self._world.instruction, now, self._strict), *report.checks))
+        read_checks = read_plan_checks(read, self._world.instruction, now, self._strict)
+        return now, replace(report, checks=(*read_checks, *report.checks))
 
     def _run_all(
         self, decision: Act, then: Observation, now: Observation, horizon: int | None, read: ReadPlan | None

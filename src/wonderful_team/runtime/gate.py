@@ -16,15 +16,25 @@ from wonderful_team.core.actions import Vocabulary
 from wonderful_team.core.geometry import Box
 from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.jsonable import to_jsonable
-from wonderful_team.core.motions import Carry, Drive, Leave, Lost
+from wonderful_team.core.motions import Carry, Drive, Leave, Lost, Reach
 from wonderful_team.core.text import counted
-from wonderful_team.core.values import GateCheck, GateReport, KeepOut, Limits, Observation, Plan, PlannedAction
+from wonderful_team.core.values import (
+    GateCheck,
+    GateReport,
+    HeightProfile,
+    KeepOut,
+    Limits,
+    Observation,
+    Plan,
+    PlannedAction,
+)
 from wonderful_team.images.keep_out import table_height_m
 from wonderful_team.runtime.agreement import agreement_checks, class_checks, form_checks, repeat_checks, size_checks
 from wonderful_team.runtime.approval import Approval, Declined, approval_checks, approved_id
 from wonderful_team.runtime.course import Course, Stage
 from wonderful_team.runtime.keep_out_checks import keep_out_checks, keep_out_px_checks
-from wonderful_team.runtime.seen_checks import height_checks, place_checks, way_checks
+from wonderful_team.runtime.passing import Piece, pieces_of, profile_of
+from wonderful_team.runtime.seen_checks import height_checks, least_clearance_m, place_checks, way_checks
 from wonderful_team.runtime.staleness import MAX_AGE_S, staleness_checks, watched
 from wonderful_team.runtime.sweep import Sweep, sweep_of, swept_path_px
 
@@ -85,10 +95,13 @@ def check_gate(
     checks += approval_checks(approved_id(plan, actions), picture, page, approval, approval_required)
     regions = (*limits.keep_out, *(plan.keep_out if plan is not None else ()))
     passage = _Passage(plan, limits, now, regions, must_run, tool_radius_m, measured_heights)
+    profiles: list[HeightProfile] = []
     for index, planned in enumerate(actions):
         found = form_checks(planned, vocabulary)
         if all(check.ok or check.name == "vocabulary" for check in found):
             found += passage.next(planned)
+            profile = passage.profile(index, len(actions))
+            profiles += [] if profile is None else [profile]
         else:
             # What such an action does, and where the tool is after it, nobody knows.
             passage.lost()
@@ -101,7 +114,7 @@ def check_gate(
         expected_change=expected_change,
         max_age_s=max_age_s,
     )
-    return GateReport(tuple(checks))
+    return GateReport(tuple(checks), tuple(profiles))
 
 
 class _Passage:
@@ -121,11 +134,20 @@ class _Passage:
         self._must_run, self._tool_radius_m, self._measured = must_run, tool_radius_m, measured_heights
         self._course = Course(now.main, plan, table_height_m(limits), holding=bool(now.robot and now.robot.holding))
         self._tool_m = _tool_m(now)
+        self._way: tuple[Stage, tuple[Piece, ...]] | None = None
 
     def lost(self) -> None:
         self._tool_m = None
 
+    def profile(self, index: int, actions: int) -> HeightProfile | None:
+        """Of the action that was checked last."""
+        if self._way is None:
+            return None
+        stage, pieces = self._way
+        return profile_of(index, pieces, least_clearance_m(stage), actions, isinstance(stage.motion, Reach))
+
     def next(self, planned: PlannedAction) -> list[GateCheck]:
+        self._way = None
         if planned.action is None:
             return self._pixel_checks(planned)
         held = self._held(planned)
@@ -168,7 +190,9 @@ class _Passage:
         if not isinstance(motion, Drive):
             checks += height_checks(stage, limits, self._measured)
             checks += place_checks(stage, limits)
-            checks += way_checks(stage, sweep, self._tool_radius_m)
+            pieces = pieces_of(stage, sweep, self._tool_radius_m)
+            self._way = stage, pieces
+            checks += way_checks(stage, pieces, self._tool_radius_m)
         camera = self._now.main.camera
         return checks + keep_out_checks(sweep, stage.carried, self._regions, camera, limits, self._tool_radius_m)
 

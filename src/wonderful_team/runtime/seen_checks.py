@@ -2,29 +2,27 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 import shapely
-from shapely import LineString, Point
 
 from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.motions import Carry, Motion, Reach, Slide
 from wonderful_team.core.values import GateCheck, Limits, View
 from wonderful_team.images.relief import Relief, covered, outline
 from wonderful_team.runtime.course import Stage
-from wonderful_team.runtime.sweep import Sweep
+from wonderful_team.runtime.passing import LEAST_SPECKS, PROUD_M, Piece
 
 AGREE_M = 0.02
 """How far the height of a pick or of a place that no plan names may be from the surface seen there [m]."""
-PROUD_M = 0.01
-"""How much higher than the place something may be before it stands in the way [m]; depth noise."""
 PUSHED_M = 0.015
 """What is less than this higher than a push lies flat, such as a line or a sheet [m]."""
 OFF_M = 0.02
 """How far from where it was expected a thing may have come to lie [m]."""
-SPECKS_SHARE, LEAST_SPECKS = 0.01, 3
-"""So few of the points of a place do not make a thing: edges that are seen unsharp."""
+SPECKS_SHARE = 0.01
+"""So few of the points of a place, or `LEAST_SPECKS` of them, do not make a thing: edges that are seen unsharp."""
 LEVEL_SHARE = 0.5
 """So much of what is round a place must not lie lower than the place, or it is the top of something."""
 AROUND_SHARE, LEAST_AROUND_M = 0.35, 0.012
@@ -201,38 +199,24 @@ def _level(shape: Any, z_m: float, relief: Relief, others: Array, limits: Limits
     ]
 
 
-def way_checks(stage: Stage, sweep: Sweep, tool_radius_m: float) -> list[GateCheck]:
+def way_checks(stage: Stage, pieces: Sequence[Piece], tool_radius_m: float) -> list[GateCheck]:
     """Whether what is seen is lower than what passes over it."""
-    relief, carried = stage.relief, stage.carried
-    if relief is None or not len(relief.xyz_m) or sweep.path_m is None:
+    relief = stage.relief
+    if relief is None or not len(relief.xyz_m):
         return []
-    checks = []
-    if sweep.transit_m is not None and isinstance(stage.motion, Carry | Slide):
-        low = float(sweep.transit_m[:, 2].min())
-        checks.append(_over("on the way there", sweep.transit_m, tool_radius_m, low, relief, None))
-    if isinstance(stage.motion, Carry):
-        over = sweep.path_m[1:3]
-        hanging = carried.hanging_m if carried is not None else 0.0
-        reach = max(tool_radius_m, carried.radius_m if carried is not None else 0.0)
-        checks.append(_over("under the way", over, reach, float(over[:, 2].min()) - hanging, relief, stage.own))
-    elif isinstance(stage.motion, Slide):
-        checks += _pushed(stage.motion, stage, relief, tool_radius_m)
-    elif isinstance(stage.motion, Reach) and stage.motion.planned:
-        path = sweep.path_m if sweep.transit_m is None else np.vstack([sweep.transit_m, sweep.path_m])
-        checks.append(_along(path, stage, relief, tool_radius_m))
-    return checks
+    if isinstance(stage.motion, Carry | Slide):
+        checks = [_level_way(piece) for piece in pieces if piece.check]
+        return checks + (_pushed(stage.motion, stage, relief, tool_radius_m) if isinstance(stage.motion, Slide) else [])
+    return [_free_way(pieces)] if pieces else []
 
 
-def _over(name: str, path: Array, reach_m: float, low_m: float, relief: Relief, own: Array | None) -> GateCheck:
+def _level_way(piece: Piece) -> GateCheck:
     """Nothing under a level way is as high as the lowest point of what passes."""
-    found = relief.inside(LineString(path[:, :2]).buffer(reach_m)) if len(path) > 1 else relief.near(path[0], reach_m)
-    if own is not None:
-        found &= ~own
-    heights = np.sort(relief.xyz_m[found, 2])[::-1]
-    top = float(heights[min(LEAST_SPECKS, len(heights) - 1)]) if len(heights) else -np.inf
-    room = low_m - PROUD_M - top
-    value = "nothing seen" if not len(heights) else f"{top:z.3f} m is the highest there"
-    return GateCheck(None, name, room >= 0, value, f"below {low_m - PROUD_M:.3f} m", f"{room:+.3f} m")
+    low, nearest = float(piece.start_m[2]) - piece.hanging_m, piece.in_order()
+    top = float(piece.top_m[nearest[0]]) if len(nearest) else -np.inf
+    room = low - PROUD_M - top
+    value = "nothing seen" if not len(nearest) else f"{top:z.3f} m is the highest there"
+    return GateCheck(None, piece.check, room >= 0, value, f"below {low - PROUD_M:.3f} m", f"{room:+.3f} m")
 
 
 def _pushed(slide: Slide, stage: Stage, relief: Relief, tool_radius_m: float) -> list[GateCheck]:
@@ -252,35 +236,17 @@ def _pushed(slide: Slide, stage: Stage, relief: Relief, tool_radius_m: float) ->
     return [GateCheck(None, "push starts on free ground", room >= 0, value, limit, f"{room:+.3f} m")]
 
 
-def _along(path: Array, stage: Stage, relief: Relief, tool_radius_m: float) -> GateCheck:
+def _free_way(pieces: Sequence[Piece]) -> GateCheck:
     """A tool that moves freely stays above what is seen, but for what it is sent to."""
-    carried = stage.carried
-    reach = max(tool_radius_m, carried.radius_m if carried is not None else 0.0)
-    hanging = carried.hanging_m if carried is not None else 0.0
-    others = np.ones(len(relief.xyz_m), dtype=bool) if stage.own is None else ~stage.own
-    room = np.inf
-    for start, end in zip(path[:-1], path[1:], strict=True) if len(path) > 1 else [(path[0], path[0])]:
-        flat = float(np.linalg.norm(end[:2] - start[:2]))
-        shape = LineString([start[:2], end[:2]]).buffer(reach) if flat > 1e-9 else _disc(end, reach)
-        found = others & relief.inside(shape)
-        points = relief.xyz_m[found]
-        if stage.meant is not None:
-            points = points[~_within(points[:, :2], stage.meant)]
-        if not len(points):
-            continue
-        share = np.zeros(len(points))
-        if flat > 1e-9:
-            share = np.clip((points[:, :2] - start[:2]) @ (end[:2] - start[:2]) / flat**2, 0.0, 1.0)
-        lowest = start[2] + share * (end[2] - start[2]) if flat > 1e-9 else np.full(len(points), min(start[2], end[2]))
-        gaps = np.sort(lowest - hanging + PROUD_M - points[:, 2])
-        room = min(room, float(gaps[min(LEAST_SPECKS, len(gaps) - 1)]))
+    room = min(piece.clearance_m for piece in pieces) + PROUD_M
     value = "nothing seen" if not np.isfinite(room) else f"{room - PROUD_M:+.3f} m over what is seen"
     margin = f"{room:+.3f} m" if np.isfinite(room) else ""
     return GateCheck(None, "under the way", bool(room >= 0), value, f"at least {-PROUD_M:.3f} m", margin)
 
 
-def _disc(at_m: Array, radius_m: float) -> Any:
-    return Point(float(at_m[0]), float(at_m[1])).buffer(radius_m)
+def least_clearance_m(stage: Stage) -> float:
+    """How much lower than what passes over it the checks of the way want what is seen to lie [m]."""
+    return PROUD_M if isinstance(stage.motion, Carry | Slide) else -PROUD_M
 
 
 def _within(points: Array, shape: Any) -> Array:

@@ -10,6 +10,7 @@ from wonderful_team.core.actions import Trajectory
 from wonderful_team.core.geometry import Pose
 from wonderful_team.sims.arms import make_world
 from wonderful_team.sims.arms.wiping import OVER_M, SPONGE_HALF_M, Wiping, lanes
+from wonderful_team.sims.arms.world import TRACED
 from wonderful_team.sims.tabletop.model import Thing
 from wonderful_team.sims.tabletop.shapes import WELL_M
 
@@ -62,6 +63,11 @@ def test_only_a_sponge_that_presses_on_the_plate_cleans_it() -> None:
         assert work.covered == 0.0
         low = air - np.array([0.0, 0.0, OVER_M - 0.006])
         report = world.execute(Trajectory(np.vstack([air[:1], low, air[1:]])))
+        way = np.array(report.measured["path_m"])
+        assert 10 < len(way) <= TRACED
+        assert way[0] == pytest.approx(air[0], abs=0.01), "measured from where the path itself begins"
+        assert way[-1] == pytest.approx(report.measured["tool_m"], abs=0.005)
+        assert way[:, 2].min() < 0.05 < way[:, 2].max()
         assert report.executed, report.fault
         assert report.measured["contact"]
         assert 0.15 < work.covered < 0.5

@@ -47,6 +47,9 @@ def test_the_centre_lands_at_place_plus_the_turned_offset(world: TabletopWorld) 
     assert report.fault is None
     assert report.measured["held"] is True
     assert report.measured["contact_height_m"] == pytest.approx(0.034, abs=0.001)
+    touched, let_go = np.array(report.measured["path_m"])
+    assert touched == pytest.approx([*pick[:2], report.measured["contact_height_m"]], abs=1e-3)
+    assert let_go == pytest.approx([*place[:2], report.measured["release_height_m"]], abs=1e-3)
     turn = np.array([[math.cos(yaw), -math.sin(yaw)], [math.sin(yaw), math.cos(yaw)]])
     offset = np.array(before["position_m"])[:2] - pick[:2]
     after = _thing(world, "letter")
@@ -62,6 +65,7 @@ def test_a_hole_and_a_fixed_container_do_not_hold(world: TabletopWorld, name: st
     assert report.executed
     assert report.measured["held"] is False
     assert report.measured["release_height_m"] is None
+    assert len(report.measured["path_m"]) == 1, "it touched, and let nothing go"
     assert world.privileged.truth()["things"] == before
 
 

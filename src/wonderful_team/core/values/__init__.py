@@ -25,6 +25,7 @@ from wonderful_team.core.values.request import Answer, Note, Part, Request, Sent
 from wonderful_team.core.values.result import (
     GateCheck,
     GateReport,
+    HeightProfile,
     StepReport,
     SubgoalRun,
     Trial,
@@ -42,6 +43,7 @@ __all__ = [
     "DetectorRun",
     "GateCheck",
     "GateReport",
+    "HeightProfile",
     "GroundTruthView",
     "GroundedTarget",
     "GroundingEvent",

@@ -6,7 +6,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
+import numpy as np
+
 from wonderful_team.core.actions import Action
+from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.values.observation import Observation
 from wonderful_team.core.values.plan import Plan, Provenance
 from wonderful_team.core.values.request import Usage
@@ -55,10 +58,56 @@ class GateCheck:
 
 
 @dataclass(frozen=True, eq=False)
+class HeightProfile:
+    """The tool's way in one action over what depth shows, as the gate checked it.
+
+    Attributes:
+        action: Which one, from 0.
+        points_m: Of the tool, from where the action begins, straight in between, shape (N, 3) [m], base frame.
+        low_m: Lowest point of what passes there, the tool or what it carries, shape (N,) [m].
+        surface_m: Highest of what is seen there and has to be cleared, shape (N,) [m]; NaN where nothing is, or not looked for.
+        goal_m: Highest of what the action is meant to touch there, shape (N,) [m]; NaN where nothing is.
+        clearance_m: Smallest distance from what passes down to what is seen [m]: the number of the gate's check; None where
+            nothing is seen.
+        least_m: How small it may be [m]; None where nothing is seen.
+        nearest: At which of the points it is; None where nothing is seen.
+        stays: Whether the tool stands at the last of the points afterwards; the end of picking and placing is the world's own doing.
+    """
+
+    action: int
+    points_m: Array
+    low_m: Array
+    surface_m: Array
+    goal_m: Array
+    clearance_m: float | None = None
+    least_m: float | None = None
+    nearest: int | None = None
+    stays: bool = False
+
+    def __post_init__(self) -> None:
+        for name, shape in (("points_m", (None, 3)), ("low_m", (None,)), ("surface_m", (None,)), ("goal_m", (None,))):
+            array = np.array(getattr(self, name), dtype=np.float64)
+            if (
+                array.ndim != len(shape)
+                or (shape[-1] and array.shape[-1] != shape[-1])
+                or len(array) != len(self.low_m)
+            ):
+                raise ValueError(f"{name}: expected one row for each of {len(self.low_m)} points, got {array.shape}")
+            array.setflags(write=False)
+            object.__setattr__(self, name, array)
+
+
+@dataclass(frozen=True, eq=False)
 class GateReport:
-    """All checks of one passage through the gate."""
+    """All checks of one passage through the gate.
+
+    Attributes:
+        checks: In the order of the actions.
+        profiles: The tool's way in every action that has one in metres.
+    """
 
     checks: tuple[GateCheck, ...]
+    profiles: tuple[HeightProfile, ...] = ()
 
     @property
     def admitted(self) -> bool:

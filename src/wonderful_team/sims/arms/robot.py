@@ -64,6 +64,7 @@ class Robot:
     Attributes:
         watch: Called after every command to the servos.
         each_step: Called after every step of physics.
+        trace: Where the tool was after every command, while somebody wants to know; None otherwise.
         tip_m: Where the tool's point lies, seen from the middle between the fingertips, in the tool's own frame [m]: that
             of a pen that the fingers hold, for instance.
     """
@@ -85,6 +86,7 @@ class Robot:
         self._fingers = [built.arm_id(obj.mjOBJ_BODY, name) for name in row.fingers]
         self.watch: Callable[[], None] | None = None
         self.each_step: Callable[[], None] | None = None
+        self.trace: list[Array] | None = None
         self.tip_m = np.zeros(3)
         self._halted = False
         self._lean_m = 0.0
@@ -372,6 +374,8 @@ class Robot:
             if self.each_step is not None:
                 self.each_step()
         self._told = told
+        if self.trace is not None:
+            self.trace.append(self.tool_m)
         if self.watch is not None:
             self.watch()
 

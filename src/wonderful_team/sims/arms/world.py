@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -32,6 +33,8 @@ REASONS = {
 }
 
 
+TRACED = 60
+"""Most points of a measured path that a report holds."""
 LOST = "the fingers have closed on nothing: what they held slipped or was knocked out"
 
 
@@ -96,6 +99,7 @@ class ArmWorld(SimulatedWorld[ArmTable, ArmTruth]):
                 assert isinstance(action, Home)
                 fault, moved = "", robot.park()
         report = self._report(action, fault, moved)
+        robot.trace = None
         held, self._held = self._held, robot.holding
         if held and not robot.holding and not isinstance(action, Gripper):
             return StepReport(action, False, report.measured, LOST)
@@ -119,6 +123,9 @@ class ArmWorld(SimulatedWorld[ArmTable, ArmTruth]):
                     moved = Moved(0.0, moved.error_rad, moved.force_n)
                     robot.press()
             before_low = low
+            if robot.trace is None:
+                # The way to the first point is the arm's own; from there on the path is followed, and measured.
+                robot.trace = [robot.tool_m]
             force = max(force, moved.force_n)
             if moved.stopped_by:
                 break
@@ -149,6 +156,8 @@ class ArmWorld(SimulatedWorld[ArmTable, ArmTruth]):
             "holding": robot.holding,
             "held_width_m": round(robot.opening_m, 4) if robot.holding else None,
         }
+        if robot.trace:
+            found["path_m"] = [tuple(round(float(v), 4) for v in point) for point in evenly(robot.trace, TRACED)]
         if moved is not None:
             found |= {
                 "pose_error_m": round(moved.error_m, 4),
@@ -169,6 +178,12 @@ class ArmWorld(SimulatedWorld[ArmTable, ArmTruth]):
         """The arm stays where it is from the next command on, and what it holds stays held, until a new world is made."""
         self._stopped = True
         self._table.robot.halt()
+
+
+def evenly(points: Sequence[Array], most: int) -> list[Array]:
+    """At most so many of the points, the first and the last among them."""
+    kept = np.unique(np.linspace(0, len(points) - 1, min(most, len(points))).round().astype(int))
+    return [points[k] for k in kept]
 
 
 def _facts(row: ArmRow, table: ArmTable) -> str:

@@ -111,6 +111,9 @@ class Spatula(Tool):
             "lowered": start is not None,
             "start_m": None if start is None else tuple(round(float(v), 4) for v in start),
             "end_m": None if end is None else tuple(round(float(v), 4) for v in end),
+            "path_m": [
+                (*(round(float(v), 4) for v in point), OVER_TABLE_M) for point in (start, end) if point is not None
+            ],
             "short_of_end_m": None if short is None else round(short, 4),
         }
 

@@ -57,28 +57,33 @@ class Suction(Tool):
         place = np.array([float(v) for v in action.place_m[:2]])
         under_pick, under_place = self.thing_under(x, y), self.thing_under(*place)
         body, contact_z = self._look_down(x, y)
-        self.tool_m = np.array([x, y, contact_z])
+        self.tool_m = touched = np.array([x, y, contact_z])
         if body not in self._movable or not self._seals(body, x, y, contact_z):
             self.tool_m = np.array([x, y, HOME_M[2]])
-            return Picked(None, under_pick, under_place, self._measured(False, contact_z, None, action))
+            return Picked(None, under_pick, under_place, self._measured(False, contact_z, None, action, touched))
         self._attach(body)
         self.holding = True
         self._carry(np.array([x, y, contact_z + LIFT_M]), 0.0, CARRY_SPEED_M_S)
         self._carry(np.array([*place, contact_z + LIFT_M]), action.yaw_rad, CARRY_SPEED_M_S)
         self._lower(body, contact_z, action.yaw_rad)
-        released_z = float(self.tool_m[2])
+        released = np.array(self.tool_m)
         self._release(body)
         settle(self._built, self._state)
         self.holding = False
         self.tool_m = np.array([*place, HOME_M[2]])
-        return Picked(self._names[body], under_pick, under_place, self._measured(True, contact_z, released_z, action))
+        measured = self._measured(True, contact_z, float(released[2]), action, touched, released)
+        return Picked(self._names[body], under_pick, under_place, measured)
 
-    def _measured(self, held: bool, contact_z: float, released_z: float | None, action: PickPlace) -> dict[str, Any]:
+    def _measured(
+        self, held: bool, contact_z: float, released_z: float | None, action: PickPlace, *touched: Array
+    ) -> dict[str, Any]:
+        """`touched`: where the tool touched the thing, and where it let it go."""
         return {
             "held": held,
             "contact_height_m": round(contact_z, 4),
             "release_height_m": None if released_z is None else round(released_z, 4),
             "tool_m": tuple(round(float(v), 4) for v in self.tool_m),
+            "path_m": [tuple(round(float(v), 4) for v in point) for point in touched],
             "turned_rad": round(float(action.yaw_rad), 4) if held else 0.0,
         }
 

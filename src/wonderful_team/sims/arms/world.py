@@ -29,6 +29,7 @@ REASONS = {
     "collision": "stopped: something pressed on the arm",
     "contact": "stopped: the tool touched something on its way down",
     "stop": "the world was stopped",
+    "wrist": "the wrist does not turn so far from how it stands: let go, turn back, and take hold again",
 }
 
 
@@ -88,7 +89,7 @@ class ArmWorld(SimulatedWorld[ArmTable, ArmTruth]):
             case Gripper(state=state):
                 fault, moved = "", self._table.grip(state != "open", state == "tight")
             case RotateGripper(yaw_rad=yaw):
-                fault, moved = "", robot.move(robot.tool_m, robot.yaw_rad + yaw)
+                fault, moved = "", robot.rotate(yaw)
             case Trajectory(waypoints_m=points):
                 fault = self._out_of_reach(points)
                 moved = None if fault else self._follow(points)

@@ -116,7 +116,10 @@ id and give no coordinates.
   negative; 0 when nothing is said.
 - With a gripper: open, move above, move at, close, move clear, then move above the place, move at, open, move clear.
 - A subgoal with a helper function is carried out with a follow step that names it. contact surface: the tool is lowered
-  to the surface at the first point and lifted after the last, as for drawing or wiping; air: it stays clear.
+  to the surface at the first point and lifted after the last, as for drawing or wiping; air: it stays clear, with what it
+  holds. To shake a thing: grip it tightly, move clear, follow in the air, then put it back at its origin.
+- To screw something off, such as a cap: grip it tightly, turn the gripper anticlockwise while it holds, move clear with it and put
+  it down in a free place. Where the wrist has no room for the whole turn: open, turn back, close tightly and turn again.
 - If Verification asked about the last version, repair what it found and keep the rest.
 """
 
@@ -127,6 +130,13 @@ list of (x, y) in pixels of the picture, whose width and height are stated with 
   the path fits the things; do not type positions that you read off the picture.
 - Plain Python with functions, loops and the math module. Nothing else can be imported; there are no files, no input,
   no yield and no classes that inherit.
+- These functions are there for you to call; centre is (x, y), turn_deg and other angles are degrees, clockwise from straight up:
+  polygon(centre, radius, sides, turn_deg), star(centre, radius, tips, inner, turn_deg), circle(centre, radius, points,
+  turn_deg) are closed; arc(centre, radius, start_deg, end_deg, points); spiral(centre, radius, turns, points,
+  start_radius); raster(box, lanes, margin) goes to and fro over a box (x0, y0, x1, y1), 2 points a lane; shake(centre, up,
+  times) goes up and down in the air, 2 points a time and one more. tips, inner, points, turns, start_radius, lanes, margin, times and turn_deg may be left out.
+- A path in the air may rise: then every point is (x, y, up), where up is metres over the height at which things are carried,
+  from 0 to what is stated. To shake a thing is such a path: several times up and down, or to and fro, then back.
 - At least two points and at most as many as stated; all inside the picture. The first is where the path begins.
 - If an error or a criticism of the last version is shown, repair its cause and return the whole function again.
 """
@@ -200,15 +210,18 @@ def _render_function(question: WriteFunction) -> list[Part]:
         *picture_parts(question.view, "the main view"),
         *listed("boxes, as (x0, y0, x1, y1) in pixels of this picture", boxes, "none"),
         *words(f"At most {question.max_points} points."),
+        *(words(f"In the air, up is from 0 to {question.most_up_m:.2f} m.") if question.most_up_m else []),
         *(words("Your last version:", fenced("code", question.last_code)) if question.last_code else []),
         *(words("What was wrong with it:", fenced("error", question.error)) if question.error else []),
     ]
 
 
 def _render_review_path(question: ReviewPath) -> list[Part]:
+    rises = [f"{number}: {up:.2f}" for number, up in enumerate(question.up_m, start=1)]
     return [
         *words(f"Subgoal {subgoal_words(question.subgoal)}"),
         *picture_parts(question.view, "the main view"),
+        *listed("How far up each point lies over the height at which things are carried [m]", rises),
     ]
 
 

@@ -9,6 +9,7 @@ import pytest
 
 from wonderful_team.errors import UnknownNameError
 from wonderful_team.sims.tabletop import make_world, partitions, task_names
+from wonderful_team.sims.tabletop.bottles import BOTTLES
 from wonderful_team.sims.tabletop.registering import filled, find_task
 from wonderful_team.sims.tabletop.shapes import shape_names
 from wonderful_team.sims.tabletop.textures import texture, texture_names

@@ -96,7 +96,9 @@ class Bottles:
                 continue
             moved = self.moved_m(bottle.name, poses)
             if bottle.name in self.lifted:
-                return Score(False, "wrong object", f"the {bottle.name} was lifted, and the {self.wanted.name} is meant")
+                return Score(
+                    False, "wrong object", f"the {bottle.name} was lifted, and the {self.wanted.name} is meant"
+                )
             if self.fallen(bottle.name, poses) or moved > MOVED_M:
                 return Score(False, "execution", f"the {bottle.name} was pushed {1000 * moved:.0f} mm, or over")
         return None

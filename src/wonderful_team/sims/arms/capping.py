@@ -35,11 +35,13 @@ BOTTLE_KG, FOOT = 0.6, (1.1, 0.01, 0.0001)
 """A full bottle, and the friction of its rubber foot."""
 GAP_M = 0.0003
 """A cap that is screwed down does not rub on the neck [m]."""
+STRIPE_M = 0.0004
+"""Half the thickness of the stripe on a cap, by which its turning is seen [m]."""
 STAYS_M = 0.05
 """The bottle may be pushed this far while it is opened [m]."""
-ON_M = 0.025
+ON_M = 0.03
 """A cap whose middle is no farther from the bottle's axis lies on the bottle [m]."""
-TURN_DEG, GRASP_M = 270.0, 0.018
+TURN_DEG, GRASP_M = 270.0, 0.017
 """How far the oracle turns, and how far below the cap's top it grips [m]."""
 STIFF, MOST_DEG = (0.004, 1.0), 3600.0
 """How stiffly thread and cap hang together, and the end of the hinge's range, which nothing reaches [degrees]."""
@@ -70,6 +72,10 @@ class Capped(Bottles):
             pieces = [geom for geom in body.geoms if geom.contype]
             for geom in pieces:
                 geom.mass, geom.friction[:] = BOTTLE_KG / len(pieces), FOOT
+            spec.body(cap.name).add_geom(
+                type=mj.mjtGeom.mjGEOM_BOX, size=(0.0015, cap.body.radius_m - 0.002, STRIPE_M), mass=0.0, contype=0, conaffinity=0,
+                pos=(0.0, 0.0, cap.body.height_m), rgba=(0.25, 0.25, 0.28, 1.0),
+            )  # fmt: skip
             thread = body.add_body(name=f"thread {bottle.name}", pos=(0.0, 0.0, cap.z_m))
             thread.add_geom(
                 type=mj.mjtGeom.mjGEOM_SPHERE, size=(0.005, 0, 0), mass=0.005, group=3, contype=0, conaffinity=0, rgba=(0, 0, 0, 0)

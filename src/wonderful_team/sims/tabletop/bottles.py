@@ -11,8 +11,8 @@ Disc: TypeAlias = tuple[float, float, float]
 """Radius, and the heights from which to which it stands [m]."""
 BOTTLES: dict[str, tuple[Disc, ...]] = {
     "bottle": ((0.027, 0.0, 0.068), (0.015, 0.068, 0.11)),
-    "screw-top bottle": ((0.033, 0.0, 0.08), (0.013, 0.08, 0.084)),
-    "cap": ((0.018, 0.0, 0.032),),
+    "screw-top bottle": ((0.039, 0.0, 0.08), (0.012, 0.08, 0.084)),
+    "cap": ((0.015, 0.0, 0.03),),
 }
 """By name: a bottle with a neck for two fingers, one whose neck a cap hides, and such a cap."""
 

@@ -96,7 +96,11 @@ class Shape:
 def shape_names(kind: Kind | None = None) -> tuple[str, ...]:
     """All names, or those of one kind that tasks may choose among."""
     chosen = {"kit": KIT, "base": BASES, "area": AREAS, "fruit": fruits.NAMES}
-    return chosen[kind] if kind else (*KIT, *SMALL, *BASES, THREE_SIDED, PLATE, *AREAS, *CARDS, *bottles.BOTTLES, *fruits.NAMES)
+    return (
+        chosen[kind]
+        if kind
+        else (*KIT, *SMALL, *BASES, THREE_SIDED, PLATE, *AREAS, *CARDS, *bottles.BOTTLES, *fruits.NAMES)
+    )
 
 
 @cache

@@ -130,13 +130,14 @@ list of (x, y) in pixels of the picture, whose width and height are stated with 
   the path fits the things; do not type positions that you read off the picture.
 - Plain Python with functions, loops and the math module. Nothing else can be imported; there are no files, no input,
   no yield and no classes that inherit.
-- These functions are there for you to call; centre is (x, y), turn_deg and other angles are degrees, clockwise from straight up:
-  polygon(centre, radius, sides, turn_deg), star(centre, radius, tips, inner, turn_deg), circle(centre, radius, points,
-  turn_deg) are closed; arc(centre, radius, start_deg, end_deg, points); spiral(centre, radius, turns, points,
-  start_radius); raster(box, lanes, margin) goes to and fro over a box (x0, y0, x1, y1), 2 points a lane; shake(centre, up,
-  times) goes up and down in the air, 2 points a time and one more. tips, inner, points, turns, start_radius, lanes, margin, times and turn_deg may be left out.
-- A path in the air may rise: then every point is (x, y, up), where up is metres over the height at which things are carried,
-  from 0 to what is stated. To shake a thing is such a path: several times up and down, or to and fro, then back.
+- These functions are there for you to call. centre is (x, y), angles are degrees, clockwise from straight up; tips, inner,
+  points, turns, start_radius, lanes, margin, times and turn_deg may be left out.
+  Closed: polygon(centre, radius, sides, turn_deg), star(centre, radius, tips, inner, turn_deg),
+  circle(centre, radius, points, turn_deg). Open: arc(centre, radius, start_deg, end_deg, points),
+  spiral(centre, radius, turns, points, start_radius), and raster(box, lanes, margin), which goes to and fro over a box
+  (x0, y0, x1, y1) with two points a lane. In the air: shake(centre, up, times), up and down, two points a time and one more.
+- A path in the air may rise: then every point is (x, y, up), where up is how far over the height at which things are
+  carried, in m, from 0 to what is stated. To shake a thing is such a path: several times up and down, or to and fro, then back.
 - At least two points and at most as many as stated; all inside the picture. The first is where the path begins.
 - If an error or a criticism of the last version is shown, repair its cause and return the whole function again.
 """

@@ -146,7 +146,7 @@ class Capped(Bottles):
     def _cap_problem(self, cap: Thing, poses: Poses) -> str:
         name, at = self.wanted.name, poses[cap.name].position_m
         if name not in self.free:
-            said = f"{math.degrees(self.turned_rad(name)):.0f} of {math.degrees(FREE_RAD):.0f} degrees"
+            said = f"{math.degrees(self.turned_rad(name)):z.0f} of {math.degrees(FREE_RAD):.0f} degrees"
             return f"the cap of the {name} is on its thread: it was turned {said}"
         if off_table(poses[cap.name]) or float(at[2]) < -OFF_M:
             return f"the cap of the {name} fell off the table"

@@ -61,7 +61,7 @@ How to write the plan
 - A subgoal that pushes says where the thing should end and what it must keep away from. Where friction leaves a thing is
   not certain: what a second push of it needs is a guess until there is a new picture, so give it room.
 - after: only the subgoals without which this one cannot be reached. function: null, unless a subgoal needs a path of
-  its own shape, such as a circle or a zigzag, and the robot can follow paths; then say what is to be computed, and
+  its own shape, such as a circle, a zigzag or up and down, and the robot can follow paths; then say what is to be computed, and
   whether the tool touches the surface on it.
 - move: for a subgoal that one pick and one place carry out, what is picked, where it goes and how far it is turned: "at" a
   target is the point chosen on it, "beside" a target needs a side as the main view shows it, "origin" is where the target
@@ -114,12 +114,11 @@ id and give no coordinates.
   is where the front of the tool stops.
 - rotate_deg: only what the instruction or its pictures state; clockwise seen from above is positive, anticlockwise
   negative; 0 when nothing is said.
-- With a gripper: open, move above, move at, close, move clear, then move above the place, move at, open, move clear.
+- With a gripper: open, move above, move at, close, move clear, then move above the place, move at, open, move clear. What is
+  screwed on is gripped tightly and turned before it is lifted; without room for the whole turn: open, turn back, grip again.
 - A subgoal with a helper function is carried out with a follow step that names it. contact surface: the tool is lowered
   to the surface at the first point and lifted after the last, as for drawing or wiping; air: it stays clear, with what it
-  holds. To shake a thing: grip it tightly, move clear, follow in the air, then put it back at its origin.
-- To screw something off, such as a cap: grip it tightly, turn the gripper anticlockwise while it holds, move clear with it and put
-  it down in a free place. Where the wrist has no room for the whole turn: open, turn back, close tightly and turn again.
+  holds, as for shaking.
 - If Verification asked about the last version, repair what it found and keep the rest.
 """
 
@@ -136,8 +135,8 @@ list of (x, y) in pixels of the picture, whose width and height are stated with 
   circle(centre, radius, points, turn_deg). Open: arc(centre, radius, start_deg, end_deg, points),
   spiral(centre, radius, turns, points, start_radius), and raster(box, lanes, margin), which goes to and fro over a box
   (x0, y0, x1, y1) with two points a lane. In the air: shake(centre, up, times), up and down, two points a time and one more.
-- A path in the air may rise: then every point is (x, y, up), where up is how far over the height at which things are
-  carried, in m, from 0 to what is stated. To shake a thing is such a path: several times up and down, or to and fro, then back.
+- A path in the air may rise, as for shaking: then every point is (x, y, up), where up is how far over the height at which
+  things are carried, in m, from 0 to what is stated.
 - At least two points and at most as many as stated; all inside the picture. The first is where the path begins.
 - If an error or a criticism of the last version is shown, repair its cause and return the whole function again.
 """

@@ -23,7 +23,7 @@ class FunctionCode(AnswerModel):
     reasoning: str = Reasoning
     code: str = Field(
         description="Defines path(boxes), which returns a list of (x, y) in pixels of the picture, or of (x, y, up) for a path in "
-        "the air that rises, up in metres; boxes maps a target id to (x0, y0, x1, y1). Only `math` may be imported.",
+        "the air that rises, up in m; boxes maps a target id to (x0, y0, x1, y1). Only `math` may be imported.",
         min_length=1,
     )
 

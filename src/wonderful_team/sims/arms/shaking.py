@@ -20,6 +20,8 @@ REVERSALS = 5
 """So often it has to turn back: up and down three times, with the lifting and the putting back."""
 BACK_M = 0.1
 """It is put back within this of where it stood [m]."""
+DROP_M, LOOSE = 0.03, 5
+"""A bottle that is higher than this and so many looks in no fingers was dropped [m]."""
 GRASP_M, RISE_M, STROKES = 0.03, 0.09, 4
 """How far below its top the oracle grips it, how far it lifts it in a stroke, and how often [m]."""
 DIRECTIONS = np.array([one for one in product((-1.0, 0.0, 1.0), repeat=3) if one > (0.0, 0.0, 0.0)])
@@ -59,6 +61,7 @@ class Shaking(Bottles):
 
     Attributes:
         ways: Where the bottle was while both fingers held it off the table, way after way, as points [m].
+        dropped_m: How high it was when it was dropped; 0 when it was not.
     """
 
     facts = "A bottle has been shaken when it was moved to and fro several times, well off the table; then it stands on the table again."
@@ -66,12 +69,17 @@ class Shaking(Bottles):
     def __init__(self, wanted: Thing, things: Sequence[Thing]) -> None:
         super().__init__(wanted, things)
         self.ways: list[list[tuple[float, float, float]]] = []
-        self._in_air = False
+        self.dropped_m = 0.0
+        self._in_air, self._loose = False, 0
 
     def watch(self) -> None:
         super().watch()
         x, y, z = (float(value) for value in self._state.xpos[self._bodies[self.wanted.name]])
-        in_air = z > OFF_M and self.held(self.wanted.name)
+        held = self.held(self.wanted.name)
+        in_air = z > OFF_M and held
+        self._loose = self._loose + 1 if z > DROP_M and not held else 0
+        if self._loose >= LOOSE:
+            self.dropped_m = max(self.dropped_m, z)
         if in_air and not self._in_air:
             self.ways.append([])
         if in_air:
@@ -90,6 +98,8 @@ class Shaking(Bottles):
             return wrong
         if self.fallen(name, poses):
             return Score(False, "execution", f"the {name} does not stand any more")
+        if self.dropped_m:
+            return Score(False, "execution", f"the {name} was dropped from {100 * self.dropped_m:.0f} cm")
         said = f"the {name} turned back {self.shaken} times in the air (at least {REVERSALS}, {100 * STROKE_M:.0f} cm each)"
         if self.shaken < REVERSALS:
             moved = name in self.lifted or self.moved_m(name, poses) > 0.001

@@ -62,11 +62,12 @@ def test_bottles_are_opened_and_shaken_by_a_plan_that_was_checked(task: str) -> 
 
 
 @needs_arms
-def test_offline_says_which_words_of_a_drawing_it_does_not_know() -> None:
-    world = wt.make_world("arms/star", seed=2)
+@pytest.mark.parametrize(("task", "unknown"), [("star", "draw"), ("shake", "shake, bottle"), ("cap", "open, bottle")])
+def test_offline_says_which_words_of_a_task_it_does_not_know(task: str, unknown: str) -> None:
+    world = wt.make_world(f"arms/{task}", seed=2)
     try:
         plan = wt.Team(model="offline").plan(world.observe(), world.instruction, limits=world.limits)
     finally:
         world.close()
     assert plan.status == "not_understood"
-    assert "draw" in plan.message
+    assert unknown in plan.message

@@ -49,7 +49,7 @@ def test_a_written_path_is_accepted_and_one_that_rises_otherwise_is_refused() ->
         flat = tuple((point[0], point[1]) for point in path)
         assert "0 of its points say how far up" in reviewed(ask, subgoal, view, flat)
         lower = tuple((point[0], point[1], 0.3 * up) for point, up in zip(path, rises_of(path), strict=True))
-        assert "its points should lie 0.00, 0.09," in reviewed(ask, subgoal, view, lower)
+        assert "its points should lie 0.00, 0.07," in reviewed(ask, subgoal, view, lower)
         beside = tuple((point[0] + 30, point[1], up) for point, up in zip(path, rises_of(path), strict=True))
         assert "px from where it should" in reviewed(ask, subgoal, view, beside)
     finally:

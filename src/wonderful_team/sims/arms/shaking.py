@@ -22,7 +22,7 @@ BACK_M = 0.1
 """It is put back within this of where it stood [m]."""
 DROP_M, LOOSE = 0.03, 5
 """A bottle that is higher than this and so many looks in no fingers was dropped [m]."""
-GRASP_M, RISE_M, STROKES = 0.03, 0.09, 4
+GRASP_M, RISE_M, STROKES = 0.03, 0.07, 4
 """How far below its top the oracle grips it, how far it lifts it in a stroke, and how often [m]."""
 DIRECTIONS = np.array([one for one in product((-1.0, 0.0, 1.0), repeat=3) if one > (0.0, 0.0, 0.0)])
 """Directions in which ways are looked at, shape (13, 3): along the axes and between them."""

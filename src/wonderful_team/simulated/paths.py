@@ -31,11 +31,8 @@ def answer_write_function(context: Context, question: WriteFunction) -> Function
         raise UnsupportedQuestion(context.name, "WriteFunction", f"no box of the {trace.thing} was given")
     name, box = next(iter(question.boxes.items()))
     shares = (path - np.array([box.x0, box.y0])) / np.array([box.width, box.height])
-    ups = trace.up_m or ("",) * len(shares)
-    points = ", ".join(
-        f"({x:.4f}, {y:.4f}{f', {up:.3f}' if trace.up_m else ''})"
-        for (x, y), up in zip(shares.tolist(), ups, strict=True)
-    )
+    rows = shares.tolist() if not trace.up_m else np.column_stack([shares, trace.up_m]).tolist()
+    points = ", ".join(f"({', '.join(f'{value:.4f}' for value in row)})" for row in rows)
     up = ", up" if trace.up_m else ""
     code = (
         f"def path(boxes):\n    x0, y0, x1, y1 = boxes[{name!r}]\n    shares = [{points}]\n"

@@ -198,10 +198,10 @@ class Robot:
         return self._straight(goal, yaw_rad, touching)
 
     def rotate(self, turn_rad: float) -> Moved:
-        """Turn the tool where it stands, about the vertical, as far as the wrist goes: once round and back is not the same.
+        """Turn the tool where it stands, about the vertical; nothing turns where the wrist has no room for all of it.
 
         Args:
-            turn_rad: Counter-clockwise, seen from above; not wrapped.
+            turn_rad: Counter-clockwise, seen from above; more than half a circle is turned that way round.
         """
         return self._straight(self.tool_m, self.yaw_rad + turn_rad, False, turn_rad)
 

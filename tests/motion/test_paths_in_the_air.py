@@ -8,13 +8,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tests.motion.block_scenes import LIMITS, Block, affine_top, area, found, scene
+from tests.motion.block_scenes import LIMITS, Block, affine_top, area, found, looking_down, scene
 from wonderful_team.core.actions import ARM, At, CloseStep, FollowStep, MoveStep, OriginOf, Step, Trajectory
 from wonderful_team.core.pictures import PathPoint
 from wonderful_team.core.values import NO_WORKSPACE, Observation, PlannedAction
 from wonderful_team.errors import PlanError
 from wonderful_team.motion import ground_actions
-from wonderful_team.motion.follow import most_up_m, path_problem
+from wonderful_team.motion.follow import carried_z_m, most_up_m, path_problem, seen_from
 from wonderful_team.runtime.gate import check_gate
 
 CAMERA = affine_top()
@@ -57,12 +57,12 @@ def test_a_path_that_rises_is_not_followed_on_the_surface() -> None:
 
 
 def test_how_far_a_path_may_rise_leaves_room_for_whatever_is_held() -> None:
-    up_m = most_up_m(TARGETS, VIEW, LIMITS)
+    up_m = most_up_m(carried_z_m(TARGETS, VIEW, LIMITS), LIMITS)
     assert 0 < up_m < LIMITS.high_m[2]
     (*_, shaken) = run(*HELD, path=over(0.0, up_m))
     assert isinstance(shaken.action, Trajectory)
     assert shaken.action.waypoints_m[:, 2].max() <= LIMITS.high_m[2] + 1e-6
-    assert most_up_m(TARGETS, VIEW, NO_WORKSPACE) == pytest.approx(0.3)
+    assert most_up_m(carried_z_m(TARGETS, VIEW, NO_WORKSPACE), NO_WORKSPACE) == pytest.approx(0.3)
 
 
 @pytest.mark.parametrize(
@@ -95,3 +95,13 @@ def test_the_gate_refuses_a_path_that_meets_something() -> None:
         report = check_gate([one], vocabulary=ARM, limits=LIMITS, plan=None, then=None, now=now)
         checks = [check for check in report.checks if check.name == "under the way"]
         assert [check.ok for check in checks] == [admitted]
+
+
+def test_a_path_that_rises_is_seen_rising_from_the_side() -> None:
+    camera = looking_down(tilt_deg=25)
+    side = scene(camera, RED)
+    pixels = seen_from(over(0.0, 0.1), 0.15, VIEW, side)
+    assert np.array(pixels) == pytest.approx(camera.project([(0.49, -0.05, 0.15), (0.49, -0.05, 0.25)]), abs=1.0)
+    assert np.linalg.norm(np.subtract(*pixels)) > 5, "in the main view both are one pixel"
+    assert seen_from(over(0.0, 0.1), 0.15, VIEW, scene(None)) == ()
+    assert seen_from(over(0.0, 3.0), 0.15, VIEW, side) == (), "what leaves the view is not drawn in it"

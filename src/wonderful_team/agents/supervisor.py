@@ -221,6 +221,7 @@ def _render_review_path(question: ReviewPath) -> list[Part]:
     return [
         *words(f"Subgoal {subgoal_words(question.subgoal)}"),
         *picture_parts(question.view, "the main view"),
+        *(part for side in question.sides for part in picture_parts(side, "the same path from another side")),
         *listed("How far up each point lies over the height at which things are carried [m]", rises),
     ]
 

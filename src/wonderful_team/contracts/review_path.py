@@ -28,11 +28,13 @@ class ReviewPath(Question):
     Attributes:
         view: Carries the path as a PathMark.
         up_m: How far over the height at which things are carried each point lies [m]; () for a path that does not rise.
+        sides: Other views that carry it too, where it rises.
     """
 
     subgoal: Subgoal
     view: Picture
     up_m: tuple[float, ...] = later(())
+    sides: tuple[Picture, ...] = later(())
 
     def output(self) -> type[AnswerModel]:
         return PathReview

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from wonderful_team.core.actions import FollowStep, Trajectory
-from wonderful_team.core.pictures import PathPoint, rises_of
+from wonderful_team.core.pictures import PathPoint, Point, rises_of
 from wonderful_team.core.values import GroundedTarget, Limits, PlannedAction, View
 from wonderful_team.motion.deprojector import Deprojector, ResolvedPoint
 from wonderful_team.motion.heights import clear_z_m
@@ -21,16 +21,43 @@ MOST_UP_M = 0.3
 ROUNDING_M = 1e-6
 
 
-def most_up_m(grounded: Mapping[str, GroundedTarget], view: View, limits: Limits) -> float:
-    """How far a path in the air may rise over the height at which things are carried, whichever of the targets is held [m]."""
+def carried_z_m(grounded: Mapping[str, GroundedTarget], view: View, limits: Limits) -> float:
+    """Height at which the tool is clear of everything, whichever of the targets it holds [m]."""
     lift = Deprojector(view)
     tops = [0.0]
     for name, target in grounded.items():
         if target.box is not None and lift.inside(target.box.centre):
             position = lift.surface(target.box.centre, name).position_m
             tops += [] if position is None else [float(position[2])]
-    carried = clear_z_m(tops, limits, max(tops))
-    return float(np.clip(limits.high_m[2] - carried, 0.0, MOST_UP_M))
+    return clear_z_m(tops, limits, max(tops))
+
+
+def most_up_m(carried_m: float, limits: Limits) -> float:
+    """How far a path in the air may rise over the height at which things are carried [m]."""
+    return float(np.clip(limits.high_m[2] - carried_m, 0.0, MOST_UP_M))
+
+
+def seen_from(points: Sequence[PathPoint], carried_m: float, main: View, side: View) -> tuple[Point, ...]:
+    """Where a path in the air shows in another view [px]; () where a camera is unknown or the path leaves that view.
+
+    Args:
+        points: Pixels of the main view, and how far up [m].
+        carried_m: Height at which things are carried [m].
+        main: The main view.
+        side: The other view.
+    """
+    lift = Deprojector(main)
+    spots = [lift.surface(point[:2], "path").position_m for point in points]
+    if side.camera is None or any(spot is None for spot in spots):
+        return ()
+    heights = [carried_m + up for up in rises_of(points)] or [carried_m] * len(points)
+    path = np.column_stack([np.array(spots)[:, :2], heights])
+    try:
+        pixels = side.camera.project(path)
+    except ValueError:
+        return ()
+    found = tuple((float(x), float(y)) for x, y in pixels)
+    return found if all(Deprojector(side).inside(px) for px in found) else ()
 
 
 def path_problem(points: Sequence[PathPoint], view: View, limits: Limits, up_m: float) -> str:

@@ -10,11 +10,11 @@ from collections.abc import Mapping, Sequence
 
 from wonderful_team.agents.scene import SceneShown
 from wonderful_team.contracts import FunctionCode, PathReview, ReviewPath, WriteFunction
-from wonderful_team.core.pictures import BoxMark, PathMark, PathPoint, rises_of
+from wonderful_team.core.pictures import BoxMark, PathMark, PathPoint, Picture, rises_of
 from wonderful_team.core.together import together
 from wonderful_team.core.values import GroundedTarget, Subgoal
 from wonderful_team.errors import PlanError
-from wonderful_team.motion.follow import most_up_m, path_problem
+from wonderful_team.motion.follow import carried_z_m, most_up_m, path_problem, seen_from
 from wonderful_team.planning.session import AgentSession
 from wonderful_team.sandbox import SandboxError, run_path
 
@@ -46,7 +46,8 @@ async def _write_one(
     }
     shown = view.marked(*(BoxMark(box, "target", name) for name, box in boxes.items()))
     mine = {name: target for name, target in grounded.items() if name in subgoal.targets}
-    up_m = most_up_m(mine, scene.view, scene.limits)
+    carried_m = carried_z_m(mine, scene.view, scene.limits)
+    up_m = most_up_m(carried_m, scene.limits)
     error, code = "", ""
     criticised: list[str] = []
     for _ in range(session.config.bounds.functions):
@@ -63,10 +64,10 @@ async def _write_one(
         error = path_problem(in_view, scene.view, scene.limits, up_m)
         if error:
             continue
+        seen = view.marked(PathMark(tuple(point[:2] for point in path), subgoal.id))
+        sides = _from_the_sides(scene, in_view, carried_m, subgoal.id)
         review: PathReview = await session.ask(
-            ReviewPath(subgoal, view.marked(PathMark(tuple(point[:2] for point in path), subgoal.id)), rises_of(path)),
-            stage="act",
-            branch=subgoal.id,
+            ReviewPath(subgoal, seen, rises_of(path), sides), stage="act", branch=subgoal.id
         )
         if review.accepted:
             if criticised:
@@ -84,4 +85,17 @@ async def _write_one(
         f"no helper function for {subgoal.id} was accepted in {session.config.bounds.functions} versions; "
         f"the last problem: {error}",
         stage="function",
+    )
+
+
+def _from_the_sides(scene: SceneShown, path: Sequence[PathPoint], carried_m: float, label: str) -> tuple[Picture, ...]:
+    """A path that rises, drawn in the other views; () for one that does not."""
+    if not any(rises_of(path)):
+        return ()
+    views = list(zip(scene.views, scene.observation.views.values(), strict=True))[1:]
+    drawn = [(picture, seen_from(path, carried_m, scene.view, view)) for picture, view in views]
+    return tuple(
+        picture.marked(PathMark(tuple(picture.frame.point_to_picture(px) for px in points), label))
+        for picture, points in drawn
+        if points
     )

@@ -56,8 +56,8 @@ class Capped(Bottles):
     """
 
     facts = (
-        f"A screw cap opens anticlockwise, seen from above, and comes free after {math.degrees(FREE_RAD):.0f} degrees; the fingers have to "
-        "hold it tightly. Then it lifts off. The bottle stands by its own weight and is not held."
+        f"A screw cap opens anticlockwise, seen from above, and comes free after {math.degrees(FREE_RAD):.0f} degrees; then it lifts off. "
+        "The bottle stands by its own weight and is not held."
     )
 
     def __init__(self, wanted: Thing, caps: Mapping[str, Thing], things: Sequence[Thing]) -> None:

@@ -175,7 +175,12 @@ SAMPLES: tuple[Question, ...] = (
     WriteFunction(
         SUBGOALS[0], picture("view for path"), {"T7": Box(1.5, 2, 3, 4)}, "NameError: x", "def path(boxes): ...", 17
     ),
-    ReviewPath(SUBGOALS[0], picture("view with path", PathMark(((1, 2), (3, 4)), "G1"))),
+    ReviewPath(
+        SUBGOALS[0],
+        picture("view with path", PathMark(((1, 2), (3, 4)), "G1")),
+        (0.0, 0.1),
+        (picture("side view with path"),),
+    ),
     Remember("put it there", "checker", "is the box right?", "it is on the lamp", ("which mug",)),
     JudgeOutcome(
         TASK, SUBGOALS, (TARGET, AREA), ("[G1] pick T7",), (picture("top now"), picture("front now")), ("ok",)

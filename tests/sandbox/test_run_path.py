@@ -79,17 +79,20 @@ def test_error_is_a_method_failure() -> None:
         (body("return 9 ** 9 ** 9"), "MemoryError"),
         (body("return path(boxes)"), "RecursionError(?s:.*)loop"),
         (body("print('x' * 10**7)", "return [(1, 1), (2, 2)]"), "MemoryError"),
-        (body("return"), r"must return a list of \(x, y\), it returned None"),
+        (body("return"), r"must return a list of \(x, y\), or of \(x, y, up\), it returned None"),
         (body("return {1: 2}"), "must return a list"),
         (body("return []"), "returned 0 points; 2 to 20"),
         (body("return [(1, 2)]"), "returned 1 points; 2 to 20"),
         (body("return [(i, i) for i in range(21)]"), "returned 21 points; 2 to 20"),
-        (body("return [(1, 2), (3, 4, 5)]"), "point 2 must be a pair"),
-        (body("return [1, 2, 3]"), "point 1 must be a pair"),
-        (body("return ['ab', 'cd']"), "point 1 must be a pair"),
-        (body("return [('1', '2'), ('3', '4')]"), "point 1 must hold two numbers"),
-        (body("return [(True, 1), (2, 3)]"), "point 1 must hold two numbers"),
-        (body("return [(1, 1), (float('nan'), 1)]"), "point 2 is .nan, 1.; both numbers must be finite"),
+        (body("return [(1, 2), (3, 4, 0.5)]"), "point 2 must say up as point 1 does, or neither"),
+        (body("return [(1, 2, 0), (3, 4, 1.5)]"), r"point 2 .* up must be finite metres, from -1.0 to 1.0"),
+        (body("return [(1, 2, float('nan')), (3, 4, 0)]"), "point 1 .* up must be finite metres"),
+        (body("return [(1, 2, 3, 4)] * 2"), r"point 1 must be \(x, y\) or \(x, y, up\)"),
+        (body("return [1, 2, 3]"), r"point 1 must be \(x, y\) or \(x, y, up\)"),
+        (body("return ['ab', 'cd']"), r"point 1 must be \(x, y\) or \(x, y, up\)"),
+        (body("return [('1', '2'), ('3', '4')]"), "point 1 must hold numbers"),
+        (body("return [(True, 1), (2, 3)]"), "point 1 must hold numbers"),
+        (body("return [(1, 1), (float('nan'), 1)]"), "point 2 is .nan, 1.; x and y must be finite"),
         (body("return [(1, 1), (1, float('-inf'))]"), "point 2 .*finite"),
         (body("return [(10**400, 1), (1, 1)]"), "point 1 is .a very large number, 1."),
         ("#" * 30_000, "30000 characters; at most 20000"),
@@ -144,5 +147,5 @@ def test_python_exits_quietly_and_leaves_no_worker() -> None:
 
 
 def test_self_containing_lists_are_refused() -> None:
-    with pytest.raises(SandboxError, match="point 1 must hold two numbers"):
+    with pytest.raises(SandboxError, match="point 1 must hold numbers"):
         run_path(body("l = []", "l += [l, l]", "return l"), BOXES)

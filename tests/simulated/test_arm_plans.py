@@ -9,7 +9,8 @@ import numpy as np
 from wonderful_team.contracts import arm_steps, can_carry, step_list_type
 from wonderful_team.core.actions import ARM, Action, Gripper, Home, MoveTo, PickPlace, RotateGripper, Trajectory
 from wonderful_team.core.geometry import Pose
-from wonderful_team.simulated.plan import carried
+from wonderful_team.simulated.draft import Names, write
+from wonderful_team.simulated.plan import Handled, Put, Spot, carried
 
 
 def to(x: float, y: float, z: float, yaw: float = 0.0) -> MoveTo:
@@ -49,3 +50,40 @@ def test_steps_of_an_arm_travel_clear_and_end_at_home() -> None:
     assert can_carry(ARM.step_kinds)
     assert not can_carry(("move", "home"))
     assert arm_steps("G1", "T1", place, 0.0, ("move", "open", "close"))[-1]["kind"] == "move"
+
+
+SHAKEN = Trajectory(np.array([[0.4, 0.1, 0.2], [0.4, 0.1, 0.28], [0.4, 0.1, 0.2]]))
+
+
+def test_what_is_turned_in_place_or_moved_in_the_air_while_it_is_held_is_one_thing_handled() -> None:
+    grip = [Gripper("open"), to(0.4, 0.1, 0.02), Gripper("tight")]
+    (shaken,) = carried([*grip, to(0.4, 0.1, 0.2), SHAKEN, to(0.4, 0.1, 0.02), Gripper("open")])
+    assert isinstance(shaken, Handled)
+    assert (shaken.twist_rad, shaken.tight) == (0.0, True)
+    assert shaken.path_m is SHAKEN.waypoints_m
+    turn = math.radians(270)
+    (twisted,) = carried([*grip, RotateGripper(turn), to(0.6, 0.1, 0.02, turn), Gripper("open")])
+    assert isinstance(twisted, Handled)
+    assert twisted.path_m is None
+    assert twisted.twist_rad == turn
+    assert math.isclose(twisted.carry.yaw_rad, 0.0, abs_tol=1e-9)
+
+
+def test_handled_things_are_written_as_a_subgoal_with_its_steps() -> None:
+    shaken = Put("b", Spot("origin", (0.4, 0.1)), 0.0, path_m=((0.4, 0.1, 0.0), (0.4, 0.1, 0.08)), tight=True)
+    twisted = Put("c", Spot("spot", (0.6, 0.1)), 0.0, twist_deg=-270.0, tight=True)
+    plan = write([shaken, twisted], Names({"b": "red bottle", "c": "pink cap"}), {"b": 0.05, "c": 0.03})
+    first, second = plan.subgoals
+    assert first.function is not None
+    assert first.text.startswith("lift the red bottle, move it along a path of 2 points in the air, then put")
+    assert second.text.startswith("turn the pink cap by 270 degrees anticlockwise where it is, then put")
+    assert (first.move, second.move, second.function) == (None, None, None)
+    assert plan.paths[first.text].up_m == (0.0, 0.08)
+    place = {"target": "T1", "how": "origin", "side": None}
+    kinds = [
+        step["kind"]
+        for step in arm_steps("G1", "T1", place, 0.0, ARM.step_kinds, tight=True, twist_deg=-270.0, function="G1")
+    ]
+    assert kinds == [
+        "open", "move", "move", "move", "close", "rotate_gripper", "move", "follow", "move", "move", "open", "move", "home",
+    ]  # fmt: skip

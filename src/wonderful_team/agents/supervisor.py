@@ -61,7 +61,7 @@ How to write the plan
 - A subgoal that pushes says where the thing should end and what it must keep away from. Where friction leaves a thing is
   not certain: what a second push of it needs is a guess until there is a new picture, so give it room.
 - after: only the subgoals without which this one cannot be reached. function: null, unless a subgoal needs a path of
-  its own shape, such as a circle or a zigzag, and the robot can follow paths; then say what is to be computed, and
+  its own shape, such as a circle, a zigzag or up and down, and the robot can follow paths; then say what is to be computed, and
   whether the tool touches the surface on it.
 - move: for a subgoal that one pick and one place carry out, what is picked, where it goes and how far it is turned: "at" a
   target is the point chosen on it, "beside" a target needs a side as the main view shows it, "origin" is where the target
@@ -114,9 +114,11 @@ id and give no coordinates.
   is where the front of the tool stops.
 - rotate_deg: only what the instruction or its pictures state; clockwise seen from above is positive, anticlockwise
   negative; 0 when nothing is said.
-- With a gripper: open, move above, move at, close, move clear, then move above the place, move at, open, move clear.
+- With a gripper: open, move above, move at, close, move clear, then move above the place, move at, open, move clear. What is
+  screwed on is gripped tightly and turned before it is lifted; without room for the whole turn: open, turn back, grip again.
 - A subgoal with a helper function is carried out with a follow step that names it. contact surface: the tool is lowered
-  to the surface at the first point and lifted after the last, as for drawing or wiping; air: it stays clear.
+  to the surface at the first point and lifted after the last, as for drawing or wiping; air: it stays clear, with what it
+  holds, as for shaking.
 - If Verification asked about the last version, repair what it found and keep the rest.
 """
 
@@ -127,6 +129,14 @@ list of (x, y) in pixels of the picture, whose width and height are stated with 
   the path fits the things; do not type positions that you read off the picture.
 - Plain Python with functions, loops and the math module. Nothing else can be imported; there are no files, no input,
   no yield and no classes that inherit.
+- These functions are there for you to call. centre is (x, y), angles are degrees, clockwise from straight up; tips, inner,
+  points, turns, start_radius, lanes, margin, times and turn_deg may be left out.
+  Closed: polygon(centre, radius, sides, turn_deg), star(centre, radius, tips, inner, turn_deg),
+  circle(centre, radius, points, turn_deg). Open: arc(centre, radius, start_deg, end_deg, points),
+  spiral(centre, radius, turns, points, start_radius), and raster(box, lanes, margin), which goes to and fro over a box
+  (x0, y0, x1, y1) with two points a lane. In the air: shake(centre, up, times), up and down, two points a time and one more.
+- A path in the air may rise, as for shaking: then every point is (x, y, up), where up is how far over the height at which
+  things are carried, in m, from 0 to what is stated.
 - At least two points and at most as many as stated; all inside the picture. The first is where the path begins.
 - If an error or a criticism of the last version is shown, repair its cause and return the whole function again.
 """
@@ -200,15 +210,19 @@ def _render_function(question: WriteFunction) -> list[Part]:
         *picture_parts(question.view, "the main view"),
         *listed("boxes, as (x0, y0, x1, y1) in pixels of this picture", boxes, "none"),
         *words(f"At most {question.max_points} points."),
+        *(words(f"In the air, up is from 0 to {question.most_up_m:.2f} m.") if question.most_up_m else []),
         *(words("Your last version:", fenced("code", question.last_code)) if question.last_code else []),
         *(words("What was wrong with it:", fenced("error", question.error)) if question.error else []),
     ]
 
 
 def _render_review_path(question: ReviewPath) -> list[Part]:
+    rises = [f"{number}: {up:.2f}" for number, up in enumerate(question.up_m, start=1)]
     return [
         *words(f"Subgoal {subgoal_words(question.subgoal)}"),
         *picture_parts(question.view, "the main view"),
+        *(part for side in question.sides for part in picture_parts(side, "the same path from another side")),
+        *listed("How far up each point lies over the height at which things are carried [m]", rises),
     ]
 
 

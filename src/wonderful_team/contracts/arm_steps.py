@@ -15,7 +15,15 @@ def can_carry(step_kinds: Sequence[str]) -> bool:
 
 
 def arm_steps(
-    subgoal: str, pick: str, place: Mapping[str, Any], rotate_deg: float, step_kinds: Sequence[str]
+    subgoal: str,
+    pick: str,
+    place: Mapping[str, Any],
+    rotate_deg: float,
+    step_kinds: Sequence[str],
+    *,
+    tight: bool = False,
+    twist_deg: float = 0.0,
+    function: str | None = None,
 ) -> list[dict[str, Any]]:
     """Over the thing, down, close, up, turn, over the place, down, open, up, and out of the cameras' sight, as `StepList` takes them.
 
@@ -27,22 +35,30 @@ def arm_steps(
         place: Where it goes, as a PlaceDraft.
         rotate_deg: How far it is turned clockwise.
         step_kinds: What the robot runs; without `rotate_gripper` nothing is turned, without `home` it stays over the place.
+        tight: Whether the gripper keeps squeezing.
+        twist_deg: How far the thing is turned clockwise where it is, before it is lifted, as to screw it off.
+        function: Whose path it follows in the air before it is put down, as to shake it.
     """
     thing = {"target": pick, "how": "at", "side": None}
 
     def move(to: Mapping[str, Any], height: str) -> dict[str, Any]:
         return {"kind": "move", "subgoal": subgoal, "to": dict(to), "height": height}
 
-    turn = [{"kind": "rotate_gripper", "subgoal": subgoal, "rotate_deg": rotate_deg}] if rotate_deg else []
+    def rotated(angle_deg: float) -> list[dict[str, Any]]:
+        return [{"kind": "rotate_gripper", "subgoal": subgoal, "rotate_deg": angle_deg}] if angle_deg else []
+
+    path = [{"kind": "follow", "subgoal": subgoal, "function": function, "contact": "air"}] if function else []
     home = [{"kind": "home", "subgoal": subgoal}] if "home" in step_kinds else []
     return [
         {"kind": "open", "subgoal": subgoal},
         move(thing, "clear"),
         move(thing, "above"),
         move(thing, "at"),
-        {"kind": "close", "subgoal": subgoal, "tight": False},
+        {"kind": "close", "subgoal": subgoal, "tight": tight},
+        *rotated(twist_deg),
         move(thing, "clear"),
-        *turn,
+        *path,
+        *rotated(rotate_deg),
         move(place, "clear"),
         move(place, "at"),
         {"kind": "open", "subgoal": subgoal},

@@ -8,6 +8,7 @@ from typing import Any
 from pydantic import Field
 
 from wonderful_team.contracts.shown import AnswerModel, Question, Reasoning
+from wonderful_team.core.later import later
 from wonderful_team.core.pictures import Picture
 from wonderful_team.core.values import Subgoal
 
@@ -22,10 +23,18 @@ class PathReview(AnswerModel):
 
 @dataclass(frozen=True, eq=False)
 class ReviewPath(Question):
-    """Asked of the Supervisor after a helper function ran. `view` carries the path as a PathMark."""
+    """Asked of the Supervisor after a helper function ran.
+
+    Attributes:
+        view: Carries the path as a PathMark.
+        up_m: How far over the height at which things are carried each point lies [m]; () for a path that does not rise.
+        sides: Other views that carry it too, where it rises.
+    """
 
     subgoal: Subgoal
     view: Picture
+    up_m: tuple[float, ...] = later(())
+    sides: tuple[Picture, ...] = later(())
 
     def output(self) -> type[AnswerModel]:
         return PathReview

@@ -9,6 +9,7 @@ from pydantic import Field
 
 from wonderful_team.contracts.shown import AnswerModel, Question, Reasoning
 from wonderful_team.core.geometry import Box
+from wonderful_team.core.later import later
 from wonderful_team.core.pictures import Picture
 from wonderful_team.core.values import Subgoal
 
@@ -21,8 +22,8 @@ class FunctionCode(AnswerModel):
 
     reasoning: str = Reasoning
     code: str = Field(
-        description="Defines path(boxes), which returns a list of (x, y) in pixels of the picture; "
-        "boxes maps a target id to (x0, y0, x1, y1). Only `math` may be imported.",
+        description="Defines path(boxes), which returns a list of (x, y) in pixels of the picture, or of (x, y, up) for a path in "
+        "the air that rises, up in m; boxes maps a target id to (x0, y0, x1, y1). Only `math` may be imported.",
         min_length=1,
     )
 
@@ -35,6 +36,7 @@ class WriteFunction(Question):
         boxes: Boxes of the subgoal's targets in pixels of `view`, also drawn there.
         error: What went wrong with the last version: an exception, a bound, or what the review saw; "" at first.
         last_code: The last version; "" at first.
+        most_up_m: How far a path in the air may rise over the height at which things are carried [m].
     """
 
     subgoal: Subgoal
@@ -43,6 +45,7 @@ class WriteFunction(Question):
     error: str = ""
     last_code: str = ""
     max_points: int = MAX_POINTS
+    most_up_m: float = later(0.0)
 
     def output(self) -> type[AnswerModel]:
         return FunctionCode

@@ -7,7 +7,7 @@ All mark coordinates are pixels of the picture that carries them.
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, fields, is_dataclass, replace
 from functools import cached_property
 from typing import Any, Literal, TypeAlias, TypeVar
@@ -19,7 +19,14 @@ from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.later import later
 
 Point: TypeAlias = tuple[float, float]
+PathPoint: TypeAlias = tuple[float, float] | tuple[float, float, float]
+"""A point of a path: (x, y) [px], and for a path in the air how far over the height at which things are carried [m]."""
 BoxStyle: TypeAlias = Literal["target", "before", "after", "keep_out", "workspace"]
+
+
+def rises_of(points: Sequence[PathPoint]) -> tuple[float, ...]:
+    """How far up each point of a path lies [m]; () for one that does not say."""
+    return tuple(point[2] for point in points if len(point) == 3)
 
 
 def checked_rgb(rgb: Array, name: str = "rgb") -> Array:

@@ -9,7 +9,6 @@ import numpy as np
 from wonderful_team.core.actions import (
     At,
     CloseStep,
-    FollowStep,
     Gripper,
     Home,
     HomeStep,
@@ -20,7 +19,6 @@ from wonderful_team.core.actions import (
     OpenStep,
     RotateGripper,
     RotateGripperStep,
-    Trajectory,
 )
 from wonderful_team.core.geometry import Pose, wrap_angle
 from wonderful_team.core.values import Fingers, PlannedAction
@@ -99,7 +97,7 @@ def _at_height(
         case "above":
             z, rule = above_z_m(surface, places.limits, hanging), "just above"
         case "clear":
-            z, rule = clear_z_m([surface, *_surfaces(places)], places.limits, hanging), "clear of everything"
+            z, rule = clear_z_m([surface, *surfaces_z_m(places)], places.limits, hanging), "clear of everything"
     return ResolvedPoint(spot.px, np.array([x, y, z]), f"{spot.how}; z = {z:.3f} m, {rule}")
 
 
@@ -109,7 +107,7 @@ def _support_now(places: Places, name: str, progress: MotionState) -> float:
     return float(resting[2])
 
 
-def _surfaces(places: Places) -> list[float]:
+def surfaces_z_m(places: Places) -> list[float]:
     """Heights of all surfaces at the points that were found."""
     heights = []
     for name, target in places.grounded.items():
@@ -161,47 +159,6 @@ def ground_rotate(step: RotateGripperStep, places: Places, progress: MotionState
     """Turn the gripper; later moves keep the turn."""
     yaw_rad = yaw_of(step.rotate_deg)
     return PlannedAction(step, RotateGripper(yaw_rad)), replace(progress, yaw_rad=progress.yaw_rad + yaw_rad)
-
-
-def ground_follow(step: FollowStep, places: Places, progress: MotionState) -> tuple[PlannedAction, MotionState]:
-    """Follow a path in the air, clear of everything, or on the surface: lowered at its first point, lifted after its last."""
-    if step.function not in places.paths:
-        known = ", ".join(places.paths) or "none"
-        raise places.fail(f"there is no path for function {step.function!r}; paths: {known}")
-    points = places.paths[step.function]
-    hanging = progress.held.hanging_m if progress.held is not None else 0.0
-    width, height = places.lift.view.size_px
-    spots = []
-    for number, px in enumerate(points, start=1):
-        if not places.lift.inside(px):
-            raise places.fail(
-                f"point {number} of path {step.function!r} at ({px[0]:.0f}, {px[1]:.0f}) px lies outside the view of "
-                f"{width} x {height} px"
-            )
-        seen = places.lift.surface(px, f"point {number} of the path of {step.function}")
-        if seen.position_m is None:
-            spots.append(seen)
-            continue
-        x, y, surface = (float(value) for value in seen.position_m)
-        clear = clear_z_m([surface, *_surfaces(places)], places.limits, hanging)
-        over = ResolvedPoint(px, np.array([x, y, clear]), f"{seen.how}; z = {clear:.3f} m, clear of everything")
-        low = step.contact == "surface" or (step.contact is None and progress.height == "at")
-        if not low:
-            spots.append(over)
-            continue
-        z = surface + hanging
-        on = ResolvedPoint(px, np.array([x, y, z]), f"{seen.how}; z = {z:.3f} m, on the surface")
-        first, last = number == 1, number == len(points)
-        spots += [on] if step.contact is None else [over, on] if first else [on, over] if last else [on]
-    positions = [spot.position_m for spot in spots if spot.position_m is not None]
-    action = Trajectory(np.array(positions)) if positions and len(positions) == len(spots) else None
-    planned = PlannedAction(step, action, tuple(source("waypoint", step.function, spot) for spot in spots))
-    return planned, replace(
-        progress,
-        tool=spots[-1] if spots else progress.tool,
-        height="clear" if step.contact else progress.height,
-        over=None,
-    )
 
 
 def ground_home(step: HomeStep, places: Places, progress: MotionState) -> tuple[PlannedAction, MotionState]:

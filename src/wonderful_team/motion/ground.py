@@ -17,10 +17,11 @@ from wonderful_team.core.actions import (
     RotateGripperStep,
     Step,
 )
-from wonderful_team.core.pictures import Point
+from wonderful_team.core.pictures import PathPoint
 from wonderful_team.core.values import GroundedTarget, Limits, PlannedAction, View
 from wonderful_team.motion import arm
 from wonderful_team.motion.deprojector import Deprojector
+from wonderful_team.motion.follow import ground_follow
 from wonderful_team.motion.pick_place import ground_pick_place
 from wonderful_team.motion.places import Places
 from wonderful_team.motion.push import ground_push
@@ -34,7 +35,7 @@ def ground_actions(
     view: View,
     limits: Limits,
     *,
-    paths: Mapping[str, tuple[Point, ...]] | None = None,
+    paths: Mapping[str, tuple[PathPoint, ...]] | None = None,
 ) -> tuple[PlannedAction, ...]:
     """Compute the numbers of every step.
 
@@ -46,7 +47,7 @@ def ground_actions(
         grounded: By target id; boxes and points in pixels of `view`.
         view: The main view, the one that targets were grounded in.
         limits: Gives the clearance at which things are carried.
-        paths: Points of helper functions [px of the view], by the id that follow steps name.
+        paths: Points of helper functions [px of the view, and m up for a path that rises], by the id that follow steps name.
 
     Returns:
         One planned action for each step. Without a camera, actions that need metres are None (a plan in pixels), and
@@ -80,7 +81,7 @@ def _ground(step: Step, places: Places, progress: MotionState) -> tuple[PlannedA
         case RotateGripperStep():
             return arm.ground_rotate(step, places, progress)
         case FollowStep():
-            return arm.ground_follow(step, places, progress)
+            return ground_follow(step, places, progress, arm.surfaces_z_m(places))
         case HomeStep():
             return arm.ground_home(step, places, progress)
         case NavigateStep():

@@ -10,7 +10,7 @@ import numpy as np
 
 from wonderful_team.core.actions import At, Beside, OriginOf, Place
 from wonderful_team.core.geometry import Box
-from wonderful_team.core.pictures import Point
+from wonderful_team.core.pictures import PathPoint, Point
 from wonderful_team.core.values import GroundedTarget, Limits, PointRole
 from wonderful_team.errors import GeometryError
 from wonderful_team.motion.beside import beside_px, half_extents
@@ -40,7 +40,7 @@ class Places:
     grounded: Mapping[str, GroundedTarget]
     lift: Deprojector
     limits: Limits
-    paths: Mapping[str, tuple[Point, ...]]
+    paths: Mapping[str, tuple[PathPoint, ...]]
     step: int = 1
     shares: Mapping[int, Share] = field(default_factory=dict)
 

@@ -11,7 +11,7 @@ from wonderful_team.agents.plan_drawn import plan_drawn
 from wonderful_team.agents.scene import SceneShown
 from wonderful_team.contracts import GROUNDING_KINDS, PlanReview, ReviewSteps, StepList, WalkedReview, WriteSteps
 from wonderful_team.core.actions import Step
-from wonderful_team.core.pictures import Picture, Point
+from wonderful_team.core.pictures import PathPoint, Picture
 from wonderful_team.core.text import counted
 from wonderful_team.core.values import Critique, GroundedTarget, PlannedAction
 from wonderful_team.motion import ground_actions
@@ -66,7 +66,7 @@ def compute(
     scene: SceneShown,
     steps: Sequence[Step],
     grounded: Mapping[str, GroundedTarget],
-    paths: Mapping[str, tuple[Point, ...]],
+    paths: Mapping[str, tuple[PathPoint, ...]],
 ) -> tuple[PlannedAction, ...]:
     """The numbers of all steps, each with its source."""
     return ground_actions(steps, grounded, scene.view, scene.limits, paths=paths)
@@ -95,7 +95,7 @@ async def check_steps(
     state: PlanState,
     steps: tuple[Step, ...],
     grounded: Mapping[str, GroundedTarget],
-    paths: Mapping[str, tuple[Point, ...]],
+    paths: Mapping[str, tuple[PathPoint, ...]],
     jobs: Sequence[Job],
 ) -> Acted:
     """Verification's look at the steps, drawn over the view, and at the plan where nobody has looked at it by itself.

@@ -9,7 +9,7 @@ from typing import Literal, TypeAlias
 from wonderful_team.agents.scene import SceneShown
 from wonderful_team.core.actions import Vocabulary
 from wonderful_team.core.caps import Caps
-from wonderful_team.core.pictures import Point
+from wonderful_team.core.pictures import PathPoint
 from wonderful_team.core.plan_endings import ENDS_A_PLAN, ended_by
 from wonderful_team.core.protocols import Act, Decision, Detector, Done, GaveUp, Model, Situation, Subscriber
 from wonderful_team.core.text import counted
@@ -285,7 +285,7 @@ class TeamPolicy:
             return progress.plan, absent, None
         if not lean:
             await session.memory.barrier()
-        paths: dict[str, tuple[Point, ...]] = await write_functions(session, scene, state.subgoals, grounded)
+        paths: dict[str, tuple[PathPoint, ...]] = await write_functions(session, scene, state.subgoals, grounded)
         if steps is None:
             steps = await acting.write_steps(session, scene, state, tuple(paths))
         progress.plan = replace(progress.plan, steps=steps)

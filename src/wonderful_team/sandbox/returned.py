@@ -8,11 +8,13 @@ from __future__ import annotations
 
 import math
 
-from wonderful_team.core.pictures import Point
+from wonderful_team.core.pictures import PathPoint
 from wonderful_team.sandbox.errors import SandboxError
 
 MAX_COORDINATE_PX = 1e6
 """Larger numbers are not pixels."""
+MAX_UP_M = 1.0
+"""No path in the air rises or falls by more [m]; how far it may go is the world's to say."""
 MAX_ERROR_CHARACTERS = 1000
 """Longest error text; it goes back to the model, into the record and onto the page."""
 
@@ -34,20 +36,26 @@ def _shown(value, depth):
 
 def _described(value):
     if not isinstance(value, (list, tuple)):
-        return 'error path(boxes) must return a list of (x, y), it returned ' + _shown(value, 0)
+        return 'error path(boxes) must return a list of (x, y), or of (x, y, up), it returned ' + _shown(value, 0)
     if not 2 <= len(value) <= {most}:
         return 'error path(boxes) returned ' + str(len(value)) + ' points; 2 to {most} are allowed'
     lines = []
     for number, point in enumerate(value):
         name = 'error point ' + str(number + 1)
-        if not isinstance(point, (list, tuple)) or len(point) != 2:
-            return name + ' must be a pair (x, y), it is ' + _shown(point, 1)
+        if not isinstance(point, (list, tuple)) or not 2 <= len(point) <= 3:
+            return name + ' must be (x, y) or (x, y, up), it is ' + _shown(point, 1)
+        if len(point) != len(value[0]):
+            return name + ' must say up as point 1 does, or neither: it is ' + _shown(point, 1)
         for part in point:
             if isinstance(part, bool) or not isinstance(part, (int, float)):
-                return name + ' must hold two numbers, it is ' + _shown(point, 1)
+                return name + ' must hold numbers, it is ' + _shown(point, 1)
+        for part in point[:2]:
             if not -{limit} <= part <= {limit}:
-                return name + ' is ' + _shown(point, 1) + '; both numbers must be finite pixels'
-        lines.append('point ' + str(float(point[0])) + ' ' + str(float(point[1])))
+                return name + ' is ' + _shown(point, 1) + '; x and y must be finite pixels'
+        for part in point[2:]:
+            if not -{up} <= part <= {up}:
+                return name + ' is ' + _shown(point, 1) + '; up must be finite metres, from -{up} to {up}'
+        lines.append('point ' + ' '.join([str(float(part)) for part in point]))
     return '\\n'.join(lines)
 
 
@@ -59,11 +67,11 @@ and only text."""
 
 def describing(max_points: int) -> str:
     """The program that describes the value `_returned` inside of the worker."""
-    return _DESCRIBING.format(limit=int(MAX_COORDINATE_PX), most=max_points)
+    return _DESCRIBING.format(limit=int(MAX_COORDINATE_PX), up=MAX_UP_M, most=max_points)
 
 
-def parsed(text: str, max_points: int) -> tuple[Point, ...]:
-    """Points from the worker's description.
+def parsed(text: str, max_points: int) -> tuple[PathPoint, ...]:
+    """Points from the worker's description, all with a height or none.
 
     Raises:
         SandboxError: The description names a problem, or is not a description of 2 to `max_points` points.
@@ -73,20 +81,30 @@ def parsed(text: str, max_points: int) -> tuple[Point, ...]:
         raise SandboxError(cut(lines[0].removeprefix("error ")))
     if not 2 <= len(lines) <= max_points:
         raise SandboxError(f"path(boxes) described {len(lines)} points; 2 to {max_points} are allowed")
-    return tuple(_point(line, number) for number, line in enumerate(lines, start=1))
+    points = tuple(_point(line, number) for number, line in enumerate(lines, start=1))
+    if len({len(point) for point in points}) > 1:
+        raise SandboxError("either every point says up, or none")
+    return points
 
 
-def _point(line: str, number: int) -> Point:
+def _point(line: str, number: int) -> PathPoint:
     words = line.split()
     try:
-        kind, x, y = words[0], float(words[1]), float(words[2])
+        kind, numbers = words[0], tuple(float(word) for word in words[1:])
     except (IndexError, ValueError):
-        kind, x, y = "", 0.0, 0.0
-    if kind != "point" or len(words) != 3:
-        raise SandboxError(f"point {number} must hold two numbers, the worker described it as {cut(line, 80)!r}")
-    if not (math.isfinite(x) and math.isfinite(y)) or max(abs(x), abs(y)) > MAX_COORDINATE_PX:
-        raise SandboxError(f"point {number} is ({x}, {y}); both numbers must be finite pixels")
-    return x, y
+        kind, numbers = "", ()
+    if kind != "point" or len(numbers) not in (2, 3):
+        raise SandboxError(
+            f"point {number} must hold two or three numbers, the worker described it as {cut(line, 80)!r}"
+        )
+    if (
+        not all(math.isfinite(value) for value in numbers)
+        or max(abs(value) for value in numbers[:2]) > MAX_COORDINATE_PX
+    ):
+        raise SandboxError(f"point {number} is {numbers[:2]}; both numbers must be finite pixels")
+    if len(numbers) == 3 and abs(numbers[2]) > MAX_UP_M:
+        raise SandboxError(f"point {number} has up = {numbers[2]:g} m; valid: from {-MAX_UP_M} to {MAX_UP_M} m")
+    return numbers if len(numbers) == 3 else (numbers[0], numbers[1])
 
 
 def cut(text: str, most: int = MAX_ERROR_CHARACTERS) -> str:

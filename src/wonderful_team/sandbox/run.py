@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import cache
+from pathlib import Path
 from typing import Any
 
 import pydantic_monty
 
 from wonderful_team.core.geometry import Box
-from wonderful_team.core.pictures import Point
+from wonderful_team.core.pictures import PathPoint
 from wonderful_team.sandbox.errors import SandboxError
 from wonderful_team.sandbox.explained import explained
 from wonderful_team.sandbox.returned import cut, describing, parsed
@@ -16,11 +18,19 @@ from wonderful_team.sandbox.worker import WorkerLostError, discarded_output, in_
 
 MAX_CODE_CHARACTERS = 20_000
 
-_AUTHORS_FILE = "<python-input-0>"
+_AUTHORS_FILE = "<python-input-1>"
 
 
-def run_path(code: str, boxes: Mapping[str, Box], *, max_points: int = 20, timeout_s: float = 2.0) -> tuple[Point, ...]:
-    """Run code that defines `path(boxes)` and return its points.
+@cache
+def _shapes() -> str:
+    """The text of the functions that the model's code may call."""
+    return (Path(__file__).parent / "shapes.py").read_text(encoding="utf-8")
+
+
+def run_path(
+    code: str, boxes: Mapping[str, Box], *, max_points: int = 20, timeout_s: float = 2.0
+) -> tuple[PathPoint, ...]:
+    """Run code that defines `path(boxes)` and return its points; it may call the functions of `shapes.py`.
 
     The code runs in another process, without files, network, clock or packages, within bounds on time and memory.
     Nothing it does can change this process, and nothing it returns reaches this process: the worker describes the value in at
@@ -33,7 +43,7 @@ def run_path(code: str, boxes: Mapping[str, Box], *, max_points: int = 20, timeo
         timeout_s: Longest time for reading the code, and again for the call [s].
 
     Returns:
-        Points (x, y) [px], all finite, 2 to `max_points` of them.
+        Points (x, y) [px], or all of them (x, y, up) for a path in the air, up in metres; finite, 2 to `max_points` of them.
 
     Raises:
         SandboxError: Anything that went wrong with the code or with what it returned; the text is for its author and has at
@@ -45,6 +55,7 @@ def run_path(code: str, boxes: Mapping[str, Box], *, max_points: int = 20, timeo
     plain = {name: box.as_tuple for name, box in boxes.items()}
 
     def run(interpreter: Any) -> str:
+        interpreter.feed_run(without_value(_shapes()), print_callback=discarded_output())
         interpreter.feed_run(without_value(code), print_callback=discarded_output())
         interpreter.feed_run("_returned = path(boxes)", inputs={"boxes": plain}, print_callback=discarded_output())
         described = discarded_output()

@@ -25,8 +25,8 @@ PRINTED_BYTES = 64 * 1024
 """Most text that a function may print; it is thrown away."""
 CHECKOUT_TIMEOUT_S = 5.0
 """How long to wait for a free worker; they are started as needed."""
-TURNS = 3
-"""Programs in one session: the code, the call, the description."""
+TURNS = 4
+"""Programs in one session: the shapes, the code, the call, the description."""
 GRACE_S = 10.0
 """Starting a worker and passing the work on, on a busy machine."""
 

@@ -124,8 +124,11 @@ def write(moves: Sequence[Move], words: Names, sizes_m: Mapping[str, float]) -> 
         else:
             spots += move.to.how == "spot"
             text, targets, step = _put(plan, move, words, sizes_m, spots)
+            if not move.plain:
+                text, function = _handled(plan, move, text, words, step, subgoal)
         after = [f"G{number - 1}"] if number > 1 else []
-        moved = None if step["kind"] != "pick_place" else {name: step[name] for name in MoveDraft.model_fields}
+        plain = isinstance(move, Put) and move.plain
+        moved = None if not plain else {name: step[name] for name in MoveDraft.model_fields}
         plan.subgoals.append(
             SubgoalDraft.model_validate(
                 {"id": subgoal, "text": text, "after": after, "targets": targets, "function": function, "move": moved}
@@ -152,6 +155,24 @@ def _put(
         place = {"target": there, "how": "at", "side": None}
         text, targets = f"put the {name} {said}{turned}", [thing, there]
     return text, targets, {"kind": "pick_place", "pick": thing, "place": place, "rotate_deg": move.rotate_deg}
+
+
+def _handled(
+    plan: Written, move: Put, text: str, words: Names, step: dict[str, Any], subgoal: str
+) -> tuple[str, str | None]:
+    """Words for a move of a thing that is turned in place or moved about in the air as well, and what its function is to compute."""
+    name, function = words.of(move.thing), None
+    step |= {"tight": move.tight, "twist_deg": move.twist_deg}
+    if move.twist_deg:
+        way = "clockwise" if move.twist_deg > 0 else "anticlockwise"
+        text = f"turn the {name} by {abs(move.twist_deg):g} degrees {way} where it is, then {text}"
+    if move.path_m:
+        text = f"lift the {name}, move it along a path of {len(move.path_m)} points in the air, then {text}"
+        function = f"the {len(move.path_m)} points of the path in the air over the {name}, with how far up each is"
+        step["function"] = subgoal
+        flat = tuple((x, y) for x, y, _ in move.path_m)
+        plan.paths[text] = Trace(move.thing, flat, tuple(up for _, _, up in move.path_m))
+    return text, function
 
 
 def _place(plan: Written, move: Put, words: Names, sizes_m: Mapping[str, float], spots: int) -> tuple[str, str]:

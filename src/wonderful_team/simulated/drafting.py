@@ -140,10 +140,11 @@ def _steps(
         named["subgoal"] = own[step["subgoal"]]
         if "pick" in named:
             named["pick"] = ids[step["pick"]]
-        if step["kind"] == "follow":
+        if step.get("function") is not None:
             named["function"] = own[step["function"]]
         if step["kind"] == "pick_place" and "pick_place" not in kinds and can_carry(kinds):
-            steps += arm_steps(named["subgoal"], named["pick"], named["place"], named["rotate_deg"], kinds)
+            more = {key: named[key] for key in ("tight", "twist_deg", "function") if key in named}
+            steps += arm_steps(named["subgoal"], named["pick"], named["place"], named["rotate_deg"], kinds, **more)
         else:
             steps.append(named)
             if step["kind"] == "follow" and "home" in kinds:

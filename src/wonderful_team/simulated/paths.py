@@ -16,6 +16,8 @@ from wonderful_team.simulated.plan import Trace
 
 OFF_SHARE = 0.04
 """How far a point of a path may lie from where it should, as a share of the path's extent."""
+LEAST_OFF_PX, OFF_UP_M = 4.0, 0.01
+"""It may always lie this far off [px of the picture], and this much too high or low [m]."""
 
 
 def answer_write_function(context: Context, question: WriteFunction) -> FunctionCode:
@@ -29,10 +31,12 @@ def answer_write_function(context: Context, question: WriteFunction) -> Function
         raise UnsupportedQuestion(context.name, "WriteFunction", f"no box of the {trace.thing} was given")
     name, box = next(iter(question.boxes.items()))
     shares = (path - np.array([box.x0, box.y0])) / np.array([box.width, box.height])
-    points = ", ".join(f"({x:.4f}, {y:.4f})" for x, y in shares.tolist())
+    rows = shares.tolist() if not trace.up_m else np.column_stack([shares, trace.up_m]).tolist()
+    points = ", ".join(f"({', '.join(f'{value:.4f}' for value in row)})" for row in rows)
+    up = ", up" if trace.up_m else ""
     code = (
         f"def path(boxes):\n    x0, y0, x1, y1 = boxes[{name!r}]\n    shares = [{points}]\n"
-        "    return [(x0 + a * (x1 - x0), y0 + b * (y1 - y0)) for a, b in shares]\n"
+        f"    return [(x0 + a * (x1 - x0), y0 + b * (y1 - y0){up}) for a, b{up} in shares]\n"
     )
     return FunctionCode(reasoning=f"{len(path)} points, as shares of the box of {name}.", code=code)
 
@@ -43,12 +47,16 @@ def answer_review_path(context: Context, question: ReviewPath) -> PathReview:
     Raises:
         UnsupportedQuestion: As for the function.
     """
-    right, _ = _path(context, question.subgoal, question.view, "ReviewPath")
+    right, trace = _path(context, question.subgoal, question.view, "ReviewPath")
     drawn = [mark for mark in question.view.marks if isinstance(mark, PathMark)]
     points = np.array(drawn[-1].points if drawn else (), dtype=np.float64).reshape(-1, 2)
-    limit = OFF_SHARE * float(np.ptp(right, axis=0).max())
+    limit = max(LEAST_OFF_PX, OFF_SHARE * float(np.ptp(right, axis=0).max()))
     if len(points) != len(right):
         problem = f"the path has {len(points)} points and should have {len(right)}"
+    elif len(question.up_m) != len(trace.up_m):
+        problem = f"{len(question.up_m)} of its points say how far up they are, and {len(trace.up_m)} should"
+    elif any(abs(up - wanted) > OFF_UP_M for up, wanted in zip(question.up_m, trace.up_m, strict=True)):
+        problem = f"its points should lie {', '.join(f'{up:.2f}' for up in trace.up_m)} m up"
     else:
         off = float(np.hypot(*(points - right).T).max())
         problem = (

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import shapely
@@ -52,11 +52,25 @@ class Spot:
 
 @dataclass(frozen=True)
 class Put:
-    """Carry a thing."""
+    """Carry a thing.
+
+    Attributes:
+        twist_deg: How far it is turned clockwise where it stands before it is lifted, as a screw cap is.
+        path_m: Points (x, y, up) that it is moved through in the air before it is put down, up from where the path begins [m].
+        tight: Whether it is gripped as hard as can be.
+    """
 
     thing: str
     to: Spot
     rotate_deg: float
+    twist_deg: float = 0.0
+    path_m: tuple[tuple[float, float, float], ...] = ()
+    tight: bool = False
+
+    @property
+    def plain(self) -> bool:
+        """Whether it is one pick and one place, and nothing else."""
+        return not (self.twist_deg or self.path_m)
 
 
 @dataclass(frozen=True)
@@ -77,15 +91,34 @@ class Shove:
 
 @dataclass(frozen=True)
 class Trace:
-    """Lead the tool along a surface.
+    """Lead the tool along a surface, or a thing through the air.
 
     Attributes:
-        thing: What it is led over.
-        path_m: Points (x, y) of the way on the surface [m].
+        thing: What it is led over, or what is moved.
+        path_m: Points (x, y) of the way [m].
+        up_m: How far each lies over where the way begins [m]; () on a surface.
     """
 
     thing: str
     path_m: tuple[tuple[float, float], ...]
+    up_m: tuple[float, ...] = ()
+
+
+@dataclass(frozen=True, eq=False)
+class Handled:
+    """What an arm does between closing and opening its gripper, where that is more than a pick and place.
+
+    Attributes:
+        carry: From where it is gripped to where it is let go, turned by what the gripper was not turned in place.
+        twist_rad: How far it was turned in place, counter-clockwise [rad].
+        path_m: The way in the air, shape (N, 3) [m]; None without one.
+        tight: Whether it was gripped tightly.
+    """
+
+    carry: PickPlace
+    twist_rad: float
+    path_m: Array | None
+    tight: bool
 
 
 Move = Put | Shove | Trace
@@ -147,10 +180,10 @@ def moves_of(actions: Sequence[Action], truth: SceneTruth, instruction: Instruct
     start = {name: _xy(thing.position_m) for name, thing in truth.start().items()}
     moves: list[Move] = []
     for action in carried(actions):
-        if isinstance(action, PickPlace):
-            put = _put(action, table, pictured, start)
+        if isinstance(action, PickPlace | Handled):
+            put = _put(action if isinstance(action, PickPlace) else action.carry, table, pictured, start)
             if put is not None:
-                moves.append(put)
+                moves.append(_as_handled(put, action) if isinstance(action, Handled) else put)
         elif isinstance(action, Push):
             shove = _shove(action, table)
             if shove is not None:
@@ -160,23 +193,40 @@ def moves_of(actions: Sequence[Action], truth: SceneTruth, instruction: Instruct
     return moves
 
 
-def carried(actions: Sequence[Action]) -> list[Action]:
-    """The same, with what an arm does between closing and opening its gripper as one pick and place."""
-    found: list[Action] = []
-    at = gripped = None
+def carried(actions: Sequence[Action]) -> list[Action | Handled]:
+    """The same, with what an arm does between closing and opening its gripper as one pick and place, or as a thing handled."""
+    found: list[Action | Handled] = []
+    at = gripped = path = None
+    twist, tight = 0.0, False
     for action in actions:
         if isinstance(action, MoveTo):
             at = action.pose
         elif isinstance(action, Gripper) and at is not None:
             if action.state != "open":
-                gripped = at
+                gripped, twist, path, tight = at, 0.0, None, action.state == "tight"
             elif gripped is not None:
-                turn = wrap_angle(at.yaw_rad - gripped.yaw_rad)
-                found.append(PickPlace(gripped.position_m, at.position_m, turn))
+                turn = wrap_angle(at.yaw_rad - gripped.yaw_rad - twist)
+                carry = PickPlace(gripped.position_m, at.position_m, turn)
+                found.append(Handled(carry, twist, path, tight) if twist or path is not None else carry)
                 gripped = None
+        elif gripped is not None and isinstance(action, RotateGripper):
+            twist += action.yaw_rad
+        elif gripped is not None and isinstance(action, Trajectory):
+            path = action.waypoints_m
         elif not isinstance(action, Gripper | RotateGripper | Home):
             found.append(action)
     return found
+
+
+def _as_handled(put: Put, handled: Handled) -> Put:
+    """A move of a thing with what else is done to it while it is held; where it comes back to its place, that is its origin."""
+    carry, path = handled.carry, handled.path_m
+    back = math.dist(_xy(carry.pick_m), _xy(carry.place_m)) <= SAME_M and not put.rotate_deg
+    to = Spot("origin", put.to.at_m) if back else put.to
+    points = [] if path is None else np.column_stack([path[:, :2], path[:, 2] - path[0, 2]]).tolist()
+    way = tuple((float(x), float(y), float(up)) for x, y, up in points)
+    twist = round(-math.degrees(handled.twist_rad), 2) + 0.0
+    return replace(put, to=to, twist_deg=twist, path_m=way, tight=handled.tight)
 
 
 def _put(

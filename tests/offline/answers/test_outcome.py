@@ -130,6 +130,16 @@ def test_paths(points: tuple[tuple[float, float], ...], accepted: bool) -> None:
     assert answer.accepted == accepted
 
 
+def test_a_path_that_stays_in_one_place_may_go_up_and_down() -> None:
+    view = picture(BEFORE)
+    point = view.frame.point_to_picture((500.0, 80.0))
+    seen = view.marked(PathMark((point, point, point)))
+    shake = Subgoal("G1", "shake it")
+    assert ask(ReviewPath(shake, seen, (0.0, 0.08, 0.0))).accepted
+    assert "all points of the path are the same place" in ask(ReviewPath(shake, seen, (0.0, 0.0, 0.0))).problem
+    assert not ask(ReviewPath(shake, seen)).accepted
+
+
 def test_programs_are_not_written() -> None:
     question = WriteFunction(GOALS[0], picture(BEFORE))
     with pytest.raises(UnsupportedQuestion, match="WriteFunction"):

@@ -48,11 +48,26 @@ def test_a_written_path_is_run_in_the_sandbox_reviewed_and_followed_by_touch(tas
 
 
 @needs_arms
-def test_offline_says_which_words_of_a_drawing_it_does_not_know() -> None:
-    world = wt.make_world("arms/star", seed=2)
+@pytest.mark.parametrize("task", ["cap", pytest.param("shake", marks=pytest.mark.slow)])
+def test_bottles_are_opened_and_shaken_by_a_plan_that_was_checked(task: str) -> None:
+    world = wt.make_world(f"arms/{task}", seed=2)
+    try:
+        trial = wt.rollout(wt.Team(model="simulated:perfect"), world)
+    finally:
+        world.close()
+    assert trial.outcome == "success", trial.reason
+    assert "close" in {step.kind for step in trial.plans[-1].steps if getattr(step, "tight", False)}
+    wanted = "rotate_gripper" if task == "cap" else "trajectory"
+    assert wanted in [report.action.kind for report in trial.reports]
+
+
+@needs_arms
+@pytest.mark.parametrize(("task", "unknown"), [("star", "draw"), ("shake", "shake, bottle"), ("cap", "open, bottle")])
+def test_offline_says_which_words_of_a_task_it_does_not_know(task: str, unknown: str) -> None:
+    world = wt.make_world(f"arms/{task}", seed=2)
     try:
         plan = wt.Team(model="offline").plan(world.observe(), world.instruction, limits=world.limits)
     finally:
         world.close()
     assert plan.status == "not_understood"
-    assert "draw" in plan.message
+    assert unknown in plan.message

@@ -9,6 +9,7 @@ import pytest
 
 from wonderful_team.errors import UnknownNameError
 from wonderful_team.sims.tabletop import make_world, partitions, task_names
+from wonderful_team.sims.tabletop.bottles import BOTTLES
 from wonderful_team.sims.tabletop.registering import filled, find_task
 from wonderful_team.sims.tabletop.shapes import shape_names
 from wonderful_team.sims.tabletop.textures import texture, texture_names
@@ -76,7 +77,7 @@ def _listed(*lists: str) -> list[str]:
 
 
 def test_there_are_the_29_shapes_of_vima_bench_by_name() -> None:
-    fruits = set(shape_names("fruit")) | {"paper", "price tag", "label", "cube", "plate"}
+    fruits = set(shape_names("fruit")) | {"paper", "price tag", "label", "cube", "plate", *BOTTLES}
     assert sorted(set(shape_names()) - fruits) == sorted(_listed(CARRIED, HOLDING, SWEPT))
     assert len(_listed(CARRIED, HOLDING, SWEPT)) == 29
 

@@ -32,7 +32,7 @@ def _problem(question: ReviewPath, points: tuple[Point, ...]) -> str:
     outside = [number for number, point in enumerate(points, start=1) if not valid.contains(point)]
     if outside:
         return f"point {outside[0]} of the path lies outside the picture"
-    if all(abs(x - points[0][0]) + abs(y - points[0][1]) < 2 for x, y in points):
+    if not any(question.up_m) and all(abs(x - points[0][0]) + abs(y - points[0][1]) < 2 for x, y in points):
         return "all points of the path are the same place"
     thing, place = _boxes(question)
     if thing is not None and place is not None and not place.scaled(NEAR).contains(points[-1]):

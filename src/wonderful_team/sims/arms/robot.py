@@ -32,6 +32,8 @@ AWAY_M = 0.012
 """A motion that ends farther than this from its goal did not do what was asked [m]."""
 EMPTY_M = 0.003
 """Fingers that are closed up to this hold nothing [m]."""
+MOST_LEAP_RAD = 1.0
+"""A joint that turns farther between two points of a turn takes another posture [rad]."""
 DOWN_SHARE = 0.5
 PRESS_N = 3.0
 """With so much a tool that is led along a surface presses on it [N]."""
@@ -49,7 +51,7 @@ class Moved:
     Attributes:
         error_m, error_rad: How far the tool is from its goal.
         force_n: Largest force that pressed on the tool, or on what it holds.
-        stopped_by: "" when it came to its end, else contact, collision, stop or reach.
+        stopped_by: "" when it came to its end, else contact, collision, stop, reach or wrist.
     """
 
     error_m: float
@@ -202,17 +204,27 @@ class Robot:
             self.parked = False
         return self._straight(goal, yaw_rad, touching)
 
-    def _straight(self, goal: Array, yaw_rad: float, touching: bool) -> Moved:
+    def rotate(self, turn_rad: float) -> Moved:
+        """Turn the tool where it stands, about the vertical; nothing turns where the wrist has no room for all of it.
+
+        Args:
+            turn_rad: Counter-clockwise, seen from above; more than half a circle is turned that way round.
+        """
+        return self._straight(self.tool_m, self.yaw_rad + turn_rad, False, turn_rad)
+
+    def _straight(self, goal: Array, yaw_rad: float, touching: bool, turn_rad: float | None = None) -> Moved:
         start, from_q = self._led if touching and self._led is not None else (self.tool_m, self.q)
         from_yaw = self.yaw_rad
-        way, turn = goal - start, math.remainder(yaw_rad - from_yaw, 2 * math.pi)
+        way = goal - start
+        turn = math.remainder(yaw_rad - from_yaw, 2 * math.pi) if turn_rad is None else turn_rad
         length = float(np.linalg.norm(way))
         count = max(1, math.ceil(length / APART_M), math.ceil(abs(turn) / 0.2))
         near, path = from_q, [from_q]
         for share in np.linspace(0, 1, count + 1)[1:]:
             found = self.kinematics.reach(*self._flange_at(start + share * way, from_yaw + share * turn), near=near)
-            if found is None:
-                return self._ended(goal, yaw_rad, 0.0, "reach")
+            if found is None or (turn_rad is not None and float(np.abs(found - near).max()) > MOST_LEAP_RAD):
+                # A wrist at the end of its range would go all the way back, and what is held with it.
+                return self._ended(goal, yaw_rad, 0.0, "reach" if turn_rad is None else "wrist")
             path.append(found)
             near = found
         down = length > 1e-6 and -float(way[2]) > DOWN_SHARE * length and not touching
@@ -260,12 +272,15 @@ class Robot:
         goal, yaw, q = self.tool_m, self.yaw_rad, self.q
         start, end = float(self._state.ctrl[self._grip]), row.grip_ctrl[1 if closed else 0]
         still, before, count = 0, self.opening_m, round(0.5 / (TICK * TIMESTEP_S))
-        pressed = 0.0
+        pressed, held = 0.0, False
         for k in range(round((0.5 + WAIT_S) / (TICK * TIMESTEP_S))):
             if self._halted:
                 return self._ended(goal, yaw, pressed, "stop")
             self._state.ctrl[self._grip] = start + (end - start) * min(1.0, (k + 1) / count)
-            if closed and k % 3 == 0:
+            if closed and not held and self.held_bodies():
+                # From here on it would lift, or press down, what it holds.
+                held, self._state.ctrl[self._drives] = True, self.q
+            if closed and not held and k % 3 == 0:
                 q = self._keep(goal, yaw, q)
             self._tick()
             still = still + 1 if abs(self.opening_m - before) < 2e-5 else 0

@@ -10,6 +10,7 @@ import numpy as np
 from wonderful_team.core.actions import ARM
 from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.errors import UnknownNameError
+from wonderful_team.sims.arms.bottle_tasks import cap, shake
 from wonderful_team.sims.arms.drawing import Drawing
 from wonderful_team.sims.arms.scene import ArmScene
 from wonderful_team.sims.arms.star import star_points, star_problem
@@ -97,6 +98,9 @@ def wipe(scene: Scene, rng: np.random.Generator) -> None:
     assert isinstance(scene, ArmScene)
     scene.work = Wiping(plate, WELL_M)
 
+
+task("shake", instruction="shake the {colour} bottle", horizon=2 * MOVES)(shake)
+task("cap", instruction="open the {colour} bottle", horizon=2 * MOVES)(cap)
 
 for _variation in FRUITS:
     _found = find_task(f"fruit_placement/{_variation}")

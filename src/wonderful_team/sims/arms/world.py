@@ -11,6 +11,7 @@ from wonderful_team.core.actions import ARM, Action, Gripper, Home, MoveTo, Rota
 from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.values import Fingers, Limits, RobotState, StepReport
 from wonderful_team.errors import ConfigError
+from wonderful_team.sims.arms.held import HeldTool
 from wonderful_team.sims.arms.model import REACH_HIGH_M, REACH_LOW_M, upright
 from wonderful_team.sims.arms.options import asked as read_options
 from wonderful_team.sims.arms.privileged import ArmTruth
@@ -30,6 +31,7 @@ REASONS = {
     "collision": "stopped: something pressed on the arm",
     "contact": "stopped: the tool touched something on its way down",
     "stop": "the world was stopped",
+    "wrist": "the wrist does not turn so far from how it stands: let go, turn back, and take hold again",
 }
 
 
@@ -91,7 +93,7 @@ class ArmWorld(SimulatedWorld[ArmTable, ArmTruth]):
             case Gripper(state=state):
                 fault, moved = "", self._table.grip(state != "open", state == "tight")
             case RotateGripper(yaw_rad=yaw):
-                fault, moved = "", robot.move(robot.tool_m, robot.yaw_rad + yaw)
+                fault, moved = "", robot.rotate(yaw)
             case Trajectory(waypoints_m=points):
                 fault = self._out_of_reach(points)
                 moved = None if fault else self._follow(points)
@@ -188,18 +190,19 @@ def evenly(points: Sequence[Array], most: int) -> list[Array]:
 
 def _facts(row: ArmRow, table: ArmTable) -> str:
     """What planners are told, one fact a line."""
-    width = 1000 * row.opening_m
-    tool = (
-        table.work.facts
-        if table.work is not None
-        else f"Tool: a gripper with two parallel fingers that points straight down. It opens {width:.0f} mm and holds one thing at a "
+    width, work = 1000 * row.opening_m, table.work
+    tool = [
+        f"Tool: a gripper with two parallel fingers that points straight down. It opens {width:.0f} mm and holds one thing at a "
         "time, from two opposite sides; what is wider across its narrowest side cannot be held. The fingers need free space on "
-        f"both sides of the thing. How the gripper is turned to grip is computed from depth."
-    )
+        "both sides of the thing. How the gripper is turned to grip is computed from depth.",
+        "The gripper turns at most once round, and less where its wrist comes to the end of its range: such a turn is refused.",
+    ]
+    if work is not None:
+        tool = [work.facts] if isinstance(work, HeldTool) else [*tool, work.facts]
     return "\n".join(
         (
             f"Robot: {row.words}, bolted down at the upper edge of the top view.",
-            *tool.splitlines(),
+            *tool,
             "End every task with home: the arm then stands beside the table, out of the top view, and everything can be seen.",
             "Every way across the table is made clear of everything; the tool goes down only over where it is to be.",
             f"Reach: {100 * (REACH_HIGH_M[0] - REACH_LOW_M[0]):.0f} by {100 * (REACH_HIGH_M[1] - REACH_LOW_M[1]):.0f} cm in the "

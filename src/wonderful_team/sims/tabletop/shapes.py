@@ -13,7 +13,7 @@ from shapely.geometry.base import BaseGeometry
 
 from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.errors import UnknownNameError
-from wonderful_team.sims.tabletop import fruits
+from wonderful_team.sims.tabletop import bottles, fruits
 from wonderful_team.sims.tabletop.outlines import outline
 from wonderful_team.sims.tabletop.solids import CHAMFER_M, Mesh, convex_pieces, extruded, joined, polygons, prism
 
@@ -96,7 +96,11 @@ class Shape:
 def shape_names(kind: Kind | None = None) -> tuple[str, ...]:
     """All names, or those of one kind that tasks may choose among."""
     chosen = {"kit": KIT, "base": BASES, "area": AREAS, "fruit": fruits.NAMES}
-    return chosen[kind] if kind else (*KIT, *SMALL, *BASES, THREE_SIDED, PLATE, *AREAS, *CARDS, *fruits.NAMES)
+    return (
+        chosen[kind]
+        if kind
+        else (*KIT, *SMALL, *BASES, THREE_SIDED, PLATE, *AREAS, *CARDS, *bottles.BOTTLES, *fruits.NAMES)
+    )
 
 
 @cache
@@ -123,6 +127,8 @@ def shape(name: str, stretch: float = 1.0) -> Shape:
         width, depth = {"paper": (0.17, 0.17), "line": LINE_M, **CARDS}[name]
         across, along = width / 2, depth / 2
         return _from_layers(name, "area", [(box(-across, -along, across, along), 0.0, PAPER_M)], [], movable=False)
+    if name in bottles.BOTTLES:
+        return _from_layers(name, "kit", bottles.layers(name), [], movable=True)
     if name in fruits.NAMES:
         made = fruits.fruit(name)
         return Shape(name, "fruit", made.footprint, made.height_m, made.mesh, None, made.pieces, made.grasp_ab, True)

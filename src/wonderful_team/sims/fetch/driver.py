@@ -33,8 +33,8 @@ FULLY_OPEN_M, FACE_M = 0.1, 0.0018
 """Sum of both finger joints where the fingers are fully open, and what is free between closed ones [m]."""
 EMPTY_M = 0.004
 """Fingers that are closed up to this hold nothing [m]."""
-HOME_M = (-0.14, -0.42, 0.5)
-"""Beside the table and out of the top view [m]."""
+HOME_M = (-0.14, 0.42, 0.5)
+"""Beside the table and out of the top view, on the side from which every place is reached without folding the arm over [m]."""
 OVER_M = 0.32
 """Height at which the tool comes from there, and goes there [m]."""
 

@@ -15,6 +15,8 @@ from typing import Any
 
 import numpy as np
 
+from .drawing import Drawing
+
 ASSETS = "@ASSETS@"
 """Stands in our scenes for the folder of the package's own files."""
 FINGERS = ("robot0:r_gripper_finger_link", "robot0:l_gripper_finger_link")
@@ -108,8 +110,8 @@ class Bench:
         model.site_rgba[:, 3] = 0.0
         # Without a reset, which would throw object0 about: how far it is from a goal is nobody's question here.
         env.goal = np.zeros(3)
-        self._env, self._size = env, (height, width)
-        self._renderer: Any = None
+        self._env = env
+        self._drawing: Drawing | None = None
         self._bodies = [str(one) for one in said["bodies"]]
         self._ids = np.array([model.body(one).id for one in self._bodies])
         robot, arm = model.body("robot0:base_link").id, model.body("robot0:shoulder_lift_link").id
@@ -137,13 +139,12 @@ class Bench:
         """Colour and depth of every camera that is named; how things are now is kept for questions about this look."""
         found = {}
         for name in said["cameras"]:
-            found[f"rgb:{name}"] = self._drawn(self._env.data, str(name), "")
-            found[f"depth:{name}"] = self._drawn(self._env.data, str(name), "depth")
+            found[f"rgb:{name}"], found[f"depth:{name}"] = self._draw().picture(self._env.data, str(name))
         self._looks.append(self._env.data.qpos.copy())
         return {"look": len(self._looks) - 1}, found
 
     def _film(self, said: Mapping[str, Any], arrays: Mapping[str, Any]) -> Reply:
-        return {}, {str(name): self._drawn(self._env.data, str(name), "") for name in said["cameras"]}
+        return {}, {str(name): self._draw().picture(self._env.data, str(name))[0] for name in said["cameras"]}
 
     def _measured(self) -> dict[str, Any]:
         """What the robot feels: its tool, its fingers, what presses on it; whether both fingers press on something."""
@@ -183,19 +184,10 @@ class Bench:
                 total += float(force[0])
         return total
 
-    def _drawn(self, data: Any, camera: str, what: str) -> Any:
-        if self._renderer is None:
-            self._renderer = self._mujoco.Renderer(self._env.model, *self._size)
-        renderer = self._renderer
-        if what == "depth":
-            renderer.enable_depth_rendering()
-        elif what == "bodies":
-            renderer.enable_segmentation_rendering()
-        renderer.update_scene(data, camera=camera)
-        picture = renderer.render().copy()
-        renderer.disable_depth_rendering()
-        renderer.disable_segmentation_rendering()
-        return picture
+    def _draw(self) -> Drawing:
+        if self._drawing is None:
+            self._drawing = Drawing(self._mujoco, self._env.model)
+        return self._drawing
 
     # -- truth, for scorers and simulated models -------------------------------------------------------------------
 
@@ -208,14 +200,13 @@ class Bench:
 
     def _masks(self, said: Mapping[str, Any], arrays: Mapping[str, Any]) -> Reply:
         """Which geometry each pixel showed at a look, as its place in `names`, shape (H, W); -1 for what is no thing's."""
-        picture = self._drawn(self._at(int(said["look"])), str(said["camera"]), "bodies")
+        shown = self._draw().geoms(self._at(int(said["look"])), str(said["camera"]))
         model = self._env.model
         names = [model.geom(k).name for k in range(model.ngeom) if model.geom_bodyid[k] in self._ids]
         numbers = np.full(model.ngeom + 1, -1, dtype=np.int32)
         for place, name in enumerate(names):
             numbers[model.geom(name).id] = place
-        is_geom = picture[..., 1] == int(self._mujoco.mjtObj.mjOBJ_GEOM)
-        return {"names": names}, {"geoms": numbers[np.where(is_geom, picture[..., 0], -1)]}
+        return {"names": names}, {"geoms": numbers[shown]}
 
     def _track(self, said: Mapping[str, Any], arrays: Mapping[str, Any]) -> Reply:
         """Position, quaternion and whether both fingers touched it, of every thing after every step, shape (N, bodies, 8)."""
@@ -231,8 +222,8 @@ class Bench:
 
     def _close(self, said: Mapping[str, Any], arrays: Mapping[str, Any]) -> Reply:
         if self._env is not None:
-            if self._renderer is not None:
-                self._renderer.close()
+            if self._drawing is not None:
+                self._drawing.close()
             self._env.close()
             self._env = None
         return {}, {}

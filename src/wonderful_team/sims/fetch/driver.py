@@ -64,12 +64,13 @@ class Felt:
             ValueError: A number is missing or not finite.
         """
         try:
-            tool = np.asarray(said["tool_m"], dtype=np.float64) - origin_m - (0.0, 0.0, ORIGIN_TO_GRIP_M)
+            tool = np.asarray(said["tool_m"], dtype=np.float64).reshape(-1)
             numbers = [float(said[name]) for name in ("fingers_m", "force_n", "time_s")]
         except (KeyError, TypeError, ValueError) as error:
             raise ValueError(f"the simulator's answer lacks a measurement: {error}") from error
         if tool.shape != (3,) or not np.isfinite([*tool, *numbers]).all():
-            raise ValueError(f"the simulator's answer holds numbers that mean nothing: {dict(said)}")
+            raise ValueError(f"the simulator's answer holds a number that means nothing: {dict(said)}")
+        tool = tool - origin_m - (0.0, 0.0, ORIGIN_TO_GRIP_M)
         return cls(tool, numbers[0] + FACE_M, numbers[1], bool(said["gripped"]), numbers[2])
 
 

@@ -45,7 +45,7 @@ def find_python() -> str:
     return sys.executable
 
 
-def start(python: str, remote: Path = REMOTE) -> Simulator:
+def start(python: str) -> Simulator:
     """Its process.
 
     Raises:
@@ -55,7 +55,7 @@ def start(python: str, remote: Path = REMOTE) -> Simulator:
     def missing(reason: str) -> ConfigError:
         return ConfigError(f"{python} cannot run {PACKAGE}: {reason}.\n{STEPS}")
 
-    return Simulator(Service(python, remote, missing))
+    return Simulator(Service(python, REMOTE, missing))
 
 
 def check_ready() -> dict[str, str]:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -17,7 +16,7 @@ from wonderful_team.sims.arms.tasks import MOVES
 from wonderful_team.sims.arms.world import LEANS_RAD, LOST, REASONS
 from wonderful_team.sims.fetch.cameras import CAMERA_NAMES, SIZE_PX, lenses
 from wonderful_team.sims.fetch.driver import AWAY_M, FULLY_OPEN_M, Driver, Felt, Moved
-from wonderful_team.sims.fetch.finding import OPEN_TIMEOUT_S, REMOTE, find_python, start
+from wonderful_team.sims.fetch.finding import OPEN_TIMEOUT_S, find_python, start
 from wonderful_team.sims.fetch.privileged import Episode, FetchTruth
 from wonderful_team.sims.fetch.remote.bench import ASSETS
 from wonderful_team.sims.fetch.scene import ORIGIN_M, body_name, model_xml, set_table
@@ -64,7 +63,7 @@ class FetchWorld:
     vocabulary = VOCABULARY
     facts = FACTS
 
-    def __init__(self, task: str, seed: int = 0, *, depth: int = 0, remote: Path = REMOTE) -> None:
+    def __init__(self, task: str, seed: int = 0, *, depth: int = 0) -> None:
         self.task, self._depth = asked(task.removeprefix("fetch/"), depth)
         self.seed = seed
         if seed < 0:
@@ -75,7 +74,7 @@ class FetchWorld:
         scene = set_table(seed, count)
         self.instruction = Instruction(scene.words)
         self._lenses = lenses()
-        self._simulator = start(find_python(), remote)
+        self._simulator = start(find_python())
         try:
             said, _ = self._simulator.ask(
                 "open",

@@ -122,3 +122,14 @@ def test_an_estimate_runs_nothing(capsys: pytest.CaptureFixture[str], tmp_path: 
 def test_an_unknown_table_is_told_the_known_ones(capsys: pytest.CaptureFixture[str]) -> None:
     assert run(["paper", "tabel"]) == 2
     assert "vima17" in capsys.readouterr().err
+
+
+def test_of_all_tables_one_whose_simulator_is_not_installed_is_left_out_and_named(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    from wonderful_team.cli.paper import _ready
+
+    monkeypatch.setenv("WONDERFUL_TEAM_FETCH_PYTHON", "no-such-python")
+    assert not _ready("fetch", PAPER_TABLES["fetch"])
+    assert "fetch: left out: WONDERFUL_TEAM_FETCH_PYTHON='no-such-python'" in capsys.readouterr().err
+    assert _ready("toy", PAPER_TABLES["toy"])

@@ -32,9 +32,24 @@ def _command(table: str | None, folder: Path, open_page: bool, **options: Any) -
         return _list(options["as_json"])
     if table != "all" and table not in PAPER_TABLES:
         raise UnknownNameError("table of the paper", table, ["all", *PAPER_TABLES])
-    names = [table] if table != "all" else [name for name, one in PAPER_TABLES.items() if one.suites]
+    names = (
+        [table] if table != "all" else [name for name, one in PAPER_TABLES.items() if one.suites and _ready(name, one)]
+    )
     with limited(options["max_seconds"]):
         return _run(names, folder, open_page, options)
+
+
+def _ready(name: str, table: PaperTable) -> bool:
+    """Whether the simulators that a table needs are installed; of all tables, one that needs another is left out and named."""
+    from wonderful_team.errors import ConfigError
+    from wonderful_team.registry.worlds import check_ready
+
+    try:
+        check_ready(table.suites)
+    except ConfigError as error:
+        click.echo(f"{name}: left out: {str(error).partition(chr(10))[0]}", err=True)
+        return False
+    return True
 
 
 def _list(as_json: bool) -> int:

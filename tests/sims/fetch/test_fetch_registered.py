@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import sys
+import types
 from pathlib import Path
 
 import pytest
@@ -14,6 +16,7 @@ from wonderful_team.evals.paper_tables import PAPER_TABLES
 from wonderful_team.registry.worlds import own_tiers
 from wonderful_team.sims.fetch import FetchWorld
 from wonderful_team.sims.fetch.finding import PYTHON_VARIABLE, check_ready, find_python
+from wonderful_team.sims.fetch.remote import bench
 
 
 @pytest.fixture
@@ -68,6 +71,23 @@ def test_an_interpreter_that_is_none_or_cannot_run_it_is_told(monkeypatch: pytes
     monkeypatch.setenv(PYTHON_VARIABLE, str(tmp_path / "nothing"))
     with pytest.raises(ConfigError, match="valid is a Python interpreter"):
         find_python()
+
+
+def test_a_mujoco_that_is_too_new_for_the_package_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    for name in ("gymnasium_robotics", "gymnasium_robotics.envs", "gymnasium_robotics.envs.fetch"):
+        monkeypatch.setitem(sys.modules, name, types.ModuleType(name))
+    name = "gymnasium_robotics.envs.fetch.fetch_env"
+    monkeypatch.setitem(sys.modules, name, types.ModuleType(name))
+    monkeypatch.setitem(sys.modules, "mujoco", types.ModuleType("mujoco"))
+    monkeypatch.setattr(sys.modules["mujoco"], "__version__", "3.12.0", raising=False)
+    with pytest.raises(bench.Refused, match=r"mujoco 3\.12\.0 is too new for gymnasium-robotics") as caught:
+        bench.load()
+    assert caught.value.kind == "missing"
+    monkeypatch.setattr(sys.modules["mujoco"], "__version__", "3.11.0")
+    assert bench.load()[0] is sys.modules["mujoco"]
+    monkeypatch.setitem(sys.modules, name, None)
+    with pytest.raises(bench.Refused, match="fetch_env"):
+        bench.load()
 
 
 def test_names_and_truth_as_in_every_world() -> None:

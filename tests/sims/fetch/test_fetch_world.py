@@ -157,6 +157,15 @@ def test_a_touch_on_the_way_down_stops_an_empty_tool(open_world: Open, monkeypat
     assert report.measured["contact"] is True
 
 
+def test_what_slips_out_of_the_fingers_is_a_fault(open_world: Open, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("FETCH_STAND_IN", "slip")
+    world = open_world("lid", seed=3)
+    reports = [world.execute(action) for action in world.privileged.oracle()[:5]]
+    assert all(report.executed for report in reports[:4])
+    assert "closed on nothing" in (reports[4].fault or "")
+    assert reports[4].measured["held_width_m"] is None
+
+
 @pytest.mark.parametrize(
     ("broken", "words"),
     [

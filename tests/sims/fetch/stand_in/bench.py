@@ -62,6 +62,9 @@ class Bench:
         self._grip(float(action[3]))
         if self.held is not None:
             self.at[self.held] = self.at[self.held] + way
+        if BROKEN == "slip" and self.held is not None and self.tool[2] > TABLE_M + 0.2:
+            self._drop(self.held)
+            self.held, self.fingers = None, 0.0
         rows = [[*self.at[name], 1.0, 0.0, 0.0, 0.0, float(name == self.held)] for name in self.names]
         self.track.append(rows)
         return self._measured(), {}

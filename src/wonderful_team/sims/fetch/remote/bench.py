@@ -50,12 +50,19 @@ def load() -> tuple[Any, Any]:
     except ImportError as error:
         raise Refused("missing", f"{error} ({sys.executable})") from error
     except AttributeError as error:
-        text = f"MuJoCo finds no OpenGL for MUJOCO_GL={os.environ['MUJOCO_GL']} ({error}): apt-get install libegl1 libgl1-mesa-dri"
-        raise Refused("config", text) from error
+        raise _no_drawing(error) from error
     version = str(mujoco.__version__)
     if tuple(int(part) for part in version.split(".")[:2]) >= TOO_NEW:
         raise Refused("missing", f"mujoco {version} is too new for gymnasium-robotics: valid is below 3.12")
     return mujoco, fetch
+
+
+def _no_drawing(error: Exception) -> Refused:
+    how = os.environ.get("MUJOCO_GL", "")
+    return Refused(
+        "config",
+        f"MuJoCo cannot draw with MUJOCO_GL={how!r} ({type(error).__name__}: {error}); valid is egl, which needs: apt-get install libegl1 libgl1-mesa-dri",
+    )
 
 
 def versions() -> dict[str, str]:
@@ -186,7 +193,10 @@ class Bench:
 
     def _draw(self) -> Drawing:
         if self._drawing is None:
-            self._drawing = Drawing(self._mujoco, self._env.model)
+            try:
+                self._drawing = Drawing(self._mujoco, self._env.model)
+            except Exception as error:  # each way of drawing fails in its own way
+                raise _no_drawing(error) from error
         return self._drawing
 
     # -- truth, for scorers and simulated models -------------------------------------------------------------------

@@ -96,10 +96,10 @@ def test_a_cap_holds_for_all_tables_together(capsys: pytest.CaptureFixture[str],
 def test_a_table_that_cannot_be_run_shows_the_papers_figures_and_what_is_missing(
     capsys: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:
-    assert run(["paper", "fetch", "--folder", str(tmp_path)]) == 0
+    assert run(["paper", "vla", "--folder", str(tmp_path)]) == 0
     said = capsys.readouterr().out
-    assert "Cannot be run yet: it needs the world fetch." in said
-    assert "80 %" in said
+    assert "Cannot be run yet: it needs the worlds and weights of these models." in said
+    assert " %" in said
 
 
 def test_crashes_of_a_methods_code_are_counted_apart_from_other_failures() -> None:

@@ -145,3 +145,29 @@ def test_what_cannot_be_gripped_names_step_and_target() -> None:
             view_of(wide),
             replace(LIMITS, fingers=FINGERS),
         )
+
+
+def test_a_gripper_that_does_not_turn_is_never_turned_and_refuses_what_it_would_have_to_turn_for() -> None:
+    fixed = replace(FINGERS, turns=False)
+    across, along = Block(0.42, 0.03, 0.58, 0.07), Block(0.48, -0.05, 0.52, 0.15)
+    for block in (across, along):
+        target = found(CAMERA, "T1", block, {"pick": (0.5, 0.5)})
+        assert target.box is not None
+        view, at = view_of(block), (target.box, target.points["pick"], 0.0, block.height / 2)
+        if block is across:
+            grip = grip_of(view, *at, fixed)
+            assert grip.yaw_rad == 0.0
+            assert grip.width_m == pytest.approx(0.04, abs=0.003)
+        else:
+            assert abs(grip_of(view, *at, FINGERS).yaw_rad) == pytest.approx(math.pi / 2, abs=0.06)
+            with pytest.raises(
+                GeometryError, match=r"\d{3} mm wide where the fingers close, and the gripper does not turn"
+            ):
+                grip_of(view, *at, fixed)
+    neighbour = Block(0.42, 0.078, 0.58, 0.11)
+    target = found(CAMERA, "T1", across, {"pick": (0.5, 0.5)})
+    assert target.box is not None
+    with pytest.raises(
+        GeometryError, match="other things stand where a finger would go, and the gripper does not turn"
+    ):
+        grip_of(view_of(across, neighbour), target.box, target.points["pick"], 0.0, 0.025, fixed)

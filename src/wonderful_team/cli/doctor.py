@@ -52,6 +52,7 @@ def command(out: Path | None, as_json: bool) -> int:
         lambda: _disk(out),
         _cache,
         _vimabench,
+        _fetch,
         _keys,
     )
     findings = [_guarded(check) for check in checks]
@@ -196,28 +197,38 @@ def _cache() -> Finding:
 
 
 def _vimabench() -> Finding:
-    """Optional: only a copy that is named and does not work is a fault."""
-    from wonderful_team.registry.worlds import make_world
     from wonderful_team.sims.vimabench.finding import PATH_VARIABLE, PYTHON_VARIABLE, find_installation
 
-    named = any(os.environ.get(name) for name in (PYTHON_VARIABLE, PATH_VARIABLE))
+    return _elsewhere("vimabench", "rotate", find_installation, PYTHON_VARIABLE, PATH_VARIABLE)
+
+
+def _fetch() -> Finding:
+    from wonderful_team.sims.fetch.finding import PYTHON_VARIABLE, find_python
+
+    return _elsewhere("fetch", "lid", find_python, PYTHON_VARIABLE)
+
+
+def _elsewhere(world: str, task: str, find: Callable[[], object], *variables: str) -> Finding:
+    """A simulator in an environment of its own. Optional: only one that is named and does not work is a fault."""
+    from wonderful_team.registry.worlds import make_world
+
     started = time.monotonic()
     try:
-        find_installation()
-        world = make_world("vimabench/rotate", seed=1)
+        find()
+        made = make_world(f"{world}/{task}", seed=1)
     except WonderfulTeamError as error:
         told, _, steps = str(error).partition("\n")
-        if named:
-            return Finding("vimabench", False, told, steps)
-        return Finding("vimabench", True, "not set up (optional); `run vimabench/rotate` says how to get it")
+        if any(os.environ.get(name) for name in variables):
+            return Finding(world, False, told, steps)
+        return Finding(world, True, f"not set up (optional); `run {world}/{task}` says how to get it")
     try:
-        size = world.observe().main.size_px
-        versions = getattr(world, "versions", {})
+        size = made.observe().main.size_px
+        versions = getattr(made, "versions", {})
     finally:
-        world.close()
+        made.close()
     known = ", ".join(f"{name} {version}" for name, version in versions.items())
     text = f"a scene of {size[0]} x {size[1]} px in {time.monotonic() - started:.1f} s ({known})"
-    return Finding("vimabench", True, text)
+    return Finding(world, True, text)
 
 
 def _keys() -> Finding:

@@ -12,7 +12,7 @@ from typing import Any, Literal
 
 from wonderful_team.core.intervals import wilson_interval
 from wonderful_team.evals.paper import PaperFigure, published
-from wonderful_team.evals.suites import ABLATED, IMPLICIT_GOALS, SPATIAL_TASKS, VIMA_TASKS
+from wonderful_team.evals.suites import ABLATED, IMPLICIT_GOALS, LID_AGAIN, SPATIAL_TASKS, VIMA_TASKS
 from wonderful_team.evals.summary import Cell, Summary
 from wonderful_team.evals.toy import BOX_KINDS, BOXCHECK, POINTING, WORDS
 from wonderful_team.evals.trials import VALID_SUBGOAL
@@ -34,12 +34,14 @@ class Measure:
     Attributes:
         task: Its name; FOLDER/ for all variations together, "" for all tasks.
         failed: "crash": at this stage; "otherwise": at any other; "" counts successes.
+        replans: How often was planned again; None for however often the suite lets.
     """
 
     task: str
     method: str
     fact: str = ""
     failed: Literal["", "crash", "otherwise"] = ""
+    replans: int | None = None
 
 
 @dataclass(frozen=True)
@@ -245,6 +247,19 @@ def _fixed(table: str, columns: Sequence[str] = ()) -> list[tuple[str, list[Pape
     return lines
 
 
+def _fetch() -> list[tuple[str, list[PaperCell]]]:
+    """Single attempt and with replanning, over one and two things to be put into the box."""
+    part = published()["fetch_box"]
+    lines = []
+    for method, name in (("team:paper", "wt"), ("tg", "tg")):
+        cells = [
+            PaperCell(column, _figure(part["percent"][f"{name}_{key}"], None, part["table"]), Measure("fetch/", method, replans=replans))
+            for column, key, replans in (("single attempt", "single_attempt", 0), ("with replanning", "replanning", LID_AGAIN.replans))
+        ]  # fmt: skip
+        lines.append((method, cells))
+    return lines
+
+
 _NLAP_TASKS = ("visual_manipulation", "rotate", "novel_adj", "novel_noun", "same_shape", "manipulate_old_neighbor")
 _PIVOT_TASKS = ("visual_manipulation", "novel_adj", "pick_in_order_then_restore")
 
@@ -317,7 +332,8 @@ PAPER_TABLES: dict[str, PaperTable] = {
         "counts things that a detector does not find too; of ours these stand under 'failed otherwise', by stage grounding in a report of `bench`.",
     ),
     "fetch": PaperTable(
-        "the box with a lid, on Fetch", "appendix G.3", (), (), lambda: _fixed("fetch_box"), lacks="the world fetch",
+        "the box with a lid, on Fetch", "appendix G.3", ("lid", "lid/replanning"), ("team:paper", "tg"), _fetch,
+        note="The paper states no number of runs, and places one or two things; ours stand for both tasks together.",
     ),
     "vla": PaperTable(
         "RT-1 and OpenVLA on two tasks", "appendix G.5", (), (), lambda: _fixed("vla", ("team", "RT-1", "OpenVLA")),
@@ -364,7 +380,9 @@ def _ours(cell: PaperCell, summary: Summary | None) -> str:
 def _cells(summary: Summary, one: Measure) -> list[Cell]:
     """What a study has for a measure, one for each model."""
     return [
-        summary.cell(condition, one.task or None) for condition in summary.compared if condition.method == one.method
+        summary.cell(condition, one.task or None)
+        for condition in summary.compared
+        if condition.method == one.method and one.replans in (None, condition.replans)
     ]
 
 

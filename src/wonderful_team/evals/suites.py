@@ -26,6 +26,7 @@ IMPLICIT_GOALS = {
 """The paper's implicit goals: by suite, the folder of its variations and what they want."""
 SPATIAL_TASKS = ("shake", "star", "wipe", "cap")
 """The paper's spatial planning, as the world `arms` has it: shake a bottle, draw a star, wipe a plate, open a bottle."""
+LID_TASKS = ("lid", "lid_two")
 ABLATED = (
     "visual_manipulation", "scene_understanding", "rotate", "novel_adj", "novel_noun", "sweep_without_exceeding", "same_shape",
     "manipulate_old_neighbor", "pick_in_order_then_restore",
@@ -49,6 +50,10 @@ class Protocol:
 
 OPEN_LOOP = Protocol("multimodal reasoning: 10 runs a task, single attempt, open loop", 10, 0)
 IMPLICIT_GOAL = Protocol("implicit goals: 2 runs for each of 4 variations, single attempt, open loop", 2, 0)
+LID = Protocol(
+    "the box with a lid: single attempt; the paper states no number of runs, its steps of 5 % imply 20", 20, 0
+)
+LID_AGAIN = Protocol("the box with a lid: up to 3 replans, 20 runs", 20, 3)
 SPATIAL = Protocol("spatial planning: 5 runs a task, closed loop, up to 3 replans", 5, 3)
 
 
@@ -105,6 +110,11 @@ def all_suites(known_tasks: Sequence[str], partitions: Mapping[str, Sequence[str
     if spatial:
         words = "the paper's spatial planning, on an arm that grips by contact"
         suites["spatial"] = Suite("spatial", spatial, SPATIAL, words)
+    lid = tuple(f"fetch/{name}" for name in LID_TASKS if f"fetch/{name}" in known_tasks)
+    if lid:
+        words = "the paper's box with a lid, on gymnasium-robotics' Fetch"
+        suites["lid"] = Suite("lid", lid, LID, words)
+        suites["lid/replanning"] = Suite("lid/replanning", lid, LID_AGAIN, f"{words}, closed loop")
     suites["pointing"] = Suite(
         "pointing", (POINTING,), Protocol("toy table: one question a picture (the paper states no number; 100 here)", 100, 0),
         "point at a circle on the toy table: the paper's Appendix F.1",

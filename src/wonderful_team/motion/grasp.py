@@ -79,7 +79,8 @@ def grip_of(view: View, box: Box, px: Point, support_z_m: float, grasp_z_m: floa
     found, narrowest = [], math.inf
     tip_m = max(grasp_z_m - TIP_M, support_z_m) + ROOM_M
     others = others[others[:, 2] > tip_m]
-    for yaw in np.linspace(-math.pi / 2, math.pi / 2, TURNS, endpoint=False):
+    turns = np.linspace(-math.pi / 2, math.pi / 2, TURNS, endpoint=False) if fingers.turns else np.zeros(1)
+    for yaw in turns:
         low, high = _extent(mine, at, float(yaw), fingers, spacing)
         width, middle = high - low, (high + low) / 2
         narrowest = min(narrowest, width)
@@ -88,16 +89,21 @@ def grip_of(view: View, box: Box, px: Point, support_z_m: float, grasp_z_m: floa
         hit = _hits(others, at, float(yaw), middle, width, fingers)
         found.append((hit, width, abs(float(yaw)), float(yaw), middle))
     if not found:
+        side = (
+            "across its narrowest side" if fingers.turns else "where the fingers close, and the gripper does not turn"
+        )
         raise GeometryError(
-            f"it is {1000 * narrowest:.0f} mm wide across its narrowest side (limit {1000 * (fingers.opening_m - ROOM_M):.0f} mm): "
+            f"it is {1000 * narrowest:.0f} mm wide {side} (limit {1000 * (fingers.opening_m - ROOM_M):.0f} mm): "
             "the fingers do not open that far"
         )
     free = [one for one in found if one[0] <= SPECKS]
     if not free:
-        raise GeometryError(
-            f"other things stand where a finger would go, however the gripper is turned ({len(found)} turns tried); "
-            "move one of them away first"
+        tried = (
+            f"however the gripper is turned ({len(found)} turns tried)"
+            if fingers.turns
+            else "and the gripper does not turn"
         )
+        raise GeometryError(f"other things stand where a finger would go, {tried}; move one of them away first")
     _, width, _, yaw, middle = min(free, key=lambda one: one[1] + TURNING_M_RAD * one[2])
     centre = at + middle * np.array([math.sin(yaw), -math.cos(yaw)])
     return Grip(centre, yaw, width, len(mine))

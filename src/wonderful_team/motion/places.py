@@ -15,7 +15,7 @@ from wonderful_team.core.values import GroundedTarget, Limits, PointRole
 from wonderful_team.errors import GeometryError
 from wonderful_team.motion.beside import beside_px, half_extents
 from wonderful_team.motion.deprojector import Deprojector, ResolvedPoint
-from wonderful_team.motion.sharing import Share, share_px
+from wonderful_team.motion.sharing import LEVEL_M, Share, share_px
 from wonderful_team.motion.state import MotionState
 
 TO_PICK: tuple[PointRole, ...] = ("pick", "grasp")
@@ -176,14 +176,21 @@ class Places:
             return spot
         boxes = [self.target(thing).box for thing in share.things]
         centre = self.point(name, TO_PLACE)[1]
-        px = share_px(share, self.target(name), boxes, centre, self.lift)
-        px = (spot.px[0] + px[0] - centre[0], spot.px[1] + px[1] - centre[1])
+        part = share_px(share, self.target(name), boxes, centre, self.lift)
+        px = (spot.px[0] + part[0] - centre[0], spot.px[1] + part[1] - centre[1])
         if px == spot.px and self.target(name).target.kind == "area":
             return spot
         if px == spot.px:
             return self._on_others(share.things[: share.index], spot, progress)
         how = f"{spot.how}; part {share.index + 1} of {len(share.things)} that go there"
-        return self.lift.at_height(px, 0.0 if spot.position_m is None else float(spot.position_m[2]), how)
+        z_m = 0.0 if spot.position_m is None else float(spot.position_m[2])
+        return self.lift.at_height(px, z_m - self._stands_on_point_m(name, centre, part), how)
+
+    def _stands_on_point_m(self, name: str, point: Point, part: Point) -> float:
+        """How much higher a place shows at its own point than at a part of it [m]; 0 where both are its floor."""
+        seen, floor = (self.lift.surface(px, name).position_m for px in (point, part))
+        higher = 0.0 if seen is None or floor is None else float(seen[2] - floor[2])
+        return higher if higher > LEVEL_M else 0.0
 
     def _on_others(self, things: Sequence[str], spot: ResolvedPoint, progress: MotionState) -> ResolvedPoint:
         """A spot at the height of what earlier steps have put there, if that is higher."""

@@ -4,11 +4,21 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from itertools import product
 
 import numpy as np
 
-from wonderful_team.core.actions import At, PickPlaceStep, Step
+from wonderful_team.core.actions import (
+    At,
+    CloseStep,
+    MoveStep,
+    OpenStep,
+    PickPlaceStep,
+    Place,
+    RotateGripperStep,
+    Step,
+)
 from wonderful_team.core.geometry import Box
 from wonderful_team.core.pictures import Point
 from wonderful_team.core.values import GroundedTarget
@@ -22,6 +32,10 @@ WITHIN = 0.95
 """Without depth, things are kept within this share of the ellipse in a place's box: its walls lie outside."""
 CLOSER = (1.0, 0.9, 0.8, 0.7, 0.6)
 """Shares of the distance at which the discs of things would not touch; things are mostly smaller than their discs."""
+FARTHER = (1.0, 1.2, 1.4, 1.6, 1.8, 2.0)
+"""The same where something stands in the middle, between them."""
+GRID = 8
+"""So many points along each side of a place say how high its floor usually is."""
 TURNS = 24
 """Directions in which a group of things is tried."""
 ROUND = tuple((math.cos(k * math.pi / 4), math.sin(k * math.pi / 4)) for k in range(8))
@@ -42,34 +56,74 @@ class Share:
     index: int
 
 
+@dataclass(frozen=True)
+class _Stay:
+    """A thing that is brought to a place.
+
+    Attributes:
+        steps: Numbers of the steps that bring it there, from 1.
+        until: Number of the step at which it is taken away again.
+    """
+
+    thing: str
+    place: str
+    yaw_rad: float
+    steps: tuple[int, ...]
+    until: int
+
+
 def shared_places(steps: Sequence[Step]) -> dict[int, Share]:
     """For each step, by its number from 1, that puts a thing where others lie at the same time: its share."""
-    stays: dict[str, list[tuple[int, int, str, float]]] = {}
-    for number, step in enumerate(steps, start=1):
-        if isinstance(step, PickPlaceStep) and isinstance(step.place, At) and step.place.target != step.pick:
-            later = (
-                k for k, other in enumerate(steps[number:], start=number + 1)
-                if isinstance(other, PickPlaceStep) and other.pick == step.pick
-            )  # fmt: skip
-            stay = (number, next(later, len(steps) + 1), step.pick, yaw_of(step.rotate_deg))
-            stays.setdefault(step.place.target, []).append(stay)
+    stays: dict[str, list[_Stay]] = {}
+    carries = _carries(steps)
+    for k, one in enumerate(carries):
+        until = next((other.steps[0] for other in carries[k + 1 :] if other.thing == one.thing), len(steps) + 1)
+        if one.place not in ("", one.thing):
+            stays.setdefault(one.place, []).append(replace(one, until=until))
     shares: dict[int, Share] = {}
     for group in (group for there in stays.values() for group in _together(there)):
-        things, yaws = tuple(stay[2] for stay in group), tuple(stay[3] for stay in group)
-        shares |= {stay[0]: Share(things, yaws, k) for k, stay in enumerate(group)}
+        things, yaws = tuple(stay.thing for stay in group), tuple(stay.yaw_rad for stay in group)
+        shares |= {number: Share(things, yaws, k) for k, stay in enumerate(group) for number in stay.steps}
     return shares
 
 
-def _together(stays: list[tuple[int, int, str, float]]) -> list[list[tuple[int, int, str, float]]]:
+def _carries(steps: Sequence[Step]) -> list[_Stay]:
+    """Everything that is carried, in order; the place is "" where it is not a target's own."""
+    found: list[_Stay] = []
+    over, held, moves, yaw = "", "", list[tuple[int, str]](), 0.0
+    for number, step in enumerate(steps, start=1):
+        match step:
+            case PickPlaceStep(pick=pick, place=place, rotate_deg=turn):
+                found.append(_Stay(pick, _target(place), yaw_of(turn), (number,), 0))
+            case MoveStep(to=to, height=height):
+                over = to.target if height == "at" and isinstance(to, At) else ""
+                moves.append((number, _target(to)))
+            case CloseStep() if not held:
+                held, moves, yaw = over, [], 0.0
+            case RotateGripperStep(rotate_deg=turn):
+                yaw += yaw_of(turn)
+            case OpenStep() if held:
+                end = moves[-1][1] if moves else ""
+                bring = tuple(at for at, target in moves if target == end)
+                found.append(_Stay(held, end, yaw, bring or (number,), 0))
+                held = ""
+    return found
+
+
+def _target(place: Place) -> str:
+    return place.target if isinstance(place, At) else ""
+
+
+def _together(stays: list[_Stay]) -> list[list[_Stay]]:
     """Stays, in order of arrival, that overlap in time; only groups of two or more."""
-    groups: list[list[tuple[int, int, str, float]]] = []
+    groups: list[list[_Stay]] = []
     end = 0
     for stay in stays:
-        if groups and stay[0] < end:
+        if groups and stay.steps[0] < end:
             groups[-1].append(stay)
         else:
             groups.append([stay])
-        end = max(end, stay[1])
+        end = max(end, stay.until)
     return [group for group in groups if len(group) > 1]
 
 
@@ -89,27 +143,42 @@ def parts_of(
     reach = [(half_x + half_y) / 2 for half_x, half_y in sizes]
     pairs = [one + other for one, other in zip(reach, [*reach[1:], reach[0]], strict=True)]
     ring = (max(pairs) + LEAST_GAP_PX) / (2 * math.sin(math.pi / len(sizes)))
-    for share in CLOSER:
-        for turn in range(TURNS):
+    for floor_m, shares in zip(_floors(place.box, centre, lift), (CLOSER, FARTHER), strict=False):
+        for share, turn in product(shares, range(TURNS)):
             angles = [2 * math.pi * (turn / TURNS + k / len(sizes)) for k in range(len(sizes))]
             points = [
                 (centre[0] + share * ring * math.cos(angle), centre[1] + share * ring * math.sin(angle))
                 for angle in angles
             ]
-            if all(_rests(point, radius, place.box, centre, lift) for point, radius in zip(points, reach, strict=True)):
+            if all(
+                _rests(point, radius, place.box, floor_m, lift) for point, radius in zip(points, reach, strict=True)
+            ):
                 return points
     return [centre] * len(sizes)
 
 
-def _rests(point: Point, radius_px: float, box: Box, centre: Point, lift: Deprojector) -> bool:
+def _floors(box: Box, centre: Point, lift: Deprojector) -> list[float | None]:
+    """Heights that a place's floor may have [m]: what shows at its point, or, where something stands there, round it."""
+    seen = lift.surface(centre, "floor").position_m
+    if seen is None or lift.view.depth_m is None:
+        return [None]
+    shares = [(k + 0.5) / GRID for k in range(GRID)]
+    spots = [(box.x0 + box.width * a, box.y0 + box.height * b) for a in shares for b in shares]
+    heights = [
+        float(at[2]) for px in spots if lift.inside(px) and (at := lift.surface(px, "floor").position_m) is not None
+    ]
+    usual = float(np.median(heights)) if heights else float(seen[2])
+    return [float(seen[2]), usual] if usual < float(seen[2]) - LEVEL_M else [float(seen[2])]
+
+
+def _rests(point: Point, radius_px: float, box: Box, floor_m: float | None, lift: Deprojector) -> bool:
     """Whether a disc lies wholly on the floor of a place: at one height where that is seen, else within its outline."""
     spots = [point, *((point[0] + radius_px * x, point[1] + radius_px * y) for x, y in ROUND)]
     if not all(lift.inside(spot) and box.contains(spot) for spot in spots):
         return False
-    if lift.camera is not None and lift.view.depth_m is not None:
-        floor, *heights = (lift.surface(spot, "floor").position_m for spot in (centre, *spots))
-        assert floor is not None
-        return all(height is not None and abs(height[2] - floor[2]) <= LEVEL_M for height in heights)
+    if floor_m is not None:
+        heights = (lift.surface(spot, "floor").position_m for spot in spots)
+        return all(height is not None and abs(height[2] - floor_m) <= LEVEL_M for height in heights)
     half = np.array([box.width, box.height]) / 2 * WITHIN
     return all(np.hypot(*((np.array(spot) - box.centre) / half)) <= 1 for spot in spots)
 

@@ -46,6 +46,10 @@ WORLDS: dict[str, WorldRow] = {
         "MuJoCo, a UR5e with a two-finger gripper at a table: grasps by contact, colour and depth from above; the optional part arms",
         lambda: importlib.import_module("wonderful_team.sims.arms"),
     ),
+    "fetch": WorldRow(
+        "gymnasium-robotics' Fetch at a table with a closed box, in a process and a Python environment of its own; colour and depth from above",
+        lambda: importlib.import_module("wonderful_team.sims.fetch"),
+    ),
     "vimabench": WorldRow(
         "VIMA-Bench itself: your own copy, in a process and a Python environment of its own; 256 x 128 px, no depth",
         lambda: importlib.import_module("wonderful_team.sims.vimabench"),

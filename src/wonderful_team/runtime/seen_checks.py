@@ -103,8 +103,11 @@ def place_checks(stage: Stage, limits: Limits) -> list[GateCheck]:
 
 def still_free_checks(stage: Stage, view: View, limits: Limits) -> list[GateCheck]:
     """The same for an action that comes later, by the depth of a picture that was taken just before it."""
-    motion, relief = stage.motion, Relief.of(view)
-    if not isinstance(motion, Carry) or relief is None or stage.relief is None or stage.restored:
+    motion = stage.motion
+    if not isinstance(motion, Carry) or stage.relief is None or stage.restored:
+        return []
+    relief = Relief.of(view)
+    if relief is None:
         return []
     others = np.ones(len(relief.xyz_m), dtype=bool)
     if stage.own is not None and stage.own.any():

@@ -12,10 +12,10 @@ import numpy as np
 import pytest
 
 from wonderful_team.errors import ConfigError
+from wonderful_team.sims.process.frames import HEAD, MAGIC, BrokenPipeProtocol, read_message, write_message
 from wonderful_team.sims.vimabench import VimaWorld
 from wonderful_team.sims.vimabench.finding import PATH_VARIABLE, PYTHON_VARIABLE, find_installation
 from wonderful_team.sims.vimabench.remote import loading
-from wonderful_team.sims.vimabench.remote.frames import HEAD, MAGIC, BrokenPipeProtocol, read_message, write_message
 
 
 def test_what_is_written_is_read() -> None:

@@ -21,8 +21,9 @@ from wonderful_team.core.protocols import Act, Done, SceneTruth, Situation, Worl
 from wonderful_team.errors import ConfigError, UnknownNameError, WorldUnavailableError
 from wonderful_team.evals.controls import planned
 from wonderful_team.runtime import rollout
-from wonderful_team.sims.vimabench import VimaWorld, client
-from wonderful_team.sims.vimabench.client import Simulator
+from wonderful_team.sims.process import client
+from wonderful_team.sims.vimabench import VimaWorld
+from wonderful_team.sims.vimabench.client import start
 from wonderful_team.sims.vimabench.finding import find_installation
 
 NO_ROOM, CRASH, HANG, LATE, SLOW, ENDS_BADLY = 100, 101, 102, 103, 104, 105
@@ -132,7 +133,7 @@ def test_nothing_after_success_or_the_horizon_counts(open_world: Open) -> None:
 
 
 def test_no_name_of_a_thing_comes_with_what_an_agent_may_see() -> None:
-    simulator = Simulator(find_installation())
+    simulator = start(find_installation())
     try:
         path = find_installation().path
         opened = simulator.ask("open", path=path, task="rotate", level="", seed=0)
@@ -346,5 +347,5 @@ def test_secrets_stay_here(monkeypatch: pytest.MonkeyPatch) -> None:
 
     monkeypatch.setenv("SOME_API_KEY", "secret")
     monkeypatch.setattr(client.subprocess, "Popen", record)
-    Simulator(find_installation()).close()
+    start(find_installation()).close()
     assert "SOME_API_KEY" not in started[0]["env"]

@@ -26,11 +26,13 @@ class Fingers:
     Attributes:
         opening_m: Between the open fingers [m].
         thickness_m, breadth_m: Of one finger, along the way it closes and across it [m].
+        turns: Whether the gripper turns about the vertical; else it closes along the y axis of the base frame, always.
     """
 
     opening_m: float
     thickness_m: float
     breadth_m: float
+    turns: bool = later(True)
 
     def __post_init__(self) -> None:
         for name in ("opening_m", "thickness_m", "breadth_m"):

@@ -1,156 +1,30 @@
-"""The simulator's process: started, asked, and never left behind."""
+"""The benchmark's process: which interpreter runs it, and whether it can."""
 
 from __future__ import annotations
 
-import contextlib
-import os
-import queue
 import re
-import shutil
-import subprocess
-import tempfile
-import threading
-import weakref
-from collections.abc import Mapping
+from functools import partial
 from pathlib import Path
-from typing import Any, BinaryIO, cast
 
-from wonderful_team.core.geometry.arrays import Array
-from wonderful_team.errors import ConfigError, WorldUnavailableError
-from wonderful_team.redaction import names_secret
+from wonderful_team.sims.process.client import Service, Simulator
 from wonderful_team.sims.vimabench.finding import Installation, find_installation, missing
-from wonderful_team.sims.vimabench.remote.frames import read_message, write_message
-from wonderful_team.sims.vimabench.remote.launch import CANNOT_RUN
 
-SCRATCH = "wonderful-team-vimabench-"
-LAUNCHER = Path(__file__).with_name("remote") / "launch.py"
 OPEN_TIMEOUT_S = 300.0
 """Import, make and reset take about 3 s on an idle machine."""
 STEP_TIMEOUT_S = 600.0
 """An action takes 1 to 2 s of processor time; its own limit of 5 s a motion counts processor time too."""
-ASK_TIMEOUT_S = 120.0
-CLOSE_TIMEOUT_S = 3.0
-TAIL_LINES = 12
 NOISE = re.compile(r"text argument:[^\n]*\n|int args: \[")
 """What its physics engine prints at every picture of a scene, without an end of line."""
 
 
-class Simulator:
+def start(installation: Installation) -> Simulator:
     """One process with one environment in it.
 
     Raises:
         ConfigError: The interpreter cannot be started.
     """
-
-    def __init__(self, installation: Installation) -> None:
-        self._installation = installation
-        # The simulator leaves files behind in the folder for temporary ones; this one goes away with it.
-        self._scratch = Path(tempfile.mkdtemp(prefix=SCRATCH))
-        self._said = self._scratch / "said.log"
-        try:
-            self._process = self._start()
-        except OSError as error:
-            shutil.rmtree(self._scratch, ignore_errors=True)
-            raise ConfigError(f"{installation.python!r} cannot be started: {error.strerror}") from error
-        assert self._process.stdin is not None, "asked for a pipe"
-        assert self._process.stdout is not None, "asked for a pipe"
-        self._in = cast(BinaryIO, self._process.stdin)
-        self._answers: queue.Queue[Any] = queue.Queue()
-        self._lock = threading.Lock()
-        self._listener = threading.Thread(
-            target=_listen, args=(cast(BinaryIO, self._process.stdout), self._answers), daemon=True
-        )
-        self._listener.start()
-        self._end = weakref.finalize(self, _end, self._process, self._scratch)
-
-    def _start(self) -> subprocess.Popen[bytes]:
-        environment = {name: value for name, value in os.environ.items() if not names_secret(name)}
-        environment.update(TMPDIR=str(self._scratch), TEMP=str(self._scratch), TMP=str(self._scratch))
-        with self._said.open("wb") as said:
-            return subprocess.Popen(
-                [self._installation.python, str(LAUNCHER)],
-                stdin=subprocess.PIPE,
-                stdout=subprocess.PIPE,
-                stderr=said,
-                env=environment,
-            )
-
-    @property
-    def alive(self) -> bool:
-        """Whether it can still be asked."""
-        return self._end.alive and self._process.poll() is None
-
-    def ask(
-        self,
-        what: str,
-        arrays: Mapping[str, Array] | None = None,
-        *,
-        timeout_s: float = ASK_TIMEOUT_S,
-        **said: Any,
-    ) -> tuple[dict[str, Any], dict[str, Array]]:
-        """Ask one question and wait for its answer.
-
-        Raises:
-            WorldUnavailableError: The process died, hangs, or its simulator failed; says what it printed last.
-            ConfigError: The benchmark is missing there, or what was asked for does not exist.
-        """
-        with self._lock:
-            if not self._end.alive:
-                raise WorldUnavailableError("the simulator's process has ended; make a new world")
-            # A process that has just ended is noticed when its answer is awaited.
-            with contextlib.suppress(OSError):
-                write_message(self._in, {"ask": what, **said}, arrays or {})
-            try:
-                answer = self._answers.get(timeout=timeout_s)
-            except queue.Empty:
-                tail = self.tail()
-                self._end()
-                text = f"the simulator did not answer {what!r} within {timeout_s:g} s and was ended"
-                raise _failed(text, tail) from None
-            except BaseException:
-                # Interrupted: the answer may still come, and nobody could tell it from that to a later question.
-                self._end()
-                raise
-        if isinstance(answer, BaseException):
-            tail = self.tail()
-            self._end()
-            if self._process.returncode == CANNOT_RUN:
-                raise missing(self._installation, tail)
-            raise _failed(f"the simulator's process ended while it was asked {what!r}", tail) from answer
-        reply, pictures = answer
-        if not reply["ok"]:
-            raise self._refused(what, str(reply["kind"]), str(reply["error"]))
-        return reply, pictures
-
-    def close(self) -> None:
-        """End the process and wipe its folder; safe to call twice."""
-        if self.alive:
-            with contextlib.suppress(WorldUnavailableError, ConfigError):
-                self.ask("close", timeout_s=CLOSE_TIMEOUT_S)
-        self._end()
-
-    def tail(self) -> str:
-        """The last lines that the simulator printed."""
-        try:
-            text = self._said.read_text(encoding="utf-8", errors="replace")
-        except OSError:
-            return ""
-        told = [line for line in NOISE.sub("", text).splitlines() if line.strip()]
-        return "\n".join(told[-TAIL_LINES:])
-
-    def _refused(self, what: str, kind: str, text: str) -> Exception:
-        if kind == "missing":
-            return missing(self._installation, text)
-        if kind == "level":
-            return ConfigError(text)
-        if kind == "reset":
-            return WorldUnavailableError(
-                f"VIMA-Bench could not set up this scene ({text}); it gives up after some tries at random. The seed is "
-                "kept as asked for: choose another one"
-            )
-        if kind == "crash":
-            return _failed(f"the simulator failed at {what!r}: {text}", self.tail())
-        return WorldUnavailableError(f"the simulator refused {what!r}: {text}")
+    folder = Path(__file__).with_name("remote")
+    return Simulator(Service(installation.python, folder, partial(missing, installation), NOISE))
 
 
 def check_ready() -> dict[str, str]:
@@ -164,38 +38,9 @@ def check_ready() -> dict[str, str]:
         WorldUnavailableError: Its process failed in another way.
     """
     installation = find_installation()
-    simulator = Simulator(installation)
+    simulator = start(installation)
     try:
         said, _ = simulator.ask("hello", timeout_s=OPEN_TIMEOUT_S, path=installation.path)
         return {str(name): str(version) for name, version in said["versions"].items()}
     finally:
         simulator.close()
-
-
-def _failed(text: str, tail: str) -> WorldUnavailableError:
-    return WorldUnavailableError(f"{text}; it printed last:\n{tail}" if tail else text)
-
-
-def _listen(stream: BinaryIO, answers: queue.Queue[Any]) -> None:
-    """Pass answers on until the process ends; the end is passed on too."""
-    try:
-        while True:
-            answers.put(read_message(stream))
-    except Exception as error:  # noqa: BLE001  whatever ends the talk is told to the one who waits
-        answers.put(error)
-    finally:
-        with contextlib.suppress(OSError):
-            stream.close()
-
-
-def _end(process: subprocess.Popen[bytes], scratch: Path) -> None:
-    """Also run when the owner is forgotten and when this program ends."""
-    with contextlib.suppress(OSError):
-        if process.stdin is not None:
-            process.stdin.close()
-    try:
-        process.wait(timeout=0.5)
-    except subprocess.TimeoutExpired:
-        process.kill()
-        process.wait()
-    shutil.rmtree(scratch, ignore_errors=True)

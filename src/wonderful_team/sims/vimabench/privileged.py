@@ -12,7 +12,7 @@ from wonderful_team.core.actions import Action, Vocabulary
 from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.protocols import Score
 from wonderful_team.core.values import GroundTruthView, Instruction, Observation, TrueThing, View
-from wonderful_team.sims.vimabench.client import Simulator
+from wonderful_team.sims.process.client import Simulator
 from wonderful_team.sims.vimabench.converting import pick_of, push_of
 from wonderful_team.sims.vimabench.judging import score_of
 

@@ -11,7 +11,7 @@ from wonderful_team.core.values import Instruction, Limits, Observation, RobotSt
 from wonderful_team.errors import ConfigError, UnknownNameError, WorldUnavailableError
 from wonderful_team.sims.facts import blade_facts, suction_facts
 from wonderful_team.sims.vimabench.cameras import CAMERA_NAMES, camera
-from wonderful_team.sims.vimabench.client import OPEN_TIMEOUT_S, STEP_TIMEOUT_S, Simulator
+from wonderful_team.sims.vimabench.client import OPEN_TIMEOUT_S, STEP_TIMEOUT_S, start
 from wonderful_team.sims.vimabench.converting import BLADE_M, PICK_LIMITS, PUSH_LIMITS, Converted, converted
 from wonderful_team.sims.vimabench.finding import find_installation
 from wonderful_team.sims.vimabench.privileged import Episode, VimaTruth
@@ -47,7 +47,7 @@ class VimaWorld:
         if seed < 0:
             raise ConfigError(f"seed {seed}: must be 0 or more")
         installation = find_installation()
-        self._simulator = Simulator(installation)
+        self._simulator = start(installation)
         try:
             said, pictures = self._simulator.ask(
                 "open",

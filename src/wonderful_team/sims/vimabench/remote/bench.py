@@ -76,7 +76,7 @@ class Bench:
         try:
             more = specs(module, level, task) if level else None
         except (KeyError, IndexError, ValueError) as error:
-            raise BenchError("level", f"{task} does not exist at level {level}") from error
+            raise BenchError("config", f"{task} does not exist at level {level}") from error
         env = module.make(task, seed=int(said["seed"]), task_kwargs=more, modalities=["rgb", "segm"])
         # It changes at the first reset in one task; the benchmark's own evaluation reads it before.
         horizon = int(env.task.oracle_max_steps) + BONUS_STEPS
@@ -85,7 +85,11 @@ class Bench:
         try:
             observed = env.reset()
         except ValueError as error:
-            raise BenchError("reset", str(error)) from error
+            text = (
+                f"VIMA-Bench could not set up this scene ({error}); it gives up after some tries at random. The seed is "
+                "kept as asked for: choose another one"
+            )
+            raise BenchError("unavailable", text) from error
         self._env = env
         self._watch_the_cup(env)
         self._looks = [observed]

@@ -17,6 +17,8 @@ PACKAGE = "vima_bench"
 class Missing(Exception):  # noqa: N818  says what is the case
     """`vima_bench`, or something that it needs, cannot be imported here."""
 
+    kind = "missing"
+
 
 class CpuClock:
     """Counts the time that this process computed: a busy machine then cannot change how a motion ends."""

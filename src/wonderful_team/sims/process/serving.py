@@ -9,16 +9,24 @@ import signal
 import sys
 import threading
 import traceback
-from typing import Any, BinaryIO
+from collections.abc import Mapping
+from typing import Any, BinaryIO, Protocol
 
-from .bench import Bench, BenchError, Missing
 from .frames import Message, read_message, write_message
 
-SCRATCH = "wonderful-team-vimabench-"
+SCRATCH = "wonderful-team-simulator-"
 """How the folder for temporary files of this process is called, which the other side made for it alone."""
 
 
-def serve() -> None:
+class Answers(Protocol):
+    """A simulator's `Bench`. What it raises with an attribute `kind` is told to the other side as that kind of refusal."""
+
+    def ask(self, what: str, said: Mapping[str, Any], arrays: Mapping[str, Any]) -> Message:
+        """Answer one question."""
+        ...
+
+
+def serve(bench: Answers) -> None:
     """Take over standard input and output, and answer.
 
     The simulator prints to file descriptor 1 from C code; after this it prints to standard error.
@@ -28,7 +36,6 @@ def serve() -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     waiting: queue.Queue[Message] = queue.Queue()
     threading.Thread(target=_listen, args=(questions, waiting), daemon=True).start()
-    bench = Bench()
     while True:
         said, arrays = waiting.get()
         reply, pictures = _answer(bench, said, arrays)
@@ -64,15 +71,14 @@ def _listen(questions: BinaryIO, waiting: queue.Queue[Message]) -> None:
         os._exit(0)
 
 
-def _answer(bench: Bench, said: Any, arrays: Any) -> Message:
+def _answer(bench: Answers, said: Any, arrays: Any) -> Message:
     """The reply to one question; whatever goes wrong is told to the other side."""
     try:
         reply, pictures = bench.ask(str(said.get("ask")), said, arrays)
         return dict(reply, ok=True), pictures
-    except Missing as error:
-        return {"ok": False, "kind": "missing", "error": str(error)}, {}
-    except BenchError as error:
-        return {"ok": False, "kind": error.kind, "error": str(error)}, {}
     except Exception as error:  # noqa: BLE001  the other side must hear of it, or it would wait for ever
+        kind = getattr(error, "kind", None)
+        if isinstance(kind, str):
+            return {"ok": False, "kind": kind, "error": str(error)}, {}
         traceback.print_exc()
         return {"ok": False, "kind": "crash", "error": f"{type(error).__name__}: {error}"}, {}

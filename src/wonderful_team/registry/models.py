@@ -78,6 +78,7 @@ def make_model(
             price=price,
             local_only=asked.local_only,
             timeout_s=asked.timeout_s,
+            encoding=asked.encoding,
         )
         return cast(Model, made)
     if profile is not None:

@@ -98,6 +98,8 @@ class Provider:
             "max_pictures": self.settings.max_pictures,
             "convention": repr(self.convention),
             "library": library.library_version(),
+            # PNG leaves it out: what was kept before pictures had a choice holds on.
+            **({} if self.settings.encoding == "png" else {"encoding": self.settings.encoding}),
         }
 
     @property
@@ -212,7 +214,14 @@ class Provider:
         return self._composed(request, pasted, told)
 
     def _composed(self, request: Request, pasted: bool, told: bool) -> Composed:
-        return compose(request, self.convention, one_picture=pasted, schema_in_words=told, limits=self._learned.weight)
+        return compose(
+            request,
+            self.convention,
+            one_picture=pasted,
+            schema_in_words=told,
+            limits=self._learned.weight,
+            encoding=self.settings.encoding,
+        )
 
     @property
     def _thinking(self) -> Thinking | None:

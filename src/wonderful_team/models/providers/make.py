@@ -54,6 +54,8 @@ def make_provider(
         tries: Most tries at one request when the provider fails.
         first_wait_s: Pause before the second try; it doubles.
 
+    The client library is imported meanwhile, in a thread; whoever sends the first request waits for it.
+
     Raises:
         ConfigError: Wrong name, address, key, or option; the client library is missing.
         ModelUnavailableError: The server does not answer.
@@ -74,7 +76,7 @@ def make_provider(
     if local_only:
         require_local(parsed)
     key = find_key(parsed, api_key)
-    library.preload(parsed.service.module, spec)
+    library.preload(parsed.service, spec)
     holder = key_holder(parsed, api_key)
     model = parsed.model or only_model(
         parsed.base_url,
@@ -114,6 +116,15 @@ def make_provider(
         key,
         holder,
     )
+
+
+def load_library(spec: str) -> None:
+    """Start to import, in a thread, what the service of such a name needs.
+
+    Raises:
+        ConfigError: No service has such a name, or its client library is missing.
+    """
+    library.preload(parse_spec(spec).service, spec)
 
 
 def _note(name: str, family: Family) -> str:

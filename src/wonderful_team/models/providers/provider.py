@@ -295,6 +295,12 @@ class Provider:
         loop = asyncio.get_running_loop()
         held = self._clients.get(loop)
         if held is None:
+            service = self.spec.service
+            if not library.is_loaded(service):
+                await in_thread(library.loaded, service, self.spec.text, name="client library")
+            # While that was waited for, another request may have built it.
+            held = self._clients.get(loop)
+        if held is None:
             client = library.http_client(self.spec, self.key, self.local_only)
             keeper = _keep_open(client)
             await anext(keeper)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, ClassVar, Literal, TypeAlias
 
 from wonderful_team.core.pictures import Picture
@@ -149,6 +149,7 @@ class Answer:
         value: An instance of the request's output type.
         repairs: What was clamped or repaired, in words.
         notices: What the user should know of the service, once, in words.
+        checked: What validating the value against its question gave, where that was done on the way to the client.
     """
 
     value: Any
@@ -159,3 +160,4 @@ class Answer:
     provenance: Provenance = "model"
     repairs: tuple[str, ...] = ()
     notices: tuple[str, ...] = ()
+    checked: Any = field(default=None, repr=False)

@@ -89,6 +89,7 @@ def parts_of(
     reach = [(half_x + half_y) / 2 for half_x, half_y in sizes]
     pairs = [one + other for one, other in zip(reach, [*reach[1:], reach[0]], strict=True)]
     ring = (max(pairs) + LEAST_GAP_PX) / (2 * math.sin(math.pi / len(sizes)))
+    heights: dict[Point, float] = {}
     for share in CLOSER:
         for turn in range(TURNS):
             angles = [2 * math.pi * (turn / TURNS + k / len(sizes)) for k in range(len(sizes))]
@@ -96,22 +97,35 @@ def parts_of(
                 (centre[0] + share * ring * math.cos(angle), centre[1] + share * ring * math.sin(angle))
                 for angle in angles
             ]
-            if all(_rests(point, radius, place.box, centre, lift) for point, radius in zip(points, reach, strict=True)):
+            discs = zip(points, reach, strict=True)
+            if all(_rests(point, radius, place.box, centre, lift, heights) for point, radius in discs):
                 return points
     return [centre] * len(sizes)
 
 
-def _rests(point: Point, radius_px: float, box: Box, centre: Point, lift: Deprojector) -> bool:
-    """Whether a disc lies wholly on the floor of a place: at one height where that is seen, else within its outline."""
+def _rests(
+    point: Point, radius_px: float, box: Box, centre: Point, lift: Deprojector, heights: dict[Point, float]
+) -> bool:
+    """Whether a disc lies wholly on the floor of a place: at one height where that is seen, else within its outline.
+
+    `heights` keeps what was looked up [m]; most discs are out at their first spots, and the others are then not looked up.
+    """
     spots = [point, *((point[0] + radius_px * x, point[1] + radius_px * y) for x, y in ROUND)]
     if not all(lift.inside(spot) and box.contains(spot) for spot in spots):
         return False
     if lift.camera is not None and lift.view.depth_m is not None:
-        floor, *heights = (lift.surface(spot, "floor").position_m for spot in (centre, *spots))
-        assert floor is not None
-        return all(height is not None and abs(height[2] - floor[2]) <= LEVEL_M for height in heights)
+        floor_m = _height_m(centre, lift, heights)
+        return all(abs(_height_m(spot, lift, heights) - floor_m) <= LEVEL_M for spot in spots)
     half = np.array([box.width, box.height]) / 2 * WITHIN
     return all(np.hypot(*((np.array(spot) - box.centre) / half)) <= 1 for spot in spots)
+
+
+def _height_m(spot: Point, lift: Deprojector, heights: dict[Point, float]) -> float:
+    if spot not in heights:
+        position_m = lift.surface(spot, "floor").position_m
+        assert position_m is not None  # there is a camera
+        heights[spot] = position_m[2]
+    return heights[spot]
 
 
 def share_px(

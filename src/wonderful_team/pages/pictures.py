@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import base64
 import io
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -15,13 +16,12 @@ from markupsafe import Markup, escape
 
 from wonderful_team.core.text import PLACEHOLDER, recorded_names
 from wonderful_team.images import OWN_FORMATS, open_picture, to_jpeg
+from wonderful_team.record.picture_store import AS_IT_IS_BYTES, PAGE_BYTES, PAGE_QUALITY
 
-MOST_BYTES = 3_600_000
-"""Bytes of pictures that a page may hold before base64 (4.8 MB of text); beyond, pictures get coarser, not fewer."""
+MOST_BYTES = PAGE_BYTES
+"""Beyond, pictures get coarser, not fewer."""
 _LEVELS = ((2000, 92), (1400, 82), (1000, 72), (640, 60), (400, 45), (240, 35))
 _LOSSLESS_BELOW_PX = 300 * 300
-_AS_IT_IS_BYTES = 12_000
-_JPEG_QUALITY = 88
 _SAMPLED = 10
 """About so many pictures tell how large all will be."""
 
@@ -47,11 +47,13 @@ class Album:
     Args:
         folder: The run folder.
         files: From hash to file, as the record says.
+        coded: PNG files that were turned into JPEG already, as `_quickly` does it, by file.
     """
 
-    def __init__(self, folder: Path, files: dict[str, str]) -> None:
+    def __init__(self, folder: Path, files: dict[str, str], coded: Mapping[str, bytes] = MappingProxyType({})) -> None:
         self._folder = folder
         self._files = files
+        self._coded = coded
         self._shown: dict[str, Shown | None] = {}
 
     def get(self, key: str | None) -> Shown | None:
@@ -116,10 +118,12 @@ class Album:
         """Small pictures and JPEG files as they are, others as JPEG: a fifth of the time of WebP, and twice its size."""
         path = self._folder / shown.file
         kind = "jpeg" if shown.file.endswith(".jpg") else "png"
-        if kind == "jpeg" or path.stat().st_size <= _AS_IT_IS_BYTES:
+        if kind == "jpeg" or path.stat().st_size <= AS_IT_IS_BYTES:
             return kind, path.read_bytes()
+        if shown.file in self._coded:
+            return "jpeg", self._coded[shown.file]
         with open_picture(path, OWN_FORMATS) as opened:
-            return "jpeg", to_jpeg(np.asarray(opened.convert("RGB")), _JPEG_QUALITY)
+            return "jpeg", to_jpeg(np.asarray(opened.convert("RGB")), PAGE_QUALITY)
 
     def _coarser(self, most_px: int, quality: int, shown: Shown) -> tuple[str, bytes]:
         with open_picture(self._folder / shown.file, OWN_FORMATS) as opened:

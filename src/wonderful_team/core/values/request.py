@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any, ClassVar, Literal, TypeAlias
 
+from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.pictures import Picture
 from wonderful_team.core.values.plan import Provenance
 
@@ -74,10 +75,12 @@ class SentPicture:
 
     Attributes:
         size_px: Its width and height, which may differ from those of the picture it shows.
+        rgb: What the file was made of, shape (H, W, 3), uint8, where that is at hand.
     """
 
     file: bytes
     size_px: tuple[int, int]
+    rgb: Array | None = field(default=None, repr=False)
 
     @property
     def media_type(self) -> str:

@@ -137,7 +137,8 @@ def compose(
     sizes = (canvas,) if pasted else tuple(held[picture].picture.size_px for picture in request.pictures)
     weight = sum(sent_bytes(piece) for piece in pieces if isinstance(piece, bytes))
     out = [one["sheet"]] if pasted else [files[picture] for picture in request.pictures]
-    sent = tuple(SentPicture(file, size) for file, size in zip(out, sizes, strict=False))
+    seen = [sheet] if pasted else [held[picture].rgb for picture in request.pictures]
+    sent = tuple(SentPicture(*one) for one in zip(out, sizes, seen, strict=False))
     return Composed(request.system, _joined(pieces), form, convention, sizes, where, canvas, weight, notice, sent)
 
 

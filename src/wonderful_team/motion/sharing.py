@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 import math
+import threading
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
 from wonderful_team.core.actions import At, PickPlaceStep, Step
 from wonderful_team.core.geometry import Box
 from wonderful_team.core.pictures import Point
-from wonderful_team.core.values import GroundedTarget
+from wonderful_team.core.values import GroundedTarget, View
 from wonderful_team.motion.beside import LEAST_GAP_PX, half_extents
 from wonderful_team.motion.deprojector import Deprojector
 from wonderful_team.motion.turns import yaw_of
@@ -25,6 +28,9 @@ CLOSER = (1.0, 0.9, 0.8, 0.7, 0.6)
 TURNS = 24
 """Directions in which a group of things is tried."""
 ROUND = tuple((math.cos(k * math.pi / 4), math.sin(k * math.pi / 4)) for k in range(8))
+_lock = threading.Lock()
+_parts: WeakKeyDictionary[View, dict[Any, tuple[Point, ...]]] = WeakKeyDictionary()
+"""Of each view that still lives: every thing of a group asks for the parts of all, and so does every check of its steps."""
 
 
 @dataclass(frozen=True)
@@ -133,4 +139,9 @@ def share_px(
 ) -> Point:
     """Where the centre of one of several things goes that share a place [px]."""
     sizes = [half_extents(box, yaw) for box, yaw in zip(boxes, share.yaws_rad, strict=True)]
-    return parts_of(place, centre, sizes, lift)[share.index]
+    with _lock:
+        known = _parts.setdefault(lift.view, {})
+    key = (None if place.box is None else place.box.as_tuple, centre, tuple(sizes))
+    if key not in known:
+        known[key] = tuple(parts_of(place, centre, sizes, lift))
+    return known[key][share.index]

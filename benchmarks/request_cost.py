@@ -30,8 +30,8 @@ from wonderful_team.core.geometry import Box
 from wonderful_team.core.pictures import Axes, BoxMark, PointMark
 from wonderful_team.core.values import Request, View
 from wonderful_team.images import crop, draw, whole
-from wonderful_team.images.png import fast_png
 from wonderful_team.models.wire import compose, ticks_of
+from wonderful_team.models.wire.coding import encoded
 
 PLAN = ("G1: put T1 into T2",)
 
@@ -106,7 +106,9 @@ async def measure(wire: str, question: str, size: tuple[int, int], times: int) -
             request, again = fresh(2 * turn + 1), fresh(2 * turn + 2)
             pictures = request.pictures
             draw_ms, drawn = cpu_ms(lambda p=pictures: [draw(picture, ticks_of(provider.convention)) for picture in p])
-            encode_ms, _ = cpu_ms(lambda d=drawn: [fast_png(rgb) for rgb in d])
+            encode_ms, _ = cpu_ms(
+                lambda d=drawn, p=pictures: [encoded(rgb, (one,)) for rgb, one in zip(d, p, strict=True)]
+            )
             compose_ms, _ = cpu_ms(lambda r=request: compose(r, provider.convention))
             start = time.thread_time()
             await model.answer(again)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import random
 import sys
 import threading
 
@@ -148,3 +149,23 @@ def test_a_secret_is_known_as_soon_as_the_environment_or_a_user_names_it_and_for
     assert redaction.known_secrets() is not before
     monkeypatch.delenv("SOME_TEST_API_KEY")
     assert redact_known(told) == "words of-the-environment and [redacted]"
+
+
+def test_what_is_looked_for_first_misses_nothing_that_the_patterns_find():
+    rng = random.Random(7)
+    parts = (
+        *("sk-", "pk-", "AIza", "ghp_", "github_pat_", "hf_", "xoxb-", "gsk_", "xai-", "AKIA", "eyJ", ".", "Bearer ", "BASIC "),
+        *("api_key", "API-KEY", "=", ": ", '"', "access-token", "clientsecret", "PassWord", "?key=", "&token=", "://", "@host"),
+        *("user:", " ", "\n", "\\", "ſ", "\u212a", "paſſword=", "x-api-key", "abcdefghij", "0123456789"),
+    )  # fmt: skip
+    changed = 0
+    for _ in range(20_000):
+        text = "".join(rng.choice(parts) for _ in range(rng.randint(2, 8)))
+        whole = text
+        if len(text) >= redaction._SHORTEST_LOOK:
+            for pattern, _ in redaction._LOOKS:
+                whole = pattern.sub(HIDDEN, whole)
+            whole = redaction._AFTER_NAME.sub(lambda match: match.group(1) + HIDDEN, whole)
+        assert redaction._redact_looks(text) == whole
+        changed += whole != text
+    assert changed > 1000

@@ -21,11 +21,15 @@ SHORTEST = 6
 SHORTEST_UNUSED = 8
 """The same for a variable of the environment that nothing has used as a key."""
 _LOOKS = (
-    re.compile(r"\b(?:sk|pk|rk)-[A-Za-z0-9_\-]{8,}"),
-    re.compile(r"\bAIza[0-9A-Za-z_\-]{10,}"),
-    re.compile(r"\b(?:gh[pousr]_|github_pat_|hf_|xox[baprs]-|gsk_|xai-|AKIA)[A-Za-z0-9_\-]{10,}"),
-    re.compile(r"\beyJ[A-Za-z0-9_\-]{8,}\.[A-Za-z0-9_\-]{8,}\.[A-Za-z0-9_\-]*"),
+    (re.compile(r"\b(?:sk|pk|rk)-[A-Za-z0-9_\-]{8,}"), ("sk-", "pk-", "rk-")),
+    (re.compile(r"\bAIza[0-9A-Za-z_\-]{10,}"), ("AIza",)),
+    (
+        re.compile(r"\b(?:gh[pousr]_|github_pat_|hf_|xox[baprs]-|gsk_|xai-|AKIA)[A-Za-z0-9_\-]{10,}"),
+        ("gh", "github_pat_", "hf_", "xox", "gsk_", "xai-", "AKIA"),
+    ),
+    (re.compile(r"\beyJ[A-Za-z0-9_\-]{8,}\.[A-Za-z0-9_\-]{8,}\.[A-Za-z0-9_\-]*"), ("eyJ",)),
 )
+"""What keys look like, each with words of which any match holds one: to look for these takes a tenth of the time."""
 _AFTER_NAME = re.compile(
     r"""(?ix)
     (\b(?:bearer|basic)\s+                                                       # an Authorization header
@@ -35,6 +39,8 @@ _AFTER_NAME = re.compile(
     ([A-Za-z0-9_\-./+~%]{6,}=*)
     """
 )
+_NAMES = ("bearer", "basic", "key", "token", "secret", "password", "://")
+"""Any match of `_AFTER_NAME` in ASCII holds one of these in lower case."""
 _EMBEDDED = re.compile(r"(;base64,[A-Za-z0-9+/=]+)")
 """A picture inside of a page: pixels may look like anything."""
 _SECRET_VARIABLE = re.compile(r"(?i)(key|token|secret|password|passwd|passphrase|credentials?)(_?\d+)?$")
@@ -146,8 +152,13 @@ def _redact_looks(text: str) -> str:
     if ";base64," in text:
         pieces = _EMBEDDED.split(text)
         return "".join(piece if k % 2 else _redact_looks(piece) for k, piece in enumerate(pieces))
-    for pattern in _LOOKS:
-        text = pattern.sub(HIDDEN, text)
+    for pattern, held in _LOOKS:
+        if any(word in text for word in held):
+            text = pattern.sub(HIDDEN, text)
+    if text.isascii():
+        lower = text.lower()
+        if not any(word in lower for word in _NAMES):
+            return text
     return _AFTER_NAME.sub(lambda match: match.group(1) + HIDDEN, text)
 
 

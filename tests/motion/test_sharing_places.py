@@ -10,7 +10,7 @@ import pytest
 from tests.motion.block_scenes import LIMITS, Block, cameras, found, scene
 from wonderful_team.core.actions import At, OriginOf, PickPlace, PickPlaceStep, Place
 from wonderful_team.core.values import GroundedTarget
-from wonderful_team.motion import ground_actions
+from wonderful_team.motion import ground_actions, sharing
 
 CAMERAS = cameras()
 RED = Block(0.38, -0.30, 0.43, -0.25, 0.05)
@@ -71,3 +71,24 @@ def test_the_source_of_the_number_says_that_a_place_is_shared() -> None:
     steps = [put("T1", At("T3")), put("T2", At("T3"))]
     planned = ground_actions(steps, grounded(camera), scene(camera, RED, BLUE, GREEN, TRAY), LIMITS)
     assert "part 2 of 2" in planned[1].sources[1].how
+
+
+def test_the_parts_of_a_place_are_found_once_for_a_view(monkeypatch: pytest.MonkeyPatch) -> None:
+    found_for = []
+    find = sharing.parts_of
+
+    def counted(place: GroundedTarget, *more: Any) -> Any:
+        found_for.append(more[-1].view)
+        return find(place, *more)
+
+    monkeypatch.setattr(sharing, "parts_of", counted)
+    camera = CAMERAS["affine"]
+    steps = [put(thing, At("T3")) for thing in ("T1", "T2", "T4")]
+    targets = grounded(camera)
+    views = [scene(camera, RED, BLUE, GREEN, TRAY) for _ in range(2)]
+    first, again, other = (ground_actions(steps, targets, view, LIMITS) for view in (views[0], views[0], views[1]))
+    assert found_for == views
+    assert [planned.action.place_m.tolist() for planned in first] == [
+        planned.action.place_m.tolist() for planned in again
+    ]
+    assert len(other) == 3

@@ -20,10 +20,14 @@ from tests.servers.heard import Heard, Reply
 from tests.servers.speech import Seat, Speech, say
 from wonderful_team.core.values import Answer, Request, Words
 from wonderful_team.models.client import as_answer, validate_answer
+from wonderful_team.models.wire.coding import is_photo
 
 Brain: TypeAlias = Callable[[Heard], "Reply | str"]
 SAME_SHARE = 0.5
 """Least share of a sent picture's pixels that are the clean picture's: marks cover the rest."""
+
+JPEG_LEVELS, RESIZED_LEVELS = 24, 40
+"""How far a pixel may be off in a photo that came as JPEG, and in a picture that was resized [0 to 255]."""
 
 
 class Unmatched(Exception):  # noqa: N818
@@ -113,7 +117,9 @@ def _check_picture(heard: Heard, request: Request, index: int) -> None:
     if got.shape != sent.shape:
         got = cv2.resize(got, picture.size_px, interpolation=cv2.INTER_LINEAR)
     distance = np.abs(got[::3, ::3].astype(np.int16) - sent[::3, ::3]).max(axis=2)
-    same = float(np.mean(distance <= (0 if (width, height) == picture.size_px else 40)))
+    unscaled = (width, height) == picture.size_px
+    near = RESIZED_LEVELS if not unscaled else JPEG_LEVELS if is_photo(sent) else 0
+    same = float(np.mean(distance <= near))
     if same < SAME_SHARE:
         raise Unmatched(f"picture {picture.name!r} is another one: {same:.0%} of its pixels agree")
 

@@ -40,6 +40,7 @@ class Method:
         local_only: Refuse models outside this machine and private networks.
         timeout: Longest wait for one reply of a model [s]; None: 150 s, with thinking 300 s, and more once a service has shown
             that it takes longer; for own models 300 s.
+        encoding: Files that pictures are sent to services as: auto (photos without tick labels as JPEG, all else as PNG), png, jpeg.
         max_calls, max_tokens, max_usd: Caps of one plan or trial; None for no cap.
         max_seconds: Longest time of one plan or trial: models, the method, the world, drawing and judging; None for no cap. A call
             that does not come back is left behind in its thread, and `stop()` of the world is called. So with this cap a world's
@@ -87,6 +88,7 @@ class Method:
     allow_unpriced: bool = False
     local_only: bool = False
     timeout: float | None = None
+    encoding: str = "auto"
     world: World | None = None
     detector: str | Detector | None = None
     ask: AskUser | None = None
@@ -97,7 +99,7 @@ class Method:
         roles = registry.roles_of(self.method)
         for chosen in (self.model, self.thinking, self.price):
             registry.check_roles(self.method, chosen if isinstance(chosen, Mapping) else ())
-        options = model_options(self.thinking, self.price, self.local_only, roles, self.timeout)
+        options = model_options(self.thinking, self.price, self.local_only, roles, self.timeout, self.encoding)
         made = registry.make_models(self.model, roles, options, self.world)
         if self._config is not None and any(getattr(made[role], "weak_pointing", False) for role in POINTING_ROLES):
             self._config = replace(self._config, axes=True)
@@ -202,6 +204,7 @@ class Method:
             "thinking": dict(self.thinking) if isinstance(self.thinking, Mapping) else self.thinking,
             "local_only": self.local_only,
             "timeout": self.timeout,
+            "encoding": self.encoding,
             "axes": self._config is not None and self._config.axes,
             "models": {
                 role: model_identity(model) for role, model in self._models.items() if hasattr(model, "identity")

@@ -45,6 +45,7 @@ def probe_model(
     max_seconds: float | None = None,
     max_usd: float | None = None,
     timeout: float | None = None,
+    encoding: str = "auto",
     concurrency: int = 4,
     tell: Tell = lambda line: None,
 ) -> Probed:
@@ -66,6 +67,7 @@ def probe_model(
         max_seconds: Cap on the time of all: models, what a server says of itself, drawing.
         max_usd: Cap on money.
         timeout: Longest wait for one reply [s]; None: as `Method` has it.
+        encoding: Of pictures' files: auto, png or jpeg.
         concurrency: Most calls at once.
         tell: Given one line at a time, as things are found.
 
@@ -79,7 +81,7 @@ def probe_model(
         check_name(save)
     caps = Caps(max_calls, max_tokens, max_seconds, max_usd)
     with limited(max_seconds):
-        subject = _subject(model, price, local_only, timeout, caps, allow_unpriced)
+        subject = _subject(model, price, local_only, timeout, caps, allow_unpriced, encoding)
         shown = bounded("drawing scenes", rendered_scenes, rendered, seed) if full else ()
         options = Options(
             save or "", seed, most_pictures, full, scenes, shown, caps, concurrency, timeout or DEADLINE_S,
@@ -90,7 +92,13 @@ def probe_model(
 
 
 def _subject(
-    model: str | Model, price: str | None, local_only: bool, timeout_s: float | None, caps: Caps, allow_unpriced: bool
+    model: str | Model,
+    price: str | None,
+    local_only: bool,
+    timeout_s: float | None,
+    caps: Caps,
+    allow_unpriced: bool,
+    encoding: str,
 ) -> Subject:
     from wonderful_team.models.providers import check_prices, is_provider_spec, make_provider, model_options
     from wonderful_team.models.providers.library import library_version
@@ -102,7 +110,8 @@ def _subject(
         held = registry.make_model(named)
         return Subject(registry.model_label(named), lambda profile, thinking: held, provider=False)
     name = named
-    given = model_options(None, price, local_only, ()).price_of("*")
+    options = model_options(None, price, local_only, (), timeout_s, encoding)
+    given = options.price_of("*")
 
     def make(profile: Profile | None, thinking: Any) -> Provider:
         return make_provider(
@@ -112,6 +121,7 @@ def _subject(
             price=given,
             local_only=local_only,
             timeout_s=timeout_s,
+            encoding=options.encoding,
             tries=TRIES,
         )
 

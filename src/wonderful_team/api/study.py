@@ -40,7 +40,7 @@ PILOT = 6
 FREE = ("-", OFFLINE)
 """Models whose pilot trials cost no money; simulated ones beside them."""
 
-_OF_MODELS = ("allow_unpriced", "local_only", "timeout", "cache", "cache_file", "detector", "thorough")
+_OF_MODELS = ("allow_unpriced", "local_only", "timeout", "encoding", "cache", "cache_file", "detector", "thorough")
 _SAME_AS_OPTIONS = (
     *("repeats", "replans", "reobserve", "isolate", "perturb", "concurrency", "record", "out", "prompts"),
     *("jobs", "at_once", "ray", "retry_errors"),
@@ -63,7 +63,7 @@ class Study:
         store: File that keeps what ended; the same study on the same file resumes.
         repeats, replans, reobserve, shard: As `bench` has them.
         isolate: whole, planning, grounding: one or several. perturb: KIND=LEVEL: one or several; "" is the scene as it is.
-        thinking, price, allow_unpriced, local_only, timeout, cache, cache_file, prompts, thorough: As `Method` takes them.
+        thinking, price, allow_unpriced, local_only, timeout, encoding, cache, cache_file, prompts, thorough: As `Method` takes them.
         detector: Its name, for methods that look with one.
         photo_set, set_format: With the suites pointing and boxcheck: pictures of your own instead of the toy table, and how they are written
             (where2place, refspatial, coco; None: as their files show).
@@ -100,6 +100,7 @@ class Study:
     allow_unpriced: bool = False
     local_only: bool = False
     timeout: float | None = None
+    encoding: str = "auto"
     cache: CacheMode | None = None
     cache_file: str | Path | None = None
     detector: str | None = None
@@ -214,6 +215,8 @@ class Study:
         said = [
             f"thinking {level}" if role == "*" else f"{role} thinking {level}" for role, level in sorted(levels.items())
         ]
+        if self.encoding != "auto":
+            said.append(f"pictures as {self.encoding}")
         if self.thorough:
             said.append("thorough")
         if self.prompts is not None:

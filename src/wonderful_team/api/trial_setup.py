@@ -70,8 +70,9 @@ def prepared(spec: TrialSpec, settings: RunSettings, model: Any, world: World | 
     if settings.limiter is not None:
         roles = (*registry.roles_of(spec.condition.method), REST)
         options = model_options(
-            asked.get("thinking"), asked.get("price"), bool(asked.get("local_only")), roles, asked.get("timeout")
-        )
+            asked.get("thinking"), asked.get("price"), bool(asked.get("local_only")), roles, asked.get("timeout"),
+            asked.get("encoding", "auto"),
+        )  # fmt: skip
         made = registry.make_models(model, roles, options, world)
         behind = {id(one): RateLimitedModel(one, settings.limiter) for one in made.values()}
         model = {role: behind[id(one)] for role, one in made.items()}
@@ -122,6 +123,8 @@ def reproduce(spec: TrialSpec, asked: Mapping[str, Any] | None = None) -> str:
     timeout = (asked or {}).get("timeout")
     all_asked = ["--thorough"] if (asked or {}).get("thorough") and condition.method not in CONTROLS else []
     waits = [] if timeout is None or condition.method in CONTROLS else ["--timeout", f"{timeout:g}"]
+    encoding = (asked or {}).get("encoding", "auto")
+    waits += [] if encoding == "auto" or condition.method in CONTROLS else ["--encoding", encoding]
     detector = (asked or {}).get("detector")
     looks = ["--detector", detector] if detector and registry.looks_with_detector(condition.method) else []
     method = ["--method", condition.method, *looks]

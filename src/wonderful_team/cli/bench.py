@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from wonderful_team.cli.options import CACHE, CACHE_FILE, LOCAL_ONLY, PATH, THOROUGH, TIMEOUT
+from wonderful_team.cli.options import CACHE, CACHE_FILE, ENCODING, LOCAL_ONLY, PATH, THOROUGH, TIMEOUT
 from wonderful_team.cli.output import finish, say
 from wonderful_team.core.deadline import limited
 from wonderful_team.core.interrupts import as_keyboard, exit_code
@@ -59,6 +59,7 @@ QUIET_S = 10.0
 @click.option("--allow-unpriced", is_flag=True, help="Accept models of unknown price without a cap on tokens.")
 @LOCAL_ONLY
 @TIMEOUT
+@ENCODING
 @CACHE
 @CACHE_FILE
 @click.option("--seeds", metavar="FIRST:END", help="For every task; default the suite's own, from 1000 on.")

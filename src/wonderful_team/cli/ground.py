@@ -37,7 +37,9 @@ def command(
     from wonderful_team.api.team import Team
     from wonderful_team.cli.progress import ProgressLine
     from wonderful_team.cli.run_summary import report_plan
+    from wonderful_team.registry import load_ahead
 
+    load_ahead(common.model)
     observation = Observation.from_files(image)
     progress = ProgressLine(live=not common.as_json)
     looks = {"method": "detector-grounding"} if common.detector is not None and common.method == "team" else {}

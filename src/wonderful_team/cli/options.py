@@ -36,6 +36,13 @@ TIMEOUT = click.option(
     metavar="S",
     help="Longest wait for one reply of a model. [default: 150 s, thinking 300 s; more for a service that shows to be slow]",
 )
+ENCODING = click.option(
+    "--encoding",
+    type=click.Choice(["auto", "png", "jpeg"]),
+    default="auto",
+    show_default=True,
+    help="Files that pictures are sent as; auto: JPEG for photos without tick labels, else PNG.",
+)
 CACHE = click.option(
     "--cache",
     type=click.Choice(["on", "off", "only"]),
@@ -63,6 +70,7 @@ class Common:
     allow_unpriced: bool
     local_only: bool
     timeout: float | None
+    encoding: str
     method: str
     detector: str | None
     caps: Mapping[str, float]
@@ -134,6 +142,7 @@ _COMMON: tuple[Callable[[Any], Any], ...] = (
     click.option("--allow-unpriced", is_flag=True, help="Accept models of unknown price without --max-tokens."),
     LOCAL_ONLY,
     TIMEOUT,
+    ENCODING,
     click.option(
         "--method",
         default="team",

@@ -77,7 +77,9 @@ def command(
     from wonderful_team.cli.progress import ProgressLine
     from wonderful_team.cli.run_summary import report_plan
     from wonderful_team.errors import reading
+    from wonderful_team.registry import load_ahead
 
+    load_ahead(common.model)
     *files, text = words
     observation = Observation.from_files(*files, depth=depth, camera=camera, corners=corners)
     with reading("the instruction with its pictures"):

@@ -8,7 +8,7 @@ from typing import Any
 
 import click
 
-from wonderful_team.cli.options import LOCAL_ONLY, TIMEOUT
+from wonderful_team.cli.options import ENCODING, LOCAL_ONLY, TIMEOUT
 from wonderful_team.cli.output import finish, print_document
 
 
@@ -34,6 +34,7 @@ from wonderful_team.cli.output import finish, print_document
 @click.option("--allow-unpriced", is_flag=True, help="Accept a model of unknown price without --max-tokens.")
 @LOCAL_ONLY
 @TIMEOUT
+@ENCODING
 @click.option("--max-calls", type=click.IntRange(1), help="Most calls of the model.")
 @click.option("--max-tokens", type=click.IntRange(1), help="Most tokens.")
 @click.option("--max-seconds", type=click.FloatRange(0, min_open=True), help="Longest time of all.")

@@ -13,6 +13,7 @@ import cv2
 import numpy as np
 
 from wonderful_team.core.geometry.arrays import Array
+from wonderful_team.images.apart import middle_colour
 
 COLOURS = (
     "red", "orange", "yellow", "green", "cyan", "blue", "purple", "pink", "brown", "olive", "white", "grey", "black",
@@ -199,4 +200,4 @@ def commonest(rgb: Array) -> Array:
     coarse = (rgb >> 4).reshape(-1, 3).astype(np.int32)
     codes = coarse[:, 0] * 256 + coarse[:, 1] * 16 + coarse[:, 2]
     best = int(np.bincount(codes, minlength=4096).argmax())
-    return np.asarray(np.median(rgb.reshape(-1, 3)[codes == best], axis=0))
+    return middle_colour(rgb.reshape(-1, 3)[codes == best])

@@ -16,6 +16,7 @@ from wonderful_team.core.geometry import Box, Frame
 from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.pictures import Picture
 from wonderful_team.core.values import View
+from wonderful_team.images.apart import apart
 from wonderful_team.images.cut import whole
 from wonderful_team.images.resample import picture_of, whole_pixels
 
@@ -38,14 +39,14 @@ _BORDER_PX = 2
 
 def thing_window(view: View) -> Box | None:
     """The window round the one thing that stands on an even background [view px]; None when the background is not even."""
-    rgb = view.rgb.astype(np.int16)
+    rgb = view.rgb
     edges = (rgb[:_BORDER_PX], rgb[-_BORDER_PX:], rgb[:, :_BORDER_PX], rgb[:, -_BORDER_PX:])
-    border = np.concatenate([part.reshape(-1, 3) for part in edges])
+    border = np.concatenate([part.reshape(-1, 3) for part in edges]).astype(np.int16)
     background = np.median(border, axis=0)
     uneven = float(np.percentile(np.abs(border - background).max(axis=1), 98))
     if uneven > EVEN_LEVELS:
         return None
-    stands_out = np.abs(rgb - background).max(axis=2) > max(2.0, 3.0 * uneven)
+    stands_out = apart(rgb, background, max(2.0, 3.0 * uneven))
     if uneven > 1.0:
         stands_out = cv2.morphologyEx(stands_out.astype(np.uint8), cv2.MORPH_OPEN, np.ones((3, 3), np.uint8)) > 0
     return _window(stands_out, view.size_px)
@@ -55,8 +56,8 @@ def changed_window(before: View, after: View) -> Box | None:
     """The window round what differs between two pictures of one camera [view px]; None when nothing or most of it does."""
     if before.size_px != after.size_px:
         return None
-    apart = np.abs(before.rgb.astype(np.int16) - after.rgb).max(axis=2) > 4 * EVEN_LEVELS
-    tidy = cv2.morphologyEx(apart.astype(np.uint8), cv2.MORPH_OPEN, np.ones((3, 3), np.uint8)) > 0
+    differs = apart(before.rgb, after.rgb, 4 * EVEN_LEVELS)
+    tidy = cv2.morphologyEx(differs.astype(np.uint8), cv2.MORPH_OPEN, np.ones((3, 3), np.uint8)) > 0
     return _window(tidy, before.size_px)
 
 

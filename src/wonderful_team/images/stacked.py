@@ -6,6 +6,7 @@ import cv2
 import numpy as np
 
 from wonderful_team.core.values import View
+from wonderful_team.images.apart import apart
 from wonderful_team.images.colours import commonest
 
 DIFFERS = 24
@@ -25,10 +26,9 @@ def lies_over(before: View, after: View) -> bool:
     """
     if before.size_px != after.size_px:
         return True
-    first, second = before.rgb.astype(np.int16), after.rgb.astype(np.int16)
-    changed = np.abs(first - second).max(axis=2) > DIFFERS
+    changed = apart(before.rgb, after.rgb, DIFFERS)
     table = commonest(before.rgb)
-    was, now = (np.abs(image - table).max(axis=2) > DIFFERS for image in (first, second))
+    was, now = (apart(view.rgb, table, DIFFERS) for view in (before, after))
     over = cv2.morphologyEx((changed & was & now).astype(np.uint8), cv2.MORPH_OPEN, np.ones((3, 3), np.uint8))
     shown_before, shown_after = int((changed & was).sum()), int((changed & now).sum())
     hidden = shown_before - shown_after

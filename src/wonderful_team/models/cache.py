@@ -16,8 +16,6 @@ from pathlib import Path
 from typing import Any, Literal, TypeAlias, get_args
 from weakref import WeakKeyDictionary
 
-from pydantic import BaseModel
-
 from wonderful_team.core.caps import Estimate
 from wonderful_team.core.jsonable import to_jsonable
 from wonderful_team.core.protocols import Model
@@ -26,7 +24,7 @@ from wonderful_team.errors import CacheMissError, ConfigError, WonderfulTeamErro
 from wonderful_team.models.around import AroundModel
 from wonderful_team.models.cache_key import request_key
 from wonderful_team.models.cache_store import CacheStore, Stored
-from wonderful_team.models.client import as_answer, call_model, validate_answer
+from wonderful_team.models.client import CheckedAnswer, as_answer, call_model, check_value, checked_answer
 
 CacheMode: TypeAlias = Literal["on", "off", "only"]
 CACHE_MODES: tuple[CacheMode, ...] = get_args(CacheMode)
@@ -95,6 +93,7 @@ class Cached(AroundModel):
         self.repeat = repeat
         with _flights_lock:
             self._flights = _flights.setdefault(store, _Flights())
+        self._found: WeakKeyDictionary[Request, Answer] = WeakKeyDictionary()
 
     def __getattr__(self, name: str) -> Any:
         value = super().__getattr__(name)
@@ -102,7 +101,10 @@ class Cached(AroundModel):
 
     def _reckon(self, request: Request) -> Estimate:
         """What a request may cost: nothing when its answer is kept, so that no cap stands in its way."""
-        if self._kept(request_key(request, self.model, self.repeat), request) is not None:
+        found = self._kept(request_key(request, self.model, self.repeat), request)
+        if found is not None:
+            # It is asked next: what was read and validated here is its answer.
+            self._found[request] = found
             return NO_COST
         reckoned: Estimate = self.model.estimate(request)  # type: ignore[attr-defined]
         return reckoned
@@ -114,6 +116,10 @@ class Cached(AroundModel):
             CacheMissError: Mode "only", and there is none.
             ConfigError: The cache's file became unusable.
         """
+        held = self._found.pop(request, None)
+        if held is not None:
+            await asyncio.sleep(0)
+            return held
         key = request_key(request, self.model, self.repeat)
         # Requests that start together must all have started before the first is answered, as with a real model.
         await asyncio.sleep(0)
@@ -157,24 +163,26 @@ class Cached(AroundModel):
         if entry is None:
             return None
         try:
-            validate_answer(request, entry.value)
+            checked = check_value(request, entry.value)
         except ValueError:
             # A stricter release of ours would refuse it: it is asked for anew.
             if self.mode == "on":
                 self.store.forget(key)
             return None
-        return _from_store(request, entry, FREE)
+        return _from_store(checked, entry, FREE)
 
     def _keep(self, key: str, request: Request, answer: Answer) -> Answer:
         """Keep an answer that fits; returns the one that stands, as another process may have been first."""
         if answer.provenance not in KEPT:
             return answer
         try:
-            validate_answer(request, answer.value)
+            checked = checked_answer(request, answer)
         except ValueError:
             return answer
+        answer = replace(answer, checked=checked)
         entry = Stored(
-            value=_as_json(request, answer.value),
+            # Before the question settles it: that happens again at each use.
+            value=json.loads(checked.parsed.model_dump_json()),
             raw=answer.raw,
             model_id=answer.model_id,
             contract=request.contract,
@@ -189,7 +197,9 @@ class Cached(AroundModel):
         if standing == entry:
             return answer
         # Ours was paid for all the same.
-        return replace(_from_store(request, standing, answer.usage), provenance=answer.provenance)
+        return replace(
+            _from_store(check_value(request, standing.value), standing, answer.usage), provenance=answer.provenance
+        )
 
 
 def cached_models(
@@ -223,23 +233,13 @@ def cached_models(
     return {role: wrapped.get(id(model), model) for role, model in models.items()}, store
 
 
-def _from_store(request: Request, entry: Stored, usage: Usage) -> Answer:
+def _from_store(checked: CheckedAnswer, entry: Stored, usage: Usage) -> Answer:
     return Answer(
-        value=request.output.model_validate(entry.value),
+        value=checked.parsed,
         usage=usage,
         model_id=entry.model_id,
         raw=entry.raw,
         provenance="cached",
         repairs=entry.repairs,
+        checked=replace(checked, value=checked.parsed),
     )
-
-
-def _as_json(request: Request, value: Any) -> dict[str, Any]:
-    """The answer's fields as JSON values, before the question settles them: that happens again at each use."""
-    output: type[BaseModel] = request.output
-    if isinstance(value, str):
-        parsed = output.model_validate_json(value)
-    else:
-        parsed = output.model_validate(value.model_dump() if isinstance(value, BaseModel) else value)
-    kept: dict[str, Any] = json.loads(parsed.model_dump_json())
-    return kept

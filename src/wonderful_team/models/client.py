@@ -13,7 +13,7 @@ import json
 import reprlib
 import time
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 from pydantic import BaseModel, ValidationError
@@ -120,13 +120,15 @@ class ModelClient:
             for notice in answer.notices:
                 self.tell("warning", sent.id, f"{_name(model)}: {notice}")
             try:
-                value, repairs = validate_answer(sent, answer.value)
+                value, repairs = checked_answer(sent, answer).settled
             except (ValueError, RecursionError, OverflowError) as error:
                 text = _explain(error)
                 self.tell("invalid", sent.id, (sent, answer.raw or _as_text(answer.value), text))
                 request = replace(request, feedback=text, previous=answer.raw or _plain(answer.value))
                 continue
-            settled = replace(answer, value=value, usage=total, tries=attempt + 1, repairs=answer.repairs + repairs)
+            settled = replace(
+                answer, value=value, usage=total, tries=attempt + 1, repairs=answer.repairs + repairs, checked=None
+            )
             self.tell("answer", sent.id, (sent, settled))
             for repair in repairs:
                 self.tell("warning", sent.id, f"{sent.id}: {repair}")
@@ -250,9 +252,44 @@ def as_answer(result: Any, model: Model) -> Answer:
     return Answer(value=result, model_id=_name(model), raw=raw, usage=Usage(calls=1, usd=None))
 
 
+@dataclass(frozen=True, eq=False)
+class CheckedAnswer:
+    """A value that was validated against a question.
+
+    Attributes:
+        value: What was validated; whoever changes an answer's value on the way has it validated anew.
+        parsed: An instance of the answer's type, as the model said it.
+        settled: The value as it is used, and what was clamped or repaired for that.
+    """
+
+    question: Any
+    output: type[Any]
+    value: Any
+    parsed: Any
+    settled: tuple[Any, tuple[str, ...]]
+
+
+def checked_answer(request: Request, answer: Answer) -> CheckedAnswer:
+    """An answer validated against its request, once: a cache on the way may have done it for this very question.
+
+    Raises:
+        ValueError: It does not fit; the text is for the model.
+    """
+    held = answer.checked
+    if isinstance(held, CheckedAnswer) and held.value is answer.value:
+        if held.question is request.question and held.output is request.output:
+            return held
+    return check_value(request, answer.value)
+
+
 def validate_answer(request: Request, value: Any) -> tuple[Any, tuple[str, ...]]:
     """Validate a value against the request's type and question. Raises ValueError with text for the model."""
-    output: type[BaseModel] = request.output
+    return check_value(request, value).settled
+
+
+def check_value(request: Request, value: Any) -> CheckedAnswer:
+    """What a value is by the request's type and question. Raises ValueError with text for the model."""
+    said, output = value, request.output
     if isinstance(value, Unreadable):
         raise ValueError(value.problem)
     try:
@@ -262,7 +299,8 @@ def validate_answer(request: Request, value: Any) -> tuple[Any, tuple[str, ...]]
         raise ValueError(_explain(error)) from error
     parsed = output.model_validate_json(value) if isinstance(value, str) else output.model_validate(value)
     question = request.question
-    return question.validate(parsed) if isinstance(question, Question) else (parsed, ())
+    settled = question.validate(parsed) if isinstance(question, Question) else (parsed, ())
+    return CheckedAnswer(question, output, said, parsed, settled)
 
 
 def _plain(value: Any) -> Any:

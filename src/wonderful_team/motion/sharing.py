@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import math
+import threading
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import product
+from typing import Any
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
@@ -21,7 +24,7 @@ from wonderful_team.core.actions import (
 )
 from wonderful_team.core.geometry import Box
 from wonderful_team.core.pictures import Point
-from wonderful_team.core.values import GroundedTarget
+from wonderful_team.core.values import GroundedTarget, View
 from wonderful_team.motion.beside import LEAST_GAP_PX, half_extents
 from wonderful_team.motion.deprojector import Deprojector
 from wonderful_team.motion.turns import yaw_of
@@ -39,6 +42,9 @@ GRID = 8
 TURNS = 24
 """Directions in which a group of things is tried."""
 ROUND = tuple((math.cos(k * math.pi / 4), math.sin(k * math.pi / 4)) for k in range(8))
+_lock = threading.Lock()
+_parts: WeakKeyDictionary[View, dict[Any, tuple[Point, ...]]] = WeakKeyDictionary()
+"""Of each view that still lives: every thing of a group asks for the parts of all, and so does every check of its steps."""
 
 
 @dataclass(frozen=True)
@@ -143,6 +149,7 @@ def parts_of(
     reach = [(half_x + half_y) / 2 for half_x, half_y in sizes]
     pairs = [one + other for one, other in zip(reach, [*reach[1:], reach[0]], strict=True)]
     ring = (max(pairs) + LEAST_GAP_PX) / (2 * math.sin(math.pi / len(sizes)))
+    heights: dict[Point, float] = {}
     for floor_m, shares in zip(_floors(place.box, centre, lift), (CLOSER, FARTHER), strict=False):
         for share, turn in product(shares, range(TURNS)):
             angles = [2 * math.pi * (turn / TURNS + k / len(sizes)) for k in range(len(sizes))]
@@ -150,9 +157,8 @@ def parts_of(
                 (centre[0] + share * ring * math.cos(angle), centre[1] + share * ring * math.sin(angle))
                 for angle in angles
             ]
-            if all(
-                _rests(point, radius, place.box, floor_m, lift) for point, radius in zip(points, reach, strict=True)
-            ):
+            discs = zip(points, reach, strict=True)
+            if all(_rests(point, radius, place.box, floor_m, lift, heights) for point, radius in discs):
                 return points
     return [centre] * len(sizes)
 
@@ -171,16 +177,28 @@ def _floors(box: Box, centre: Point, lift: Deprojector) -> list[float | None]:
     return [float(seen[2]), usual] if usual < float(seen[2]) - LEVEL_M else [float(seen[2])]
 
 
-def _rests(point: Point, radius_px: float, box: Box, floor_m: float | None, lift: Deprojector) -> bool:
-    """Whether a disc lies wholly on the floor of a place: at one height where that is seen, else within its outline."""
+def _rests(
+    point: Point, radius_px: float, box: Box, floor_m: float | None, lift: Deprojector, heights: dict[Point, float]
+) -> bool:
+    """Whether a disc lies wholly on the floor of a place: at one height where that is seen, else within its outline.
+
+    `heights` keeps what was looked up [m]; most discs are out at their first spots, and the others are then not looked up.
+    """
     spots = [point, *((point[0] + radius_px * x, point[1] + radius_px * y) for x, y in ROUND)]
     if not all(lift.inside(spot) and box.contains(spot) for spot in spots):
         return False
     if floor_m is not None:
-        heights = (lift.surface(spot, "floor").position_m for spot in spots)
-        return all(height is not None and abs(height[2] - floor_m) <= LEVEL_M for height in heights)
+        return all(abs(_height_m(spot, lift, heights) - floor_m) <= LEVEL_M for spot in spots)
     half = np.array([box.width, box.height]) / 2 * WITHIN
     return all(np.hypot(*((np.array(spot) - box.centre) / half)) <= 1 for spot in spots)
+
+
+def _height_m(spot: Point, lift: Deprojector, heights: dict[Point, float]) -> float:
+    if spot not in heights:
+        position_m = lift.surface(spot, "floor").position_m
+        assert position_m is not None  # there is a camera
+        heights[spot] = position_m[2]
+    return heights[spot]
 
 
 def share_px(
@@ -188,4 +206,9 @@ def share_px(
 ) -> Point:
     """Where the centre of one of several things goes that share a place [px]."""
     sizes = [half_extents(box, yaw) for box, yaw in zip(boxes, share.yaws_rad, strict=True)]
-    return parts_of(place, centre, sizes, lift)[share.index]
+    with _lock:
+        known = _parts.setdefault(lift.view, {})
+    key = (None if place.box is None else place.box.as_tuple, centre, tuple(sizes))
+    if key not in known:
+        known[key] = tuple(parts_of(place, centre, sizes, lift))
+    return known[key][share.index]

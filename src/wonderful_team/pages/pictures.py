@@ -5,10 +5,11 @@ from __future__ import annotations
 import base64
 import io
 from collections import Counter
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -19,13 +20,12 @@ from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.text import PLACEHOLDER, recorded_names
 from wonderful_team.images import OWN_FORMATS, open_picture, to_jpeg
 from wonderful_team.pages.variants import Bases, Patch
+from wonderful_team.record.picture_store import AS_IT_IS_BYTES, PAGE_BYTES, PAGE_QUALITY
 
-MOST_BYTES = 3_600_000
-"""Bytes of pictures that a page may hold before base64 (4.8 MB of text); beyond, pictures get coarser, not fewer."""
+MOST_BYTES = PAGE_BYTES
+"""Beyond, pictures get coarser, not fewer."""
 _LEVELS = ((2000, 92), (1400, 82), (1000, 72), (640, 60), (400, 45), (240, 35))
 _LOSSLESS_BELOW_PX = 300 * 300
-_AS_IT_IS_BYTES = 12_000
-_JPEG_QUALITY = 88
 _OPENED_BYTES = 48_000_000
 """So much of what was decoded is kept until it is coded."""
 _SAMPLED = 10
@@ -57,11 +57,13 @@ class Album:
     Args:
         folder: The run folder.
         files: From hash to file, as the record says.
+        coded: PNG files that were turned into JPEG already, as `_quickly` does it, by file.
     """
 
-    def __init__(self, folder: Path, files: dict[str, str]) -> None:
+    def __init__(self, folder: Path, files: dict[str, str], coded: Mapping[str, bytes] = MappingProxyType({})) -> None:
         self._folder = folder
         self._files = files
+        self._coded = coded
         self._shown: dict[str, Shown | None] = {}
         self._opened: dict[int, Array] = {}
 
@@ -127,7 +129,7 @@ class Album:
         bases, found = Bases(), dict[int, tuple[int, tuple[Patch, ...]]]()
         sizes = Counter(shown.size_px for shown in taken)
         for shown in taken:
-            if sizes[shown.size_px] > 1 and (self._folder / shown.file).stat().st_size > _AS_IT_IS_BYTES:
+            if sizes[shown.size_px] > 1 and (self._folder / shown.file).stat().st_size > AS_IT_IS_BYTES:
                 variant = bases.place(shown.number, self._pixels(shown))
                 if variant is not None:
                     found[shown.number] = variant
@@ -160,9 +162,11 @@ class Album:
         shown, patch = part
         path = self._folder / shown.file
         kind = "jpeg" if shown.file.endswith(".jpg") else "png"
-        if patch is None and (kind == "jpeg" or path.stat().st_size <= _AS_IT_IS_BYTES):
+        if patch is None and (kind == "jpeg" or path.stat().st_size <= AS_IT_IS_BYTES):
             return kind, path.read_bytes()
-        return "jpeg", to_jpeg(self._pixels(shown, patch), _JPEG_QUALITY)
+        if patch is None and shown.file in self._coded:
+            return "jpeg", self._coded[shown.file]
+        return "jpeg", to_jpeg(self._pixels(shown, patch), PAGE_QUALITY)
 
     def _coarser(self, most_px: int, quality: int, part: _Part) -> tuple[str, bytes]:
         shown, patch = part

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined, pass_context
@@ -25,8 +27,12 @@ _PICTURES = "<!-- pictures -->"
 """Stands for them while the page is made; words on a page are escaped, so none of them reads so."""
 
 
-def write_page(folder: Path) -> Path:
+def write_page(folder: Path, coded: Mapping[str, bytes] = MappingProxyType({})) -> Path:
     """Write `page.html` from the folder's record and pictures.
+
+    Args:
+        folder: The run folder.
+        coded: Pictures that need not be read, as `Album` takes them.
 
     Returns:
         The page's path.
@@ -37,7 +43,7 @@ def write_page(folder: Path) -> Path:
     folder = Path(folder)
     record = read_record(folder)
     with reading(f"{folder}: the record"):
-        html, pictures = _html(folder, record)
+        html, pictures = _html(folder, record, coded)
     # Pictures are not searched for keys: their letters may look like anything, and are most of the page.
     whole = redact(visible(html, layout=True)).replace(_PICTURES, pictures, 1)
     path = folder / PAGE_NAME
@@ -45,9 +51,9 @@ def write_page(folder: Path) -> Path:
     return path
 
 
-def _html(folder: Path, record: dict[str, Any]) -> tuple[str, str]:
+def _html(folder: Path, record: dict[str, Any], coded: Mapping[str, bytes]) -> tuple[str, str]:
     """The page, and the pictures that belong in the place of `_PICTURES`."""
-    album = Album(folder, record["files"])
+    album = Album(folder, record["files"], coded)
     content = _content(record, album)
     style = Markup((_HERE / "page.css").read_text(encoding="utf-8"))
     # The body comes first: it decides which pictures the page has to hold.

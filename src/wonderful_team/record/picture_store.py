@@ -11,15 +11,21 @@ import numpy as np
 
 from wonderful_team.core.deadline import for_record
 from wonderful_team.core.filesystem import make_private_folder
+from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.pictures import Picture
 from wonderful_team.core.values import Observation, SentPicture, View
-from wonderful_team.images import Ticks
-from wonderful_team.images.drawn import drawn_hash, drawn_png
+from wonderful_team.images import Ticks, to_jpeg
+from wonderful_team.images.drawn import drawn, drawn_hash, drawn_png
 from wonderful_team.images.png import fast_png
 from wonderful_team.record.run_files import RunFiles
 from wonderful_team.redaction import redact
 
 FOLDER = "pictures"
+PAGE_BYTES = 3_600_000
+"""Bytes of pictures that a page may hold before base64 (4.8 MB of text)."""
+AS_IT_IS_BYTES = 12_000
+"""Smaller files stand on a page as they are, larger PNG files as JPEG."""
+PAGE_QUALITY = 88
 DRAWING = "drawing pictures for the record"
 """What the run's limit on time names."""
 
@@ -30,6 +36,10 @@ class PictureStore:
     Args:
         files: Of the run folder.
         named: Told of every picture's key and file, relative to the run folder, once.
+
+    Attributes:
+        coded: PNG files as a page shows them (JPEG), by file: made here, where their pixels are at hand, so that the page
+            of the run need not read them again; as many as one page may hold.
     """
 
     def __init__(self, files: RunFiles, named: Callable[[str, str], None]) -> None:
@@ -38,13 +48,16 @@ class PictureStore:
         self._sent: set[str] = set()
         self._views = 0
         self._depths: dict[str, str] = {}
+        self.coded: dict[str, bytes] = {}
+        self._coded_bytes = 0
         make_private_folder(files.folder / FOLDER)
 
     def keep_file(self, sent: SentPicture, name: str) -> str:
         """Store a picture's file as it was sent; returns the hash of its bytes."""
         key = hashlib.sha256(sent.file).hexdigest()[:16]
         if key not in self._sent:
-            self._write(key, self._numbered(key, name, "jpg" if sent.media_type == "image/jpeg" else "png"), sent.file)
+            ending = "jpg" if sent.media_type == "image/jpeg" else "png"
+            self._write(key, self._numbered(key, name, ending), sent.file, sent.rgb if ending == "png" else None)
         return key
 
     def keep_drawn(self, picture: Picture, ticks: Ticks = Ticks.PIXELS) -> str:
@@ -52,7 +65,7 @@ class PictureStore:
         key = for_record(DRAWING, drawn_hash, picture, ticks)
         if key not in self._sent:
             file = for_record(DRAWING, drawn_png, picture, ticks)
-            self._write(key, self._numbered(key, picture.name, "png"), file)
+            self._write(key, self._numbered(key, picture.name, "png"), file, drawn(picture, ticks))
         return key
 
     def _numbered(self, key: str, name: str, ending: str) -> str:
@@ -64,7 +77,8 @@ class PictureStore:
         key = view.hash
         if key not in self._known:
             self._views += 1
-            self._write(key, f"view_{self._views:03d}_{_slug(where)}_{_slug(view.camera_name)}.png", fast_png(view.rgb))
+            name = f"view_{self._views:03d}_{_slug(where)}_{_slug(view.camera_name)}.png"
+            self._write(key, name, fast_png(view.rgb), view.rgb)
         return key
 
     def keep_observation(self, observation: Observation, where: str) -> dict[str, str]:
@@ -83,8 +97,11 @@ class PictureStore:
             self._depths[key] = f"{FOLDER}/{name}"
         return self._depths[key]
 
-    def _write(self, key: str, name: str, file: bytes) -> None:
+    def _write(self, key: str, name: str, file: bytes, rgb: Array | None) -> None:
         self._files.write(f"{FOLDER}/{name}", file)
+        if rgb is not None and len(file) > AS_IT_IS_BYTES and self._coded_bytes < PAGE_BYTES:
+            self.coded[f"{FOLDER}/{name}"] = coded = to_jpeg(rgb, PAGE_QUALITY)
+            self._coded_bytes += len(coded)
         self._known.add(key)
         self._named(key, f"{FOLDER}/{name}")
 

@@ -48,6 +48,7 @@ class Recorder:
         self.folder = Path(folder)
         self._files = RunFiles(self.folder)
         self._store = PictureStore(self._files, self._named)
+        self.coded_pictures = self._store.coded
         self._lock = threading.RLock()
         self._zero = time.monotonic()
         self._asked: set[str] = set()

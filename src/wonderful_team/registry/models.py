@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import contextlib
 import importlib
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any, cast
 
 from wonderful_team.core.protocols import Model, World
-from wonderful_team.errors import ConfigError, ModelCodeError, UnknownNameError, code_of
+from wonderful_team.errors import ConfigError, ModelCodeError, UnknownNameError, WonderfulTeamError, code_of
 from wonderful_team.models.providers.vendors import VENDORS
 from wonderful_team.registry.files import check_names_no_code, is_file_name, make_from_file
 from wonderful_team.registry.simulated import SIMULATED, simulated_model
@@ -78,6 +79,7 @@ def make_model(
             price=price,
             local_only=asked.local_only,
             timeout_s=asked.timeout_s,
+            encoding=asked.encoding,
         )
         return cast(Model, made)
     if profile is not None:
@@ -85,6 +87,20 @@ def make_model(
     if model not in MODELS:
         raise UnknownNameError("model", model, [*MODELS, *profile_names(), *MODEL_FORMS])
     return cast(Model, importlib.import_module("wonderful_team.offline").OfflineModel())
+
+
+def load_ahead(model: str | Model | Mapping[str, str | Model]) -> None:
+    """Start to import what the named models' services need, while other things are read; what is wrong with a name is said later."""
+    from wonderful_team.models.profiles import load_profile, profile_names
+    from wonderful_team.models.providers import is_provider_spec, load_library
+
+    for named in model.values() if isinstance(model, Mapping) else (model,):
+        if not isinstance(named, str) or named in MODELS or named.startswith(SIMULATED) or is_file_name(named):
+            continue
+        with contextlib.suppress(WonderfulTeamError):
+            spec = load_profile(named).model if named in profile_names() else named
+            if is_provider_spec(spec):
+                load_library(spec)
 
 
 def named_by_profile(profile: Profile) -> str:

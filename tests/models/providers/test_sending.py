@@ -356,18 +356,22 @@ def test_openai_is_told_in_which_detail_to_look(name: str, model: str, detail: s
     assert told == ([] if detail is None else [detail])
 
 
+@pytest.mark.parametrize("encoding", ["png", "auto"])
 @pytest.mark.parametrize("fault", ["too_heavy", "picture_too_heavy"])
-def test_pictures_that_were_refused_as_too_heavy_are_sent_again_as_jpeg(fault: str, desk: AgentSession) -> None:
+def test_pictures_that_were_refused_as_too_heavy_are_sent_again_as_lighter_jpeg(
+    fault: str, encoding: str, desk: AgentSession
+) -> None:
     found = {"id": "T1", "found": True, "box": [64, 96, 192, 288], "points": [{"role": "pick", "point": [128, 192]}]}
     absent = {"id": "T2", "found": False, "box": None, "points": []}
     said = json.dumps({"reasoning": "", "targets": [{**found, "unsure": ""}, {**absent, "unsure": ""}]})
     wire = WIRES["anthropic"]
     with WireServer(scripted_brain(said), Rules(local=not wire.vendor)) as server:
         server.strike(Fault(fault))
-        answer = ask(wire.provider(server), desk)
+        answer = ask(wire.provider(server, encoding=encoding), desk)
     first, second = server.heard
     assert [piece.shape for piece in second.pictures] == [piece.shape for piece in first.pictures]
-    assert "image/jpeg" not in json.dumps(first.body)
+    assert ("image/jpeg" in json.dumps(first.body)) == (encoding == "auto")
+    assert second.bytes_in < first.bytes_in
     assert "image/jpeg" in json.dumps(second.body)
     # Positions are what they were: the size is the same.
     assert answer.value.targets[0].box.as_box.as_tuple == pytest.approx((64, 96, 192, 288), abs=1)

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, ClassVar, Literal, TypeAlias
 
+from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.pictures import Picture
 from wonderful_team.core.values.plan import Provenance
 
@@ -74,10 +75,12 @@ class SentPicture:
 
     Attributes:
         size_px: Its width and height, which may differ from those of the picture it shows.
+        rgb: What the file was made of, shape (H, W, 3), uint8, where that is at hand.
     """
 
     file: bytes
     size_px: tuple[int, int]
+    rgb: Array | None = field(default=None, repr=False)
 
     @property
     def media_type(self) -> str:
@@ -149,6 +152,7 @@ class Answer:
         value: An instance of the request's output type.
         repairs: What was clamped or repaired, in words.
         notices: What the user should know of the service, once, in words.
+        checked: What validating the value against its question gave, where that was done on the way to the client.
     """
 
     value: Any
@@ -159,3 +163,4 @@ class Answer:
     provenance: Provenance = "model"
     repairs: tuple[str, ...] = ()
     notices: tuple[str, ...] = ()
+    checked: Any = field(default=None, repr=False)

@@ -1,7 +1,7 @@
 """Models of vendors and servers, through one client library that is imported only when a request is sent."""
 
 from wonderful_team.models.providers.listing import server_models
-from wonderful_team.models.providers.make import make_provider
+from wonderful_team.models.providers.make import load_library, make_provider
 from wonderful_team.models.providers.options import ModelOptions, PriceChoice, check_prices, model_options
 from wonderful_team.models.providers.provider import Provider
 from wonderful_team.models.providers.settings import Thinking
@@ -17,6 +17,7 @@ __all__ = [
     "Thinking",
     "check_prices",
     "is_provider_spec",
+    "load_library",
     "make_provider",
     "model_options",
     "parse_spec",

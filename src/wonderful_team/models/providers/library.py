@@ -8,9 +8,15 @@ from __future__ import annotations
 import functools
 import importlib
 import importlib.metadata
+import importlib.util
+import os
+import ssl
+import threading
 from collections.abc import Awaitable, Callable, Sequence
+from concurrent.futures import Future
 from typing import TYPE_CHECKING, Any, cast
 
+from wonderful_team.core.interrupts import start_thread
 from wonderful_team.errors import ConfigError, MissingExtraError
 from wonderful_team.models.providers.bounded import limit_replies
 from wonderful_team.models.providers.specs import Spec, is_loopback
@@ -20,6 +26,8 @@ if TYPE_CHECKING:
     import httpx2
     from pydantic_ai.messages import ModelMessage, ModelResponse
     from pydantic_ai.models import Model as LibraryModel
+
+    from wonderful_team.models.providers.vendors import Vendor
 
 LIBRARY = "pydantic-ai-slim"
 NO_KEY = "none"
@@ -31,6 +39,11 @@ SENT_HEADERS = frozenset({
 from variables such as OPENAI_ORG_ID and ANTHROPIC_CUSTOM_HEADERS, which name accounts and hold secrets."""
 KEY_HEADERS = frozenset({"authorization", "x-api-key", "x-goog-api-key"})
 """Where vendors' clients put the key; which of these it is depends on their version."""
+_TRUST_VARIABLES = ("SSL_CERT_FILE", "SSL_CERT_DIR", "SSLKEYLOGFILE")
+_OF_ALL = ("httpx2", "pydantic_ai.direct")
+_lock = threading.Lock()
+_loading: dict[str, Future[None]] = {}
+"""By service's module: its import, under way or done."""
 
 
 @functools.cache
@@ -46,17 +59,67 @@ def library_version() -> str:
         raise MissingExtraError("models of vendors and servers", "vendors") from error
 
 
-def preload(module: str, text: str) -> None:
-    """Import what a service needs, now: it takes seconds, which no request's deadline should pay for.
+def preload(service: Vendor, text: str) -> None:
+    """Start to import what a service needs, in a thread: it takes seconds, in which pictures are read; see `loaded`.
 
     Raises:
         MissingExtraError: It is not installed.
     """
+    if not all(map(_is_installed, ("httpx2", "pydantic_ai", service.package))):
+        raise MissingExtraError(f"model {text!r}", "vendors")
+    module = service.module
+    with _lock:
+        if module in _loading:
+            return
+        future: Future[None] = Future()
+        _loading[module] = future
+    start_thread(_import, (*_OF_ALL, module), future, name="client library")
+
+
+def loaded(service: Vendor, text: str) -> None:
+    """Wait until what a service needs is imported.
+
+    Raises:
+        MissingExtraError: Part of it is not installed.
+    """
+    preload(service, text)
     try:
-        for name in ("httpx2", "pydantic_ai.direct", module):
-            importlib.import_module(name)
+        _loading[service.module].result()
     except ImportError as error:
+        with _lock:
+            _loading.pop(service.module, None)  # it may be installed while the process goes on
         raise MissingExtraError(f"model {text!r}", "vendors") from error
+
+
+def is_loaded(service: Vendor) -> bool:
+    """Whether `loaded` would return at once."""
+    held = _loading.get(service.module)
+    return held is not None and held.done() and held.exception() is None
+
+
+def _import(names: Sequence[str], future: Future[None]) -> None:
+    try:
+        for name in names:
+            importlib.import_module(name)
+    except BaseException as error:  # noqa: BLE001  raised by whoever waits
+        future.set_exception(error)
+    else:
+        future.set_result(None)
+
+
+def _is_installed(name: str) -> bool:
+    try:
+        return importlib.util.find_spec(name) is not None
+    except (ValueError, ImportError):
+        return False
+
+
+@functools.lru_cache(maxsize=8)
+def _tls(trust_env: bool, from_environment: tuple[str | None, ...]) -> ssl.SSLContext:
+    """What is trusted: read once, as every client would read the same file anew."""
+    import httpx2
+
+    return httpx2.create_ssl_context(trust_env=trust_env)
 
 
 def http_client(spec: Spec, key: str | None, local_only: bool) -> httpx2.AsyncClient:
@@ -70,7 +133,10 @@ def http_client(spec: Spec, key: str | None, local_only: bool) -> httpx2.AsyncCl
     limits = httpx2.Limits(max_connections=64, max_keepalive_connections=16)
     timeout = httpx2.Timeout(None, connect=10.0)
     outside = not (local_only or is_loopback(spec.base_url))
-    client = httpx2.AsyncClient(timeout=timeout, limits=limits, follow_redirects=False, trust_env=outside)
+    trusted = _tls(outside, tuple(map(os.environ.get, _TRUST_VARIABLES)))
+    client = httpx2.AsyncClient(
+        verify=trusted, timeout=timeout, limits=limits, follow_redirects=False, trust_env=outside
+    )
     client.event_hooks = {"request": [_guard(spec, key)], "response": []}
     return limit_replies(client)
 

@@ -14,6 +14,7 @@ from wonderful_team.models.providers.listing import only_model, server_models
 from wonderful_team.models.providers.provider import Provider
 from wonderful_team.models.providers.settings import FIRST_WAIT_S, MAX_TOKENS, SERVER_MAX_TOKENS, Settings, Thinking
 from wonderful_team.models.providers.specs import Spec, find_key, key_holder, parse_spec, require_local
+from wonderful_team.models.wire import ENCODINGS, Encoding
 
 if TYPE_CHECKING:
     from wonderful_team.models.profiles import Profile
@@ -30,6 +31,7 @@ def make_provider(
     base_url: str | None = None,
     api_key: str | None = None,
     local_only: bool = False,
+    encoding: Encoding = "auto",
     price: GivenPrice | None = None,
     tries: int = 5,
     first_wait_s: float = FIRST_WAIT_S,
@@ -47,9 +49,12 @@ def make_provider(
         base_url: Address to use instead of the vendor's own; a vendor's key is not sent there.
         api_key: Key to send; None takes it from the environment. It is kept out of every record, text and repr.
         local_only: Refuse addresses outside this machine and private networks.
+        encoding: Of pictures' files: auto (photos without tick labels as JPEG, all else as PNG), png or jpeg.
         price: USD per million tokens, instead of the table's.
         tries: Most tries at one request when the provider fails.
         first_wait_s: Pause before the second try; it doubles.
+
+    The client library is imported meanwhile, in a thread; whoever sends the first request waits for it.
 
     Raises:
         ConfigError: Wrong name, address, key, or option; the client library is missing.
@@ -57,6 +62,8 @@ def make_provider(
     """
     if thinking is not None and thinking not in MAX_TOKENS:
         raise ConfigError(f"thinking {thinking!r}: valid are off, low, medium, high")
+    if encoding not in ENCODINGS:
+        raise ConfigError(f"encoding {encoding!r}: valid are {', '.join(ENCODINGS)}")
     for name, value in {
         "deadline_s": deadline_s,
         "timeout_s": timeout_s,
@@ -69,7 +76,7 @@ def make_provider(
     if local_only:
         require_local(parsed)
     key = find_key(parsed, api_key)
-    library.preload(parsed.service.module, spec)
+    library.preload(parsed.service, spec)
     holder = key_holder(parsed, api_key)
     model = parsed.model or only_model(
         parsed.base_url,
@@ -79,7 +86,9 @@ def make_provider(
     )
     family = guess_family(model)
     most = max_tokens or (MAX_TOKENS[thinking] if parsed.vendor or thinking not in (None, "off") else SERVER_MAX_TOKENS)
-    settings = Settings(thinking, most, deadline_s, tries, first_wait_s, timeout_s, weight=family.weight)
+    settings = Settings(
+        thinking, most, deadline_s, tries, first_wait_s, timeout_s, weight=family.weight, encoding=encoding
+    )
     if parsed.service.takes_detail:
         settings = replace(settings, detail=family.detail)
     convention, weak = family.convention, family.weak_pointing
@@ -107,6 +116,15 @@ def make_provider(
         key,
         holder,
     )
+
+
+def load_library(spec: str) -> None:
+    """Start to import, in a thread, what the service of such a name needs.
+
+    Raises:
+        ConfigError: No service has such a name, or its client library is missing.
+    """
+    library.preload(parse_spec(spec).service, spec)
 
 
 def _note(name: str, family: Family) -> str:

@@ -12,6 +12,7 @@ from wonderful_team.core.values import Usage
 from wonderful_team.errors import ConfigError, UnknownNameError
 from wonderful_team.models.prices import GivenPrice, read_price
 from wonderful_team.models.providers.settings import Thinking
+from wonderful_team.models.wire import ENCODINGS, Encoding
 
 REST = "*"
 """Key for the roles that are not named."""
@@ -27,12 +28,14 @@ class ModelOptions:
         prices: Given prices by role, instead of a table's or a profile's.
         local_only: Refuse models outside this machine and private networks.
         timeout_s: Longest time for one try at a request; None: it follows how slow the service is.
+        encoding: Of pictures' files: auto, png or jpeg.
     """
 
     thinking: Mapping[str, Thinking] = field(default_factory=dict)
     prices: Mapping[str, GivenPrice] = field(default_factory=dict)
     local_only: bool = False
     timeout_s: float | None = None
+    encoding: Encoding = "auto"
 
     def thinking_of(self, role: str) -> Thinking | None:
         return self.thinking.get(role, self.thinking.get(REST))
@@ -51,12 +54,13 @@ def model_options(
     local_only: bool,
     roles: Sequence[str],
     timeout_s: float | None = None,
+    encoding: str = "auto",
 ) -> ModelOptions:
     """Options from what a user says: one value for all roles, or a mapping with "*" for the rest.
 
     Raises:
         UnknownNameError: A role that does not exist.
-        ConfigError: A level or a price in another form.
+        ConfigError: A level, a price or an encoding in another form.
     """
     if not (thinking is None or isinstance(thinking, str | Mapping)):
         raise ConfigError(
@@ -73,7 +77,9 @@ def model_options(
     held = {role: given if isinstance(given, GivenPrice) else read_price(given) for role, given in prices.items()}
     if timeout_s is not None and not timeout_s > 0:
         raise ConfigError(f"timeout {timeout_s!r}: valid is a number of seconds above 0")
-    return ModelOptions(cast(Mapping[str, Thinking], levels), held, local_only, timeout_s)
+    if encoding not in ENCODINGS:
+        raise ConfigError(f"encoding {encoding!r}: valid are {', '.join(ENCODINGS)}")
+    return ModelOptions(cast(Mapping[str, Thinking], levels), held, local_only, timeout_s, encoding)
 
 
 def check_prices(models: Iterable[Model], caps: Caps, allow_unpriced: bool) -> None:

@@ -98,6 +98,8 @@ class Provider:
             "max_pictures": self.settings.max_pictures,
             "convention": repr(self.convention),
             "library": library.library_version(),
+            # PNG leaves it out: what was kept before pictures had a choice holds on.
+            **({} if self.settings.encoding == "png" else {"encoding": self.settings.encoding}),
         }
 
     @property
@@ -212,7 +214,14 @@ class Provider:
         return self._composed(request, pasted, told)
 
     def _composed(self, request: Request, pasted: bool, told: bool) -> Composed:
-        return compose(request, self.convention, one_picture=pasted, schema_in_words=told, limits=self._learned.weight)
+        return compose(
+            request,
+            self.convention,
+            one_picture=pasted,
+            schema_in_words=told,
+            limits=self._learned.weight,
+            encoding=self.settings.encoding,
+        )
 
     @property
     def _thinking(self) -> Thinking | None:
@@ -285,6 +294,12 @@ class Provider:
         """The library's model on connections that belong to the running loop; the loop closes them when it ends."""
         loop = asyncio.get_running_loop()
         held = self._clients.get(loop)
+        if held is None:
+            service = self.spec.service
+            if not library.is_loaded(service):
+                await in_thread(library.loaded, service, self.spec.text, name="client library")
+            # While that was waited for, another request may have built it.
+            held = self._clients.get(loop)
         if held is None:
             client = library.http_client(self.spec, self.key, self.local_only)
             keeper = _keep_open(client)

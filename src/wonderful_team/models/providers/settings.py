@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
+from wonderful_team.models.wire.coding import Encoding
 from wonderful_team.models.wire.weight import UNLIMITED, Weight
 
 Thinking: TypeAlias = Literal["off", "low", "medium", "high"]
@@ -37,6 +38,7 @@ class Settings:
         context: Most tokens of a request and its answer, as measured; what the service says now wins.
         detail: The detail in which pictures are to be looked at, where the service has such a switch.
         weight: How heavy pictures may be; heavier ones are sent as JPEG.
+        encoding: Of pictures' files: auto (photos without tick labels as JPEG, all else as PNG), png or jpeg.
     """
 
     thinking: Thinking | None
@@ -50,6 +52,7 @@ class Settings:
     detail: str | None = None
     context: int | None = None
     weight: Weight = UNLIMITED
+    encoding: Encoding = "auto"
 
     @property
     def first_try_s(self) -> float:

@@ -15,8 +15,8 @@ from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.pictures import Axes, Picture
 from wonderful_team.core.values import Request, SentPicture, Words
 from wonderful_team.images.captions import axes_words, size_words
-from wonderful_team.images.png import fast_png
 from wonderful_team.models.conventions import PIXELS, Convention
+from wonderful_team.models.wire.coding import Encoding, encoded
 from wonderful_team.models.wire.form import Form, box_keys, point_keys
 from wonderful_team.models.wire.reading import Reading, read_json, read_point_tags
 from wonderful_team.models.wire.showing import Shown, paste, show_encoded, ticks_of
@@ -31,7 +31,7 @@ class Composed:
 
     Attributes:
         system: Standing words; the same for every request of the role.
-        pieces: Words and the bytes of pictures (PNG, or JPEG where PNG is too heavy), in order.
+        pieces: Words and the bytes of pictures (PNG or JPEG), in order.
         form: The answer's schema in the model's format.
         convention: The one in force: plain pixels where the answer holds no places.
         sizes_px: Width and height of every picture sent.
@@ -79,6 +79,7 @@ def compose(
     one_picture: bool = False,
     schema_in_words: bool = False,
     limits: Weight = UNLIMITED,
+    encoding: Encoding = "auto",
 ) -> Composed:
     """Words, pictures and schema of a request in the terms of a model.
 
@@ -88,6 +89,7 @@ def compose(
         one_picture: Paste all pictures on one sheet.
         schema_in_words: Tell the schema in words as well, for servers that do not show it to the model.
         limits: How heavy pictures may be.
+        encoding: Of pictures' files (see `coding.encoded`).
     """
     form = _form(cast(Hashable, request.output), convention)
     if not form.has_places:
@@ -99,12 +101,12 @@ def compose(
     if pasted:
         sheet, shown = paste(pictures, convention)
         canvas = (sheet.shape[1], sheet.shape[0])
-        one, notice = lightened({"sheet": fast_png(sheet)}, {"sheet": sheet}, {"sheet": 1}, limits)
+        one, notice = lightened({"sheet": encoded(sheet, pictures, encoding)}, {"sheet": sheet}, {"sheet": 1}, limits)
     else:
-        both = [show_encoded(picture, convention) for picture in pictures]
+        both = [show_encoded(picture, convention, encoding) for picture in pictures]
         shown, files = (
             [item for item, _ in both],
-            {picture: png for picture, (_, png) in zip(pictures, both, strict=True)},
+            {picture: file for picture, (_, file) in zip(pictures, both, strict=True)},
         )
         times = Counter(request.pictures)
         files, notice = lightened(files, dict(zip(pictures, (item.rgb for item in shown), strict=True)), times, limits)
@@ -135,7 +137,8 @@ def compose(
     sizes = (canvas,) if pasted else tuple(held[picture].picture.size_px for picture in request.pictures)
     weight = sum(sent_bytes(piece) for piece in pieces if isinstance(piece, bytes))
     out = [one["sheet"]] if pasted else [files[picture] for picture in request.pictures]
-    sent = tuple(SentPicture(file, size) for file, size in zip(out, sizes, strict=False))
+    seen = [sheet] if pasted else [held[picture].rgb for picture in request.pictures]
+    sent = tuple(SentPicture(*one) for one in zip(out, sizes, seen, strict=False))
     return Composed(request.system, _joined(pieces), form, convention, sizes, where, canvas, weight, notice, sent)
 
 

@@ -29,8 +29,8 @@ from wonderful_team.core.pictures import (
 from wonderful_team.images import Ticks, draw
 from wonderful_team.images.canvas import Canvas
 from wonderful_team.images.drawn import drawn
-from wonderful_team.images.png import fast_png
 from wonderful_team.models.conventions import PIXELS, Convention, Size
+from wonderful_team.models.wire.coding import Encoding, encoded
 
 _TICKS = {"pixels": Ticks.PIXELS, "thousandths": Ticks.THOUSANDTHS, "percent": Ticks.PERCENT, "unit": Ticks.UNIT}
 GAP_PX = 12
@@ -114,19 +114,19 @@ def paste(pictures: Sequence[Picture], convention: Convention = PIXELS) -> tuple
 
 
 KEPT_BYTES = 48_000_000
-_shown: Kept[tuple[int, Convention], tuple[Picture, Shown, bytes]] = Kept(
+_shown: Kept[tuple[int, Convention, Encoding], tuple[Picture, Shown, bytes]] = Kept(
     KEPT_BYTES, lambda held: held[0].rgb.nbytes + held[1].rgb.nbytes + len(held[2])
 )
 
 
-def show_encoded(picture: Picture, convention: Convention = PIXELS) -> tuple[Shown, bytes]:
-    """`show` and its PNG bytes; the last ones are kept, for samples and second tries that show the same again."""
+def show_encoded(picture: Picture, convention: Convention = PIXELS, encoding: Encoding = "auto") -> tuple[Shown, bytes]:
+    """`show` and its file; the last ones are kept, for samples and second tries that show the same again."""
     # The entry holds the picture, so its id cannot have passed to another.
-    key = (id(picture), convention)
+    key = (id(picture), convention, encoding)
     held = _shown.get(key)
     if held is None:
         shown = show(picture, convention)
-        held = _shown.keep(key, (picture, shown, fast_png(shown.rgb)))
+        held = _shown.keep(key, (picture, shown, encoded(shown.rgb, (picture,), encoding)))
     return held[1], held[2]
 
 

@@ -53,7 +53,7 @@ def lightened(
     """The pictures of a request, within the limits where JPEG makes them so light; those within them stay as they are.
 
     Args:
-        files: PNG files.
+        files: As they would be sent.
         pixels: What they show.
         times: How often each is sent.
         limits: Of the service.
@@ -77,7 +77,7 @@ def lightened(
         return light, ""
     return light, (
         f"{changed} of {counted(len(files), 'picture')} sent as JPEG (quality {quality}), the same size: "
-        f"{_total(files, times)} bytes as PNG are more than the service takes ({_limit_words(limits)})"
+        f"{_total(files, times)} bytes are more than the service takes ({_limit_words(limits)})"
     )
 
 

@@ -29,4 +29,5 @@ ANTHROPIC = Vendor(
     "anthropic",
     "Anthropic",
     headers=frozenset({"anthropic-version"}),
+    package="anthropic",
 )

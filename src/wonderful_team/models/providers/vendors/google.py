@@ -35,4 +35,5 @@ GOOGLE = Vendor(
     settings={},  # its client knows no max_retries; it does not try again by itself
     facts=_facts,
     key_header=("x-goog-api-key", ""),
+    package="google.genai",
 )

@@ -85,6 +85,7 @@ class Vendor:
         name_fault: What is wrong with a model's name; "" when nothing is.
         key_header: How a question beside the library carries the key, and a request may: name, and what goes before the key.
         headers: Further headers of its format, in lower case; no others leave this machine.
+        package: The vendor's own client, which `module` imports.
     """
 
     api: str
@@ -101,3 +102,4 @@ class Vendor:
     name_fault: Callable[[str], str] = any_name
     key_header: tuple[str, str] = ("Authorization", "Bearer ")
     headers: frozenset[str] = frozenset()
+    package: str = "openai"

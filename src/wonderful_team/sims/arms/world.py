@@ -176,7 +176,7 @@ def _facts(row: ArmRow, table: ArmTable) -> str:
     width = 1000 * row.opening_m
     tool = (
         table.work.facts
-        if table.work is not None
+        if table.work is not None and table.work.facts
         else f"Tool: a gripper with two parallel fingers that points straight down. It opens {width:.0f} mm and holds one thing at a "
         "time, from two opposite sides; what is wider across its narrowest side cannot be held. The fingers need free space on "
         f"both sides of the thing. How the gripper is turned to grip is computed from depth."

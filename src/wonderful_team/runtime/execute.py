@@ -23,11 +23,12 @@ from wonderful_team.core.values import (
 )
 from wonderful_team.errors import ConfigError
 from wonderful_team.runtime.approval import Approval, Approver, Declined, Proposal
-from wonderful_team.runtime.course import Stage, stages_of
+from wonderful_team.runtime.course import stages_of
 from wonderful_team.runtime.gate import check_gate
 from wonderful_team.runtime.read_plan_checks import read_plan_checks
 from wonderful_team.runtime.rollout_log import RolloutEnd, RolloutLog
 from wonderful_team.runtime.seen_checks import still_free_checks
+from wonderful_team.runtime.stage import Stage
 from wonderful_team.runtime.staleness import staleness_checks, touched, watched
 
 

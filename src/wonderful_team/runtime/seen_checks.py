@@ -12,7 +12,7 @@ from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.motions import Carry, Motion, Reach, Slide
 from wonderful_team.core.values import GateCheck, Limits, View
 from wonderful_team.images.relief import Relief, covered, outline
-from wonderful_team.runtime.course import Stage
+from wonderful_team.runtime.stage import Stage
 from wonderful_team.runtime.sweep import Sweep
 
 AGREE_M = 0.02
@@ -201,6 +201,13 @@ def _level(shape: Any, z_m: float, relief: Relief, others: Array, limits: Limits
     ]
 
 
+def taken_checks(stage: Stage) -> list[GateCheck]:
+    """Whether something that the plan names, and has not moved, lies where a thing is to go."""
+    if not stage.taken:
+        return []
+    return [GateCheck(None, "place is open", False, f"the {stage.taken} lies there", "moved away before")]
+
+
 def way_checks(stage: Stage, sweep: Sweep, tool_radius_m: float) -> list[GateCheck]:
     """Whether what is seen is lower than what passes over it."""
     relief, carried = stage.relief, stage.carried
@@ -261,7 +268,11 @@ def _along(path: Array, stage: Stage, relief: Relief, tool_radius_m: float) -> G
     room = np.inf
     for start, end in zip(path[:-1], path[1:], strict=True) if len(path) > 1 else [(path[0], path[0])]:
         flat = float(np.linalg.norm(end[:2] - start[:2]))
-        shape = LineString([start[:2], end[:2]]).buffer(reach) if flat > 1e-9 else _disc(end, reach)
+        shape = (
+            LineString([start[:2], end[:2]]).buffer(reach)
+            if flat > 1e-9
+            else _over_place(end, stage, tool_radius_m, relief)
+        )
         found = others & relief.inside(shape)
         points = relief.xyz_m[found]
         if stage.meant is not None:
@@ -277,6 +288,15 @@ def _along(path: Array, stage: Stage, relief: Relief, tool_radius_m: float) -> G
     value = "nothing seen" if not np.isfinite(room) else f"{room - PROUD_M:+.3f} m over what is seen"
     margin = f"{room:+.3f} m" if np.isfinite(room) else ""
     return GateCheck(None, "under the way", bool(room >= 0), value, f"at least {-PROUD_M:.3f} m", margin)
+
+
+def _over_place(at_m: Array, stage: Stage, tool_radius_m: float, relief: Relief) -> Any:
+    """What the tool covers of the table where it goes straight up or down, with the outline of what it carries."""
+    tool = _disc(at_m, tool_radius_m)
+    offsets = stage.carried.offsets_m if stage.carried is not None else None
+    if offsets is None or not len(offsets):
+        return tool
+    return tool.union(outline(offsets + at_m[:2], relief.spacing_m))
 
 
 def _disc(at_m: Array, radius_m: float) -> Any:

@@ -140,33 +140,38 @@ class ClosedBox:
         return Score(False, self._stage(poses), "; ".join(missing))
 
     def _missing(self, poses: Poses) -> Iterator[str]:
+        """What is not as it should be, one reason after the other."""
         leans = upright(poses[self.box.name].quaternion_wxyz)
         if leans > LEANS_RAD:
             yield f"the box leans over by {math.degrees(leans):.0f} degrees (at most {math.degrees(LEANS_RAD):.0f})"
-        lid = self.lid.name
-        lowest = float(corners_m(self.lid, poses[lid])[:, 2].min())
-        if off_table(poses[lid]):
-            yield "the lid fell off the table"
-        elif self.is_over(lid, poses):
-            yield "the lid is still on the box"
-        elif self.pushed or not self.lifted:
-            yield "the lid was pushed off the box, not lifted"
-        elif lowest > FLAT_M or upright(poses[lid].quaternion_wxyz) > LEANS_RAD:
-            yield f"the lid does not lie flat on the table ({1000 * lowest:.0f} mm high)"
         touched = self.touched()
-        if lid in touched:
-            yield "the lid was not let go"
+        wrong = self._lid_problem(poses)
+        if wrong:
+            yield wrong
+        yield from (f"the {t.name} was not let go" for t in (self.lid, *self.wanted) if t.name in touched)
         for thing in self.wanted:
             if not self.is_in(thing.name, poses):
                 lies = "on the box or leans on it" if self.is_over(thing.name, poses) else "not in the box"
                 yield f"the {thing.name} is {lies}"
-            elif thing.name in touched:
-                yield f"the {thing.name} was not let go"
         for thing in self.others:
             if off_table(poses[thing.name]):
                 yield f"the {thing.name} fell off the table"
             elif self.is_over(thing.name, poses):
                 yield f"the {thing.name} is in or on the box and does not belong there"
+
+    def _lid_problem(self, poses: Poses) -> str:
+        """What is wrong with where the lid is, or with how it came there; "" when nothing is."""
+        pose = poses[self.lid.name]
+        lowest = float(corners_m(self.lid, pose)[:, 2].min())
+        if off_table(pose):
+            return "the lid fell off the table"
+        if self.is_over(self.lid.name, poses):
+            return "the lid is still on the box"
+        if self.pushed or not self.lifted:
+            return "the lid was pushed off the box, not lifted"
+        if lowest > FLAT_M or upright(pose.quaternion_wxyz) > LEANS_RAD:
+            return f"the lid does not lie flat on the table (its lowest point is {1000 * lowest:.0f} mm high)"
+        return ""
 
     def _stage(self, poses: Poses) -> str:
         if any(self.is_over(thing.name, poses) and thing.name in self.held for thing in self.others):
@@ -220,7 +225,9 @@ class ClosedBox:
         low_x, low_y, high_x, high_y = own.bounds
         room = (ROOM_M[0] - low_x, ROOM_M[1] - low_y, ROOM_M[2] - high_x, ROOM_M[3] - high_y)
         spots = [
-            (float(p), float(q)) for p in np.arange(room[0], room[2], STEP_M) for q in np.arange(room[1], room[3], STEP_M)
+            (float(p), float(q))
+            for p in np.arange(room[0], room[2], STEP_M)
+            for q in np.arange(room[1], room[3], STEP_M)
         ]
         for p, q in sorted(spots, key=lambda spot: math.dist(spot, (x, y))):
             placed = translate(own, p, q)

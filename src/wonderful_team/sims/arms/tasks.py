@@ -108,7 +108,9 @@ def _lid_box(scene: Scene, count: int) -> None:
     colours = [str(name) for name in scene.colours.permutation(COLOURS)[:4]]
     paints = [str(name) for name in scene.colours.permutation(BOWLS)]
     closed = scene.add("box", paints[0], yaw_rad=0.0, name="box", within=BOX_ROOM_M)
-    lid = scene.add("lid", paints[1], at=(closed.x_m, closed.y_m), yaw_rad=0.0, name="lid", lifted_m=closed.body.height_m)
+    lid = scene.add(
+        "lid", paints[1], at=(closed.x_m, closed.y_m), yaw_rad=0.0, name="lid", lifted_m=closed.body.height_m
+    )
     heights = [float(h) for h in scene.layout.permutation(HEIGHTS)]
     blocks = [
         scene.add("cube", colour, name=f"{colour} block", stretch=stretch)

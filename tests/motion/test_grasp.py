@@ -145,3 +145,20 @@ def test_what_cannot_be_gripped_names_step_and_target() -> None:
             view_of(wide),
             replace(LIMITS, fingers=FINGERS),
         )
+
+
+@pytest.mark.parametrize("plate", [0.004, 0.008, 0.015])
+def test_a_lid_is_gripped_by_its_handle_and_over_its_plate(plate: float) -> None:
+    lid, handle = Block(0.42, -0.08, 0.58, 0.08, plate), Block(0.49, -0.03, 0.51, 0.03, plate + 0.025)
+    view = view_of(lid, handle)
+    target, px = found(CAMERA, "T1", lid, {"pick": (0.5, 0.5)}), CAMERA.project([[0.5, 0.0, plate + 0.025]])[0]
+    target = replace(target, points={"pick": (float(px[0]), float(px[1]))})
+    grip = grip_of(view, target.box, target.points["pick"], 0.0, (plate + 0.025) / 2, FINGERS)  # type: ignore[arg-type]
+    assert grip.width_m == pytest.approx(0.02, abs=0.004)
+    assert grip.centre_m == pytest.approx((0.5, 0.0), abs=0.003)
+    assert abs(abs(grip.yaw_rad) - math.pi / 2) < 0.1
+    # The fingers stay over the plate: half way down the handle, not half way down the whole.
+    step = MoveStep("G1", At("T1"), "at")
+    (planned,) = ground_actions((step,), {"T1": target}, view, replace(LIMITS, fingers=FINGERS))
+    assert isinstance(planned.action, MoveTo)
+    assert planned.action.pose.position_m[2] - 0.009 > plate

@@ -13,6 +13,7 @@ from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.pictures import Point
 from wonderful_team.core.values import Fingers, View
 from wonderful_team.errors import GeometryError
+from wonderful_team.motion import heights
 
 TURNS = 60
 """Turns of the gripper that are tried, over half a turn: every 3 degrees."""
@@ -29,8 +30,14 @@ SPECKS = 4
 HOLES_SHARE, SPREAD_M = 0.35, 0.02
 """Depth is in doubt where more of the thing's middle has none, or where it is spread wider round the chosen point [m]."""
 WINDOW_PX = 3
+STANDS_OUT_M, FLAT_SHARE = 0.012, 0.3
+"""A handle stands at least so high out of what it is a handle of [m], and at least this share of the thing lies lower."""
 NEAR_M = 0.16
 """How far round the point other things are looked for [m]."""
+
+
+class TooWideError(GeometryError):
+    """The fingers do not open that far."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,12 +49,14 @@ class Grip:
         yaw_rad: Heading of the gripper; the fingers close across it.
         width_m: Of the thing between the fingers [m].
         points: From how many points of the thing.
+        support_z_m: Height of what the fingers come down to: what the thing stands on, or a plate of its own round a handle [m].
     """
 
     centre_m: Array
     yaw_rad: float
     width_m: float
     points: int
+    support_z_m: float
 
     @property
     def how(self) -> str:
@@ -72,7 +81,22 @@ def grip_of(view: View, box: Box, px: Point, support_z_m: float, grasp_z_m: floa
     """
     cloud = _cloud(view, box, px)
     _check_depth(view, box, px, cloud)
-    own = _own(cloud, box, px, support_z_m)
+    whole = _own(cloud, box, px, support_z_m)
+    try:
+        return _closed(view, cloud, whole, px, support_z_m, grasp_z_m, fingers)
+    except TooWideError:
+        found = _handle(cloud, whole, px)
+        if found is None:
+            raise
+    top_z_m, shelf_z_m = found
+    handle = _own(cloud, box, px, shelf_z_m)
+    return _closed(view, cloud, handle, px, shelf_z_m, heights.grasp_z_m(top_z_m, shelf_z_m), fingers)
+
+
+def _closed(
+    view: View, cloud: Array, own: Array, px: Point, support_z_m: float, grasp_z_m: float, fingers: Fingers
+) -> Grip:
+    """How the fingers close on these points; refused when they are too wide, or others leave no room."""
     mine, others = cloud[own], cloud[np.isfinite(cloud[..., 2]) & ~own]
     at = mine[np.argmin(np.linalg.norm(_pixels(view)[own] - np.array(px), axis=1)), :2]
     spacing = _spacing(mine)
@@ -88,7 +112,7 @@ def grip_of(view: View, box: Box, px: Point, support_z_m: float, grasp_z_m: floa
         hit = _hits(others, at, float(yaw), middle, width, fingers)
         found.append((hit, width, abs(float(yaw)), float(yaw), middle))
     if not found:
-        raise GeometryError(
+        raise TooWideError(
             f"it is {1000 * narrowest:.0f} mm wide across its narrowest side (limit {1000 * (fingers.opening_m - ROOM_M):.0f} mm): "
             "the fingers do not open that far"
         )
@@ -100,7 +124,24 @@ def grip_of(view: View, box: Box, px: Point, support_z_m: float, grasp_z_m: floa
         )
     _, width, _, yaw, middle = min(free, key=lambda one: one[1] + TURNING_M_RAD * one[2])
     centre = at + middle * np.array([math.sin(yaw), -math.cos(yaw)])
-    return Grip(centre, yaw, width, len(mine))
+    return Grip(centre, yaw, width, len(mine), support_z_m)
+
+
+def _handle(cloud: Array, own: Array, px: Point) -> tuple[float, float] | None:
+    """Heights of the top at the point and of the thing's own flat part round it [m]; None where nothing stands out of it."""
+    top = float(np.median(_window(cloud, px)))
+    lower = cloud[own][:, 2]
+    lower = lower[lower < top - STANDS_OUT_M]
+    if len(lower) < FLAT_SHARE * own.sum():
+        return None
+    return top, float(np.median(lower))
+
+
+def _window(cloud: Array, px: Point) -> Array:
+    """Heights that are known close to a pixel, shape (N,) [m]."""
+    x, y = int(px[0]), int(px[1])
+    window = cloud[max(0, y - WINDOW_PX) : y + WINDOW_PX + 1, max(0, x - WINDOW_PX) : x + WINDOW_PX + 1, 2]
+    return np.asarray(window[np.isfinite(window)])
 
 
 def _pixels(view: View) -> Array:
@@ -139,12 +180,10 @@ def _check_depth(view: View, box: Box, px: Point, cloud: Array) -> None:
         raise GeometryError(
             f"depth is in doubt: {100 * lost:.0f} % of the middle of its box has none (limit {100 * HOLES_SHARE:.0f} %)"
         )
-    x, y = int(px[0]), int(px[1])
-    window = cloud[max(0, y - WINDOW_PX) : y + WINDOW_PX + 1, max(0, x - WINDOW_PX) : x + WINDOW_PX + 1, 2]
-    heights = window[np.isfinite(window)]
-    if not heights.size:
+    near = _window(cloud, px)
+    if not near.size:
         raise GeometryError(f"depth is in doubt: there is none round the point ({px[0]:.0f}, {px[1]:.0f}) px")
-    spread = float(np.quantile(heights, 0.9) - np.quantile(heights, 0.1))
+    spread = float(np.quantile(near, 0.9) - np.quantile(near, 0.1))
     if spread > SPREAD_M:
         raise GeometryError(
             f"depth is in doubt: heights round the point ({px[0]:.0f}, {px[1]:.0f}) px are spread over {1000 * spread:.0f} mm "
@@ -156,10 +195,10 @@ def _own(cloud: Array, box: Box, px: Point, support_z_m: float) -> Array:
     """Which pixels show the thing, shape (H, W) bool: what stands up and hangs together with the point, in the box."""
     rows, columns = np.indices(cloud.shape[:2]) + 0.5
     inside = (columns >= box.x0 - 1) & (columns <= box.x1 + 1) & (rows >= box.y0 - 1) & (rows <= box.y1 + 1)
-    heights = np.where(inside, cloud[..., 2], np.nan)
-    top = float(np.nanquantile(heights, 0.98)) if np.isfinite(heights).any() else support_z_m
+    shown_z = np.where(inside, cloud[..., 2], np.nan)
+    top = float(np.nanquantile(shown_z, 0.98)) if np.isfinite(shown_z).any() else support_z_m
     least = support_z_m + max(LEAST_M, LOW_SHARE * (top - support_z_m))
-    raised = (np.nan_to_num(heights, nan=-1e3) > least).astype(np.uint8)
+    raised = (np.nan_to_num(shown_z, nan=-1e3) > least).astype(np.uint8)
     count, labels = cv2.connectedComponents(cv2.morphologyEx(raised, cv2.MORPH_CLOSE, np.ones((3, 3), np.uint8)))
     shown = np.where(labels > 0, np.hypot(columns - px[0], rows - px[1]), np.inf)
     nearest = np.unravel_index(int(np.argmin(shown)), shown.shape)

@@ -26,7 +26,7 @@ from wonderful_team.core.geometry import Pose, wrap_angle
 from wonderful_team.core.values import Fingers, PlannedAction
 from wonderful_team.errors import GeometryError
 from wonderful_team.motion.deprojector import ResolvedPoint
-from wonderful_team.motion.grasp import grip_of
+from wonderful_team.motion.grasp import Displaced, grip_of, seen_of
 from wonderful_team.motion.heights import above_z_m, clear_z_m, grasp_z_m
 from wonderful_team.motion.pick_place import put_spot
 from wonderful_team.motion.places import TO_GRASP, Places
@@ -59,13 +59,31 @@ def _gripped(
     assert seen is not None
     assert spot.position_m is not None
     top, support = float(seen[2]), places.support_z_m(name)
+    view, displaced = places.lift.view, _displaced(name, places, progress)
     try:
-        grip = grip_of(places.lift.view, places.box(name), px, support, grasp_z_m(top, support), fingers)
+        grip = grip_of(view, places.box(name), px, support, grasp_z_m(top, support), fingers, displaced)
     except GeometryError as problem:
         raise places.fail(f"{name} cannot be gripped: {problem}") from problem
     middle = ResolvedPoint(px, np.array([*grip.centre_m, top]), f"{spot.how}; {grip.how}")
     yaw_rad = wrap_angle(grip.yaw_rad + progress.turn_of(name))
     return progress.carry(name, middle, places.lift), yaw_rad, grip.support_z_m - support
+
+
+def _displaced(name: str, places: Places, progress: MotionState) -> list[Displaced]:
+    """What earlier steps have moved, but for the thing itself: the fingers meet it where it is now."""
+    found = []
+    for other, moves in progress.moved.items():
+        target = places.grounded.get(other)
+        if other == name or target is None or target.box is None or places.lift.view.depth_m is None:
+            continue
+        was, points = seen_of(places.lift.view, target.box, places.support_z_m(other))
+        for move in moves:
+            if move.start_m is not None and move.end_m is not None:
+                c, s = np.cos(move.yaw_rad), np.sin(move.yaw_rad)
+                turn = np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
+                points = (points - move.start_m) @ turn + move.end_m
+        found.append(Displaced(was, points))
+    return found
 
 
 def _tool_goal(step: MoveStep, places: Places, progress: MotionState) -> tuple[ResolvedPoint, bool]:

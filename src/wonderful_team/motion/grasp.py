@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import cv2
@@ -30,6 +31,8 @@ SPECKS = 4
 HOLES_SHARE, SPREAD_M = 0.35, 0.02
 """Depth is in doubt where more of the thing's middle has none, or where it is spread wider round the chosen point [m]."""
 WINDOW_PX = 3
+RAISED_M = 0.004
+"""What of a box is so much higher than the support belongs to the thing in it [m]."""
 STANDS_OUT_M, FLAT_SHARE = 0.012, 0.3
 """A handle stands at least so high out of what it is a handle of [m], and at least this share of the thing lies lower."""
 NEAR_M = 0.16
@@ -65,7 +68,42 @@ class Grip:
         return f"gripped across {1000 * self.width_m:.0f} mm, turned {turn:.0f} degrees clockwise, by {self.points} points of depth"
 
 
-def grip_of(view: View, box: Box, px: Point, support_z_m: float, grasp_z_m: float, fingers: Fingers) -> Grip:
+@dataclass(frozen=True, eq=False)
+class Displaced:
+    """A thing that was moved since the picture was taken.
+
+    Attributes:
+        was: Which pixels of the view show it, shape (H, W) bool.
+        now_m: Where its points are now, shape (N, 3) [m].
+    """
+
+    was: Array
+    now_m: Array
+
+
+def seen_of(view: View, box: Box, support_z_m: float) -> tuple[Array, Array]:
+    """Which pixels of a view show what stands in a box, shape (H, W) bool, and its points, shape (N, 3) [m]."""
+    depth, camera = view.depth_m, view.camera
+    assert depth is not None
+    assert camera is not None
+    columns, rows = np.meshgrid(np.arange(depth.shape[1]) + 0.5, np.arange(depth.shape[0]) + 0.5)
+    was = (columns >= box.x0) & (columns <= box.x1) & (rows >= box.y0) & (rows <= box.y1)
+    was &= np.isfinite(depth) & (depth > 0)
+    points = camera.deproject(_pixels(view)[was], depth[was])
+    raised = points[:, 2] > support_z_m + RAISED_M
+    was[was] = raised
+    return was, np.asarray(points[raised])
+
+
+def grip_of(
+    view: View,
+    box: Box,
+    px: Point,
+    support_z_m: float,
+    grasp_z_m: float,
+    fingers: Fingers,
+    displaced: Sequence[Displaced] = (),
+) -> Grip:
     """How the fingers grip what shows at a pixel.
 
     Args:
@@ -75,6 +113,7 @@ def grip_of(view: View, box: Box, px: Point, support_z_m: float, grasp_z_m: floa
         support_z_m: Height of what it stands on [m].
         grasp_z_m: Height at which the fingers close [m].
         fingers: Their measures.
+        displaced: What does not stand any more where the view shows it.
 
     Raises:
         GeometryError: There is no depth, it is in doubt, the thing is too wide, or others leave no room for the fingers.
@@ -82,22 +121,36 @@ def grip_of(view: View, box: Box, px: Point, support_z_m: float, grasp_z_m: floa
     cloud = _cloud(view, box, px)
     _check_depth(view, box, px, cloud)
     whole = _own(cloud, box, px, support_z_m)
+    beside = np.isfinite(cloud[..., 2])
+    for one in displaced:
+        beside &= ~one.was
+    arrived = np.vstack([np.zeros((0, 3)), *(one.now_m for one in displaced)])
+    arrived = arrived[np.linalg.norm(arrived[:, :2] - cloud[whole][0, :2], axis=1) < 2 * NEAR_M]
     try:
-        return _closed(view, cloud, whole, px, support_z_m, grasp_z_m, fingers)
+        return _closed(view, cloud, whole, px, support_z_m, grasp_z_m, fingers, beside, arrived)
     except TooWideError:
         found = _handle(cloud, whole, px)
         if found is None:
             raise
     top_z_m, shelf_z_m = found
     handle = _own(cloud, box, px, shelf_z_m)
-    return _closed(view, cloud, handle, px, shelf_z_m, heights.grasp_z_m(top_z_m, shelf_z_m), fingers)
+    grasp_z_m = heights.grasp_z_m(top_z_m, shelf_z_m)
+    return _closed(view, cloud, handle, px, shelf_z_m, grasp_z_m, fingers, beside, arrived)
 
 
 def _closed(
-    view: View, cloud: Array, own: Array, px: Point, support_z_m: float, grasp_z_m: float, fingers: Fingers
+    view: View,
+    cloud: Array,
+    own: Array,
+    px: Point,
+    support_z_m: float,
+    grasp_z_m: float,
+    fingers: Fingers,
+    beside: Array,
+    arrived: Array,
 ) -> Grip:
     """How the fingers close on these points; refused when they are too wide, or others leave no room."""
-    mine, others = cloud[own], cloud[np.isfinite(cloud[..., 2]) & ~own]
+    mine, others = cloud[own], np.vstack([cloud[beside & ~own], arrived])
     at = mine[np.argmin(np.linalg.norm(_pixels(view)[own] - np.array(px), axis=1)), :2]
     spacing = _spacing(mine)
     found, narrowest = [], math.inf

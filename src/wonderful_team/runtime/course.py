@@ -56,6 +56,8 @@ class Course:
         # What a robot holds from the start has a size that nobody has said.
         self._held = ("", Carried(None), np.zeros(0, dtype=np.int64), table_z_m) if holding else None
         self._at: tuple[str, Array] | None = None
+        # Points of what the fingers have just let go of: they still stand round it.
+        self._let_go = np.zeros(0, dtype=np.int64)
         # How the tool was turned when it closed, and how the last move has turned it.
         self._held_yaw_rad = self._yaw_rad = 0.0
         self._due: Callable[[], None] | None = None
@@ -89,7 +91,10 @@ class Course:
         taken = ""
         if held is not None and isinstance(step, MoveStep) and isinstance(step.to, At) and isinstance(motion, Reach):
             taken = self._taken(held[0], step.to.target, motion.points_m[-1])
-        return Stage(motion, self._relief, own, carried, self._met(planned), False, False, taken=taken)
+        meant = self._met(planned)
+        if isinstance(motion, Reach) and held is None:
+            meant, self._let_go = self._from_between(meant), np.zeros(0, dtype=np.int64)
+        return Stage(motion, self._relief, own, carried, meant, False, False, taken=taken)
 
     def _carry(self, planned: PlannedAction, way: Carry) -> Stage:
         places = dict(places_of(planned.step))
@@ -309,6 +314,7 @@ class Course:
                 middle = self._relief.xyz_m[own, :2].mean(axis=0) if own.any() else tool_m[:2]
                 end = np.append(tool_m[:2], float(tool_m[2]) - carried.hanging_m)
                 self._move(name, own, base, np.append(middle, base), end, 0.0)
+                self._let_go = indices
             self._held = None
         elif self._held is None:
             if tool_m is None or self._at is None:
@@ -319,6 +325,13 @@ class Course:
             indices = np.zeros(0, dtype=np.int64) if points is None else np.flatnonzero(points)
             self._held = (name, self._carried(name, points, tool_m, base), indices, base)
             self._held_yaw_rad = self._yaw_rad
+
+    def _from_between(self, meant: Any | None) -> Any | None:
+        """What the open fingers may come near to on their way off what they have let go of, with that thing itself."""
+        if self._relief is None or not len(self._let_go):
+            return meant
+        thing = outline(self._relief.xyz_m[self._let_go, :2], self._relief.spacing_m)
+        return thing if meant is None else meant.union(thing)
 
     def _met(self, planned: PlannedAction) -> Any | None:
         """What a move is meant to come near to: what its step names, or what stands at its end."""

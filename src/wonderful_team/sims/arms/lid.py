@@ -40,8 +40,8 @@ FLAT_M = 0.01
 EVERY_STEPS = 10
 APART_M = 0.033
 """From the middle of the box to each of two things in it [m]."""
-SPACE_M, STEP_M = 0.02, 0.01
-"""Free table that the oracle leaves round what it puts aside, and how finely it looks for a place [m]."""
+SPACES_M, STEP_M = (0.06, 0.02), 0.01
+"""Free table that the oracle leaves round what it puts aside, where there is so much, or at least; how finely it looks for a place [m]."""
 
 
 def corners_m(thing: Thing, pose: Pose) -> Array:
@@ -229,8 +229,10 @@ class ClosedBox:
             for p in np.arange(room[0], room[2], STEP_M)
             for q in np.arange(room[1], room[3], STEP_M)
         ]
-        for p, q in sorted(spots, key=lambda spot: math.dist(spot, (x, y))):
-            placed = translate(own, p, q)
-            if all(placed.distance(other) >= SPACE_M for other in others):
-                return p, q
+        nearest = sorted(spots, key=lambda spot: math.dist(spot, (x, y)))
+        for space in SPACES_M:
+            for p, q in nearest:
+                placed = translate(own, p, q)
+                if all(placed.distance(other) >= space for other in others):
+                    return p, q
         return None

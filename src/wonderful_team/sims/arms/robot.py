@@ -186,7 +186,9 @@ class Robot:
         goal = np.asarray(position_m, dtype=np.float64)
         if self.parked:
             over = np.array([goal[0], goal[1], max(OVER_M, float(goal[2]))])
-            found = self.kinematics.reach(*self._flange_at(over, yaw_rad), near=self.q)
+            # Searched from where it is parked, an answer may fold the arm over backwards, into what stands on the table.
+            ready = self.kinematics.facing(over[:2], yaw_rad)
+            found = self.kinematics.reach(*self._flange_at(over, yaw_rad), near=ready)
             if found is None:
                 return self._ended(over, yaw_rad, 0.0, "reach")
             stopped, force = self._swing(found)

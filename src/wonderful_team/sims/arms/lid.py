@@ -52,9 +52,10 @@ def corners_m(thing: Thing, pose: Pose) -> Array:
 
 
 class ClosedBox:
-    """The box, its lid and what is to go in: implements the Work protocol; the robot keeps its gripper.
+    """The box, its lid and what is to go in: implements the Work and Sorting protocols; the robot keeps its gripper.
 
     Attributes:
+        wants: Names of what has to go in.
         lifted: The fingers have lifted the lid off the rim since it last lay there.
         pushed: The lid has left the box without being lifted: for good.
         held: Names of everything that the fingers have held.
@@ -64,6 +65,7 @@ class ClosedBox:
 
     def __init__(self, box_: Thing, lid: Thing, wanted: Sequence[Thing], others: Sequence[Thing]) -> None:
         self.box, self.lid, self.wanted, self.others = box_, lid, tuple(wanted), tuple(others)
+        self.wants = tuple(thing.name for thing in wanted)
         self.things: Mapping[str, Thing] = {t.name: t for t in (box_, lid, *wanted, *others)}
         self.lifted = self.pushed = self.closed_once = False
         self.held: set[str] = set()
@@ -78,6 +80,10 @@ class ClosedBox:
     def begin(self, built: BuiltArm, state: Any, robot: Robot) -> None:
         self._built, self._state, self._robot = built, state, robot
         self._bodies = {built.body_id(name): name for name in self.things}
+
+    def arrived(self, name: str, poses: Poses) -> bool:
+        """Whether it is in there."""
+        return self.is_in(name, poses)
 
     def placed_by_hand(self, name: str) -> None:
         """Somebody else has moved a thing: where the lid is now says nothing of how the robot took it off."""

@@ -29,9 +29,9 @@ from wonderful_team.sims.tabletop.oracle import grasp_point
 from wonderful_team.sims.tabletop.shapes import BOX_M
 
 LIFTED_M = 0.01
-"""Held so high over the rim, the lid is lifted [m]."""
-SHOVED_M = 0.02
-"""Farther than this off the middle of the box, a lid that was not lifted was pushed [m]."""
+"""Held so high over the rim, the lid is lifted; so far below the rim without that, it was pushed off [m]."""
+STILL = 0.01
+"""What turns and moves no faster than this lies still [rad/s, m/s]."""
 LEANS_RAD = math.radians(10)
 SLACK_M, DEPTH_M = 0.002, 0.01
 """What is in the box may touch its walls; its lowest point lies so far below the rim [m]."""
@@ -101,13 +101,14 @@ class ClosedBox:
             held = {self._bodies[body] for body in self._robot.held_bodies() if body in self._bodies}
             self.held |= held
         of_box, of_lid = (self._built.body_id(thing.name) for thing in (self.box, self.lid))
-        away = self._state.xpos[of_lid] - self._state.xpos[of_box]
-        high, aside = float(away[2]) - BOX_M[3], float(np.hypot(away[0], away[1]))
+        high = float(self._state.xpos[of_lid][2] - self._state.xpos[of_box][2]) - BOX_M[3]
+        speed = float(np.abs(self._state.cvel[of_lid]).max())
         if self.lid.name in held and high > LIFTED_M:
             self.lifted = True
-        elif aside > SHOVED_M:
+        elif high < -LIFTED_M:
             self.pushed |= not self.lifted
-        elif self.lid.name not in held and abs(high) < LIFTED_M / 2:
+        elif self.lid.name not in held and abs(high) < LIFTED_M / 2 and speed < STILL:
+            # It lies on the rim again: dropped there, it has to be lifted anew.
             self.lifted = False
 
     # Where things are.

@@ -31,8 +31,8 @@ REASONS = {
     "stop": "the world was stopped",
 }
 
-
-LOST = "the fingers have closed on nothing: what they held slipped or was knocked out"
+EMPTY = "the fingers have closed on nothing"
+LOST = "the fingers hold nothing any more: what they held slipped or was knocked out"
 
 
 class ArmWorld(SimulatedWorld[ArmTable, ArmTruth]):
@@ -97,6 +97,8 @@ class ArmWorld(SimulatedWorld[ArmTable, ArmTruth]):
                 fault, moved = "", robot.park()
         report = self._report(action, fault, moved)
         held, self._held = self._held, robot.holding
+        if isinstance(action, Gripper) and action.state != "open" and not robot.holding:
+            return StepReport(action, False, report.measured, EMPTY)
         if held and not robot.holding and not isinstance(action, Gripper):
             return StepReport(action, False, report.measured, LOST)
         return report

@@ -169,7 +169,8 @@ def test_the_lid_hangs_level_from_its_handle_and_the_block_falls_in(seed: int) -
         world.close()
 
 
-@pytest.mark.parametrize("task", ["lid_box/one", pytest.param("lid_box/two", marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("task", ["lid_box/one", "lid_box/two"])
 def test_the_whole_team_lifts_the_lid_first(task: str) -> None:
     world = wt.make_world(f"arms/{task}", seed=3)
     try:

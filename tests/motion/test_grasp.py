@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from tests.motion.block_scenes import LIMITS, Block, found, looking_down, scene
-from wonderful_team.core.actions import At, CloseStep, MoveStep, MoveTo, RotateGripperStep
+from tests.motion.block_scenes import LIMITS, Block, area, found, looking_down, scene
+from wonderful_team.core.actions import At, CloseStep, MoveStep, MoveTo, OpenStep, RotateGripperStep
 from wonderful_team.core.values import Fingers, View
 from wonderful_team.errors import GeometryError
 from wonderful_team.motion import ground_actions
@@ -171,3 +171,45 @@ def test_a_gripper_that_does_not_turn_is_never_turned_and_refuses_what_it_would_
         GeometryError, match="other things stand where a finger would go, and the gripper does not turn"
     ):
         grip_of(view_of(across, neighbour), target.box, target.points["pick"], 0.0, 0.025, fixed)
+
+
+@pytest.mark.parametrize("plate", [0.004, 0.008, 0.015])
+def test_a_lid_is_gripped_by_its_handle_and_over_its_plate(plate: float) -> None:
+    lid, handle = Block(0.42, -0.08, 0.58, 0.08, plate), Block(0.49, -0.03, 0.51, 0.03, plate + 0.025)
+    view = view_of(lid, handle)
+    target, px = found(CAMERA, "T1", lid, {"pick": (0.5, 0.5)}), CAMERA.project([[0.5, 0.0, plate + 0.025]])[0]
+    target = replace(target, points={"pick": (float(px[0]), float(px[1]))})
+    grip = grip_of(view, target.box, target.points["pick"], 0.0, (plate + 0.025) / 2, FINGERS)  # type: ignore[arg-type]
+    assert grip.width_m == pytest.approx(0.02, abs=0.004)
+    assert grip.centre_m == pytest.approx((0.5, 0.0), abs=0.003)
+    assert abs(abs(grip.yaw_rad) - math.pi / 2) < 0.1
+    # The fingers stay over the plate: half way down the handle, not half way down the whole.
+    step = MoveStep("G1", At("T1"), "at")
+    (planned,) = ground_actions((step,), {"T1": target}, view, replace(LIMITS, fingers=FINGERS))
+    assert isinstance(planned.action, MoveTo)
+    assert planned.action.pose.position_m[2] - 0.009 > plate
+
+
+def test_the_fingers_keep_off_what_the_plan_has_put_beside_a_thing_and_come_where_it_has_made_room() -> None:
+    cube, slab = Block(0.45, 0.0, 0.495, 0.045), Block(0.44, -0.25, 0.5, -0.19, 0.04)
+    view, limits = view_of(cube, slab), replace(LIMITS, fingers=FINGERS)
+    grounded = {
+        "T1": found(CAMERA, "T1", cube),
+        "T2": found(CAMERA, "T2", slab),
+        "A1": area("A1", tuple(float(v) for v in CAMERA.project([(0.4725, 0.095, 0.0)])[0])),  # type: ignore[arg-type]
+    }
+    moved = (MoveStep("G1", At("T2"), "at"), CloseStep("G1"), MoveStep("G1", At("A1"), "at"), OpenStep("G1"))
+
+    def yaw(*steps: object) -> float:
+        (*_, last) = ground_actions((*steps, MoveStep("G2", At("T1"), "at")), grounded, view, limits)  # type: ignore[arg-type]
+        assert isinstance(last.action, MoveTo)
+        return last.action.pose.yaw_rad
+
+    assert abs(yaw()) < 0.1
+    assert abs(abs(yaw(*moved)) - math.pi / 2) < 0.1
+    # The other way round: walls that the plan has taken away do not count any more.
+    grounded["T2"] = found(CAMERA, "T2", slab := Block(0.44, 0.06, 0.5, 0.12, 0.04))
+    grounded["A1"] = area("A1", tuple(float(v) for v in CAMERA.project([(0.6, -0.3, 0.0)])[0]))  # type: ignore[arg-type]
+    view = view_of(cube, slab)
+    assert abs(abs(yaw()) - math.pi / 2) < 0.1
+    assert abs(yaw(*moved)) < 0.1

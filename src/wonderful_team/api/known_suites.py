@@ -42,7 +42,7 @@ def check_levels(suites: Sequence[Suite]) -> None:
     """Raises UnknownNameError when a task has not the generalisation level that is asked for."""
     known = registry.task_partitions()
     for task, at, level in (name.partition("@") for suite in suites for name in suite.tasks):
-        if at and task in known and level not in known[task]:
+        if at and task in known and level not in known[task] and not registry.takes_options(f"{task}@{level}"):
             raise UnknownNameError(f"level of {task}", level, known[task])
 
 

@@ -24,7 +24,7 @@ from wonderful_team.core.geometry import Pose, wrap_angle
 from wonderful_team.core.values import Fingers, PlannedAction
 from wonderful_team.errors import GeometryError
 from wonderful_team.motion.deprojector import ResolvedPoint
-from wonderful_team.motion.grasp import grip_of
+from wonderful_team.motion.grasp import Displaced, grip_of, seen_of
 from wonderful_team.motion.heights import above_z_m, clear_z_m, grasp_z_m
 from wonderful_team.motion.pick_place import put_spot
 from wonderful_team.motion.places import TO_GRASP, Places
@@ -36,10 +36,11 @@ from wonderful_team.motion.turns import yaw_of
 def ground_move(step: MoveStep, places: Places, progress: MotionState) -> tuple[PlannedAction, MotionState]:
     """Move the tool; a held thing is carried such that its centre arrives at the place."""
     spot, gripping = _tool_goal(step, places, progress)
+    over_m = 0.0
     if gripping and places.limits.fingers is not None and step.height != "clear" and spot.position_m is not None:
-        spot, yaw_rad = _gripped(step.to.target, spot, places, progress, places.limits.fingers)
+        spot, yaw_rad, over_m = _gripped(step.to.target, spot, places, progress, places.limits.fingers)
         progress = replace(progress, yaw_rad=yaw_rad)
-    tool = _at_height(step, spot, gripping, places, progress)
+    tool = _at_height(step, spot, gripping, places, progress, over_m)
     action = None if tool.position_m is None else MoveTo(Pose.at(tool.position_m, progress.yaw_rad))
     planned = PlannedAction(step, action, (source("waypoint", step.to.target, tool),))
     return planned, replace(progress, tool=tool, height=step.height, over=step.to.target)
@@ -47,19 +48,40 @@ def ground_move(step: MoveStep, places: Places, progress: MotionState) -> tuple[
 
 def _gripped(
     name: str, spot: ResolvedPoint, places: Places, progress: MotionState, fingers: Fingers
-) -> tuple[ResolvedPoint, float]:
-    """Where the middle between the fingers goes to grip a thing, and how the gripper is turned, from the points of the thing."""
+) -> tuple[ResolvedPoint, float, float]:
+    """Where the middle between the fingers goes to grip a thing, how the gripper is turned, and how far over what the thing
+    stands on the part begins that they grip, from the points of the thing.
+    """
     px = places.point(name, TO_GRASP)[1]
     seen = places.lift.surface(px, name).position_m
     assert seen is not None
     assert spot.position_m is not None
     top, support = float(seen[2]), places.support_z_m(name)
+    view, displaced = places.lift.view, _displaced(name, places, progress)
     try:
-        grip = grip_of(places.lift.view, places.box(name), px, support, grasp_z_m(top, support), fingers)
+        grip = grip_of(view, places.box(name), px, support, grasp_z_m(top, support), fingers, displaced)
     except GeometryError as problem:
         raise places.fail(f"{name} cannot be gripped: {problem}") from problem
     middle = ResolvedPoint(px, np.array([*grip.centre_m, top]), f"{spot.how}; {grip.how}")
-    return progress.carry(name, middle, places.lift), wrap_angle(grip.yaw_rad + progress.turn_of(name))
+    yaw_rad = wrap_angle(grip.yaw_rad + progress.turn_of(name))
+    return progress.carry(name, middle, places.lift), yaw_rad, grip.support_z_m - support
+
+
+def _displaced(name: str, places: Places, progress: MotionState) -> list[Displaced]:
+    """What earlier steps have moved, but for the thing itself: the fingers meet it where it is now."""
+    found = []
+    for other, moves in progress.moved.items():
+        target = places.grounded.get(other)
+        if other == name or target is None or target.box is None or places.lift.view.depth_m is None:
+            continue
+        was, points = seen_of(places.lift.view, target.box, places.support_z_m(other))
+        for move in moves:
+            if move.start_m is not None and move.end_m is not None:
+                c, s = np.cos(move.yaw_rad), np.sin(move.yaw_rad)
+                turn = np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
+                points = (points - move.start_m) @ turn + move.end_m
+        found.append(Displaced(was, points))
+    return found
 
 
 def _tool_goal(step: MoveStep, places: Places, progress: MotionState) -> tuple[ResolvedPoint, bool]:
@@ -83,7 +105,7 @@ def _tool_goal(step: MoveStep, places: Places, progress: MotionState) -> tuple[R
 
 
 def _at_height(
-    step: MoveStep, spot: ResolvedPoint, gripping: bool, places: Places, progress: MotionState
+    step: MoveStep, spot: ResolvedPoint, gripping: bool, places: Places, progress: MotionState, over_m: float
 ) -> ResolvedPoint:
     if spot.position_m is None:
         return spot
@@ -91,7 +113,7 @@ def _at_height(
     hanging = progress.held.hanging_m if progress.held is not None else 0.0
     match step.height:
         case "at" if gripping:
-            z, rule = grasp_z_m(surface, _support_now(places, step.to.target, progress)), "to grip it"
+            z, rule = grasp_z_m(surface, _support_now(places, step.to.target, progress) + over_m), "to grip it"
         case "at":
             z, rule = surface + hanging, "down to it"
         case "above":

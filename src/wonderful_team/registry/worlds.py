@@ -25,7 +25,7 @@ class WorldRow:
     """A simulator: what it is, and how its package is imported when it is first used.
 
     The package has `make_world(task, seed=…, **tiers)`, `task_names()` and `partitions(task)`; it may have `TIERS` (kinds of
-    harder tier that it makes itself), `check_ready()`, and, where users' functions become tasks, `task_of(function)` and
+    harder tier that it makes itself), `check_ready()`, `check_options(task)` where names may say more than a level, and, where users' functions become tasks, `task_of(function)` and
     `made_in_main(task)`.
     """
 
@@ -43,7 +43,8 @@ WORLDS: dict[str, WorldRow] = {
         lambda: importlib.import_module("wonderful_team.sims.tabletop"),
     ),
     "arms": WorldRow(
-        "MuJoCo, a UR5e with a two-finger gripper at a table: grasps by contact, colour and depth from above; the optional part arms",
+        "MuJoCo, a UR5e with a two-finger gripper at a table: grasps by contact, colour and depth from above; the optional part arms. "
+        "TASK@nudge=1 (also hand, remove, slip, depth, calibration, each 1 to 3) disturbs it",
         lambda: importlib.import_module("wonderful_team.sims.arms"),
     ),
     "fetch": WorldRow(
@@ -83,6 +84,20 @@ def check_ready(names: Iterable[str]) -> None:
     for world in dict.fromkeys(name.partition("/")[0] for name in names if not is_file_name(name)):
         if world in WORLDS:
             WORLDS[world].offer("check_ready", lambda: None)()
+
+
+def takes_options(name: str) -> bool:
+    """Whether a world reads what stands behind a task's @ itself, and can make it; levels are `task_partitions`.
+
+    Raises:
+        ConfigError: It reads that itself, and cannot make it.
+    """
+    world, _, task = name.partition("/")
+    check = WORLDS[world].offer("check_options", None) if world in WORLDS else None
+    if check is None:
+        return False
+    check(task)
+    return True
 
 
 def own_tiers(name: str) -> tuple[str, ...]:

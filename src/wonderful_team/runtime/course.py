@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
@@ -14,16 +13,18 @@ from wonderful_team.core.actions import (
     At,
     Beside,
     MoveStep,
+    MoveTo,
     OriginOf,
     Place,
     places_of,
 )
 from wonderful_team.core.geometry import Box
 from wonderful_team.core.geometry.arrays import Array
-from wonderful_team.core.motions import Carry, Motion, Slide, Stay
+from wonderful_team.core.motions import Carry, Reach, Slide, Stay
 from wonderful_team.core.values import GroundedTarget, Limits, Plan, PlannedAction, View
 from wonderful_team.images.keep_out import table_height_m
 from wonderful_team.images.relief import RAISED_M, Relief, covered, outline
+from wonderful_team.runtime.stage import Carried, Stage
 from wonderful_team.runtime.sweep import sweep_of
 
 RING_SHARE, LEAST_RING_PX = 0.15, 2.0
@@ -36,56 +37,6 @@ MOSTLY = 0.5
 """A patch of which this share or more belongs to what the plan has put there is that thing."""
 _MOST_POINTS = 4000
 """A thing is known well enough by so many points."""
-
-
-@dataclass(frozen=True, eq=False)
-class Carried:
-    """What a tool carries or pushes.
-
-    Attributes:
-        offsets_m: Its points from above, relative to the tool, shape (M, 2) [m]; None when its size is not known.
-        hanging_m: How far it hangs below the tool [m].
-    """
-
-    offsets_m: Array | None
-    hanging_m: float = 0.0
-
-    @property
-    def radius_m(self) -> float:
-        """How far it reaches from the tool [m]; 0 when that is not known."""
-        if self.offsets_m is None or not len(self.offsets_m):
-            return 0.0
-        return float(np.linalg.norm(self.offsets_m, axis=1).max())
-
-
-@dataclass(frozen=True, eq=False)
-class Stage:
-    """One action against the scene as it is expected before it.
-
-    Attributes:
-        motion: What the action does.
-        relief: The surface; None without depth.
-        own: Which of its points belong to what is carried or pushed, shape (N,) bool.
-        carried: What is carried or pushed; None for the bare tool.
-        meant: What the thing (or tool) is meant to meet: a shape on the table; None for nothing.
-        level: Whether the place has to be level with its surroundings: nothing was named to stand on.
-        stated: Whether a plan names the place; otherwise its numbers have to agree with the surface.
-        restored: It goes back to where it stood, so what was seen beside it there leaves room for it.
-        put: Which points belong to things that the plan itself has put somewhere, but for the named place and what the
-            plan puts there as well, shape (N,) bool.
-        support_m: What the thing stands on now, where that is not the table: points under it, shape (M, 3) [m]. They show once it is lifted.
-    """
-
-    motion: Motion
-    relief: Relief | None
-    own: Array | None
-    carried: Carried | None
-    meant: Any | None
-    level: bool
-    stated: bool
-    restored: bool = False
-    put: Array | None = None
-    support_m: Array | None = None
 
 
 class Course:
@@ -105,6 +56,10 @@ class Course:
         # What a robot holds from the start has a size that nobody has said.
         self._held = ("", Carried(None), np.zeros(0, dtype=np.int64), table_z_m) if holding else None
         self._at: tuple[str, Array] | None = None
+        # Points of what the fingers have just let go of: they still stand round it.
+        self._let_go = np.zeros(0, dtype=np.int64)
+        # How the tool was turned when it closed, and how the last move has turned it.
+        self._held_yaw_rad = self._yaw_rad = 0.0
         self._due: Callable[[], None] | None = None
 
     def next(self, planned: PlannedAction, tool_m: Array | None) -> Stage:
@@ -128,9 +83,18 @@ class Course:
             self._grip(motion.grip, tool_m)
         if isinstance(step, MoveStep):
             self._at = (step.to.target, np.zeros(3)) if step.height == "at" else None
-        carried = self._held[1] if self._held is not None else None
-        own = self._mask(self._held[2]) if self._held is not None and self._relief is not None else None
-        return Stage(motion, self._relief, own, carried, self._met(planned), False, False)
+        if isinstance(action, MoveTo):
+            self._yaw_rad = action.pose.yaw_rad
+        held = self._held
+        carried = None if held is None else held[1].turned(self._yaw_rad - self._held_yaw_rad)
+        own = self._mask(held[2]) if held is not None and self._relief is not None else None
+        taken = ""
+        if held is not None and isinstance(step, MoveStep) and isinstance(step.to, At) and isinstance(motion, Reach):
+            taken = self._taken(held[0], step.to.target, motion.points_m[-1])
+        meant = self._met(planned)
+        if isinstance(motion, Reach) and held is None:
+            meant, self._let_go = self._from_between(meant), np.zeros(0, dtype=np.int64)
+        return Stage(motion, self._relief, own, carried, meant, False, False, taken=taken)
 
     def _carry(self, planned: PlannedAction, way: Carry) -> Stage:
         places = dict(places_of(planned.step))
@@ -140,10 +104,34 @@ class Course:
         meant, level, stated = self._place(name, place, way, own)
         back = isinstance(place, OriginOf) and place.target == name and way.yaw_rad == 0 and self._returns(name, way)
         put = self._put("" if place is None else place.target)
-        stage = Stage(way, self._relief, own, carried, meant, level, stated, back, put, self._support(own, base))
+        taken = self._taken(name, place.target, way.end_m) if isinstance(place, At) else ""
+        stage = Stage(way, self._relief, own, carried, meant, level, stated, back, taken, put, self._support(own, base))
         self._due = partial(self._move, name, own, base, way.start_m, way.end_m, way.yaw_rad)
         self._lies_at[name] = place.target if isinstance(place, At) else ""
         return stage
+
+    def _taken(self, name: str, place: str, end_m: Array) -> str:
+        """Another thing that the plan names, lies on the place and has not been moved: what is put there lands on it, not in the place."""
+        target, relief = self._grounded.get(place), self._relief
+        if target is None or target.target.kind != "object" or relief is None or name == place:
+            return ""
+        whole = self.region(place, end_m)
+        for other, found in self._grounded.items():
+            if other in (name, place) or other in self._things or found.target.kind != "object" or found.box is None:
+                continue
+            region = self.region(other, end_m)
+            if whole is None or region is None or not whole.contains(region.centroid) or region.area >= whole.area:
+                continue
+            own, _ = self._own(other, np.append(end_m[:2], self._top_m(found.box)))
+            if own is not None and (own & relief.near(end_m, relief.cell_m)).any():
+                return found.target.words
+        return ""
+
+    def _top_m(self, box: Box) -> float:
+        """Height of the highest surface that shows in a box [m]."""
+        assert self._relief is not None
+        heights = self._relief.xyz_m[self._relief.in_box(box), 2]
+        return float(heights.max()) if len(heights) else self._table_z_m
 
     def _support(self, own: Array | None, base: float) -> Array | None:
         """What shows under a thing once it is lifted off something that is not the table."""
@@ -326,6 +314,7 @@ class Course:
                 middle = self._relief.xyz_m[own, :2].mean(axis=0) if own.any() else tool_m[:2]
                 end = np.append(tool_m[:2], float(tool_m[2]) - carried.hanging_m)
                 self._move(name, own, base, np.append(middle, base), end, 0.0)
+                self._let_go = indices
             self._held = None
         elif self._held is None:
             if tool_m is None or self._at is None:
@@ -335,6 +324,14 @@ class Course:
             points, base = self._own(name, tool_m)
             indices = np.zeros(0, dtype=np.int64) if points is None else np.flatnonzero(points)
             self._held = (name, self._carried(name, points, tool_m, base), indices, base)
+            self._held_yaw_rad = self._yaw_rad
+
+    def _from_between(self, meant: Any | None) -> Any | None:
+        """What the open fingers may come near to on their way off what they have let go of, with that thing itself."""
+        if self._relief is None or not len(self._let_go):
+            return meant
+        thing = outline(self._relief.xyz_m[self._let_go, :2], self._relief.spacing_m)
+        return thing if meant is None else meant.union(thing)
 
     def _met(self, planned: PlannedAction) -> Any | None:
         """What a move is meant to come near to: what its step names, or what stands at its end."""
@@ -343,7 +340,9 @@ class Course:
             return None
         end = np.asarray(getattr(getattr(action, "pose", None), "position_m", np.zeros(3)))
         if step.to.target in self._grounded:
-            return self.region(step.to.target, end)
+            # A free area is named for being free: nothing that stands in it may be met by what is put there.
+            area = self._grounded[step.to.target].target.kind == "area"
+            return None if area and self._held is not None else self.region(step.to.target, end)
         return self._relief.standing(end[:2], self._table_z_m)
 
 

@@ -8,6 +8,7 @@ from functools import partial
 from pathlib import Path
 
 from wonderful_team.core import deadline
+from wonderful_team.core.actions import Home, HomeStep
 from wonderful_team.core.geometry import Box
 from wonderful_team.core.protocols import Act, World
 from wonderful_team.core.text import counted
@@ -23,11 +24,12 @@ from wonderful_team.core.values import (
 )
 from wonderful_team.errors import ConfigError
 from wonderful_team.runtime.approval import Approval, Approver, Declined, Proposal
-from wonderful_team.runtime.course import Stage, stages_of
+from wonderful_team.runtime.course import stages_of
 from wonderful_team.runtime.gate import check_gate
 from wonderful_team.runtime.read_plan_checks import read_plan_checks
 from wonderful_team.runtime.rollout_log import RolloutEnd, RolloutLog
 from wonderful_team.runtime.seen_checks import still_free_checks
+from wonderful_team.runtime.stage import Stage
 from wonderful_team.runtime.staleness import staleness_checks, touched, watched
 
 
@@ -63,11 +65,18 @@ class Execution:
         self._page = page
         self._strict = strict
         self._age_limit_s: float | None = None
+        self._again = False
         self.refusal: GateReport | None = None
         self.declined: Declined | None = None
 
     def run(
-        self, decision: Act, then: Observation | None, horizon: int | None, *, read: ReadPlan | None = None
+        self,
+        decision: Act,
+        then: Observation | None,
+        horizon: int | None,
+        *,
+        read: ReadPlan | None = None,
+        again: bool = False,
     ) -> RolloutEnd | None:
         """Gate and execute; None when all actions ran, else why not. `final` when no further attempt makes sense.
 
@@ -76,8 +85,10 @@ class Execution:
             then: The picture that it was made from; None when that is not at hand.
             horizon: The world's limit on actions, over the whole run.
             read: The plan that was read beforehand, if this is where it has to run: it runs, or nothing does.
+            again: Whether the policy will be asked again: an arm that failed is then brought out of the picture.
         """
         self.refusal = self.declined = None
+        self._again = again
         self._age_limit_s = self._max_age_s if read is None or read.same_clock else None
         now, report = self._gate(decision, then, read)
         self._progress.passed_gate("before motion", report)
@@ -175,6 +186,8 @@ class Execution:
             expected_change += touched(planned, plan, last.main, seen.main)
             last = seen
             ends = index + 1 == len(actions) or actions[index + 1].step.subgoal != planned.step.subgoal
+            if not report.executed:
+                last = self._out_of_sight(planned, before, last, reports)
             if ends or not report.executed:
                 self._close(planned, before, last, reports)
                 before, reports = last, []
@@ -197,6 +210,33 @@ class Execution:
         self._progress.ran_action(planned, report)
         reports.append(report)
         return report
+
+    def _out_of_sight(
+        self, failed: PlannedAction, before: Observation, last: Observation, reports: list[StepReport]
+    ) -> Observation:
+        """Home with an empty hand that has failed, through the gate like everything else: from there the whole scene is seen.
+
+        Where a person consents to plans, nothing moves that she has not read; what is held stays where it is.
+        """
+        idle = last.robot is not None and not last.robot.holding and not isinstance(failed.action, Home)
+        if not (self._again and idle and self._approval is None and Home.kind in self._world.vocabulary.kinds):
+            return last
+        home = PlannedAction(HomeStep(failed.step.subgoal), Home())
+        report = check_gate(
+            (home,),
+            vocabulary=self._world.vocabulary,
+            limits=self._world.limits,
+            plan=None,
+            then=None,
+            now=last,
+            must_run=True,
+            max_age_s=self._age_limit_s,
+        )
+        self._progress.passed_gate("before going home", report)
+        if not report.admitted:
+            return last
+        self._execute(home, before, reports)
+        return self._world.observe()
 
     def _still_fresh(
         self,

@@ -31,10 +31,11 @@ from wonderful_team.core.values import (
 from wonderful_team.images.keep_out import table_height_m
 from wonderful_team.runtime.agreement import agreement_checks, class_checks, form_checks, repeat_checks, size_checks
 from wonderful_team.runtime.approval import Approval, Declined, approval_checks, approved_id
-from wonderful_team.runtime.course import Course, Stage
+from wonderful_team.runtime.course import Course
 from wonderful_team.runtime.keep_out_checks import keep_out_checks, keep_out_px_checks
 from wonderful_team.runtime.passing import Piece, pieces_of, profile_of
-from wonderful_team.runtime.seen_checks import height_checks, least_clearance_m, place_checks, way_checks
+from wonderful_team.runtime.seen_checks import height_checks, least_clearance_m, place_checks, taken_checks, way_checks
+from wonderful_team.runtime.stage import Stage
 from wonderful_team.runtime.staleness import MAX_AGE_S, staleness_checks, watched
 from wonderful_team.runtime.sweep import Sweep, sweep_of, swept_path_px
 
@@ -189,7 +190,7 @@ class _Passage:
             checks.append(_carry_check(motion, limits))
         if not isinstance(motion, Drive):
             checks += height_checks(stage, limits, self._measured)
-            checks += place_checks(stage, limits)
+            checks += place_checks(stage, limits) + taken_checks(stage)
             pieces = pieces_of(stage, sweep, self._tool_radius_m)
             self._way = stage, pieces
             checks += way_checks(stage, pieces, self._tool_radius_m)

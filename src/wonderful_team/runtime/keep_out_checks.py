@@ -14,7 +14,7 @@ from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.motions import Carry, Leave, Slide, Stay
 from wonderful_team.core.values import GateCheck, KeepOut, Limits, PlannedAction
 from wonderful_team.images.keep_out import line, region_m, region_px, table_height_m
-from wonderful_team.runtime.course import Carried
+from wonderful_team.runtime.stage import Carried
 from wonderful_team.runtime.sweep import Sweep, swept_path_px
 
 UNKNOWN_REACH_M = 0.1

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 import shapely
@@ -13,8 +14,8 @@ from shapely import LineString, Point
 from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.motions import Carry, Reach, Slide
 from wonderful_team.core.values import HeightProfile
-from wonderful_team.images.relief import Relief
-from wonderful_team.runtime.course import Stage
+from wonderful_team.images.relief import Relief, outline
+from wonderful_team.runtime.stage import Stage
 from wonderful_team.runtime.sweep import Sweep
 
 PROUD_M = 0.01
@@ -92,7 +93,10 @@ def pieces_of(stage: Stage, sweep: Sweep, tool_radius_m: float) -> tuple[Piece, 
             whole = path if sweep.transit_m is None else np.vstack([sweep.transit_m, path])
             ends = zip(whole[:-1], whole[1:], strict=True) if len(whole) > 1 else [(whole[0], whole[0])]
             own, meant = stage.own, stage.meant
-            return tuple(_over(a, b, "under the way", reach, hanging, stage.relief, own, meant) for a, b in ends)
+            return tuple(
+                _over(a, b, "under the way", reach, hanging, stage.relief, own, meant, _under(b, stage, tool_radius_m))
+                for a, b in ends
+            )
     return ()
 
 
@@ -113,13 +117,17 @@ def _over(
     relief: Relief | None,
     own: Array | None,
     meant: object | None = None,
+    upright: Any | None = None,
 ) -> Piece:
-    """A piece with every seen point that what passes comes over, but for its own."""
+    """A piece with every seen point that what passes comes over, but for its own; `upright`: what it covers where it goes straight up or down."""
     if relief is None or not len(relief.xyz_m):
         return Piece(start, end, check, hanging_m)
     flat = float(np.linalg.norm(end[:2] - start[:2]))
-    along = LineString([start[:2], end[:2]]) if flat > UPRIGHT_M else Point(float(end[0]), float(end[1]))
-    found = relief.inside(along.buffer(reach_m))
+    if flat > UPRIGHT_M:
+        covers = LineString([start[:2], end[:2]]).buffer(reach_m)
+    else:
+        covers = _disc(end, reach_m) if upright is None else upright
+    found = relief.inside(covers)
     if own is not None:
         found &= ~own
     points = relief.xyz_m[found]
@@ -131,6 +139,19 @@ def _over(
         share = np.clip((points[:, :2] - start[:2]) @ (end[:2] - start[:2]) / flat**2, 0.0, 1.0)
         lowest = start[2] + share * (end[2] - start[2])
     return Piece(start, end, check, hanging_m, share, points[:, 2], lowest - hanging_m - points[:, 2], named)
+
+
+def _under(at_m: Array, stage: Stage, tool_radius_m: float) -> Any:
+    """What the tool covers of the table where it goes straight up or down, with the outline of what it carries."""
+    tool = _disc(at_m, tool_radius_m)
+    offsets = stage.carried.offsets_m if stage.carried is not None else None
+    if offsets is None or not len(offsets) or stage.relief is None:
+        return tool
+    return tool.union(outline(offsets + at_m[:2], stage.relief.spacing_m))
+
+
+def _disc(at_m: Array, radius_m: float) -> Any:
+    return Point(float(at_m[0]), float(at_m[1])).buffer(radius_m)
 
 
 def profile_of(action: int, pieces: Sequence[Piece], least_m: float, actions: int, stays: bool) -> HeightProfile | None:

@@ -165,7 +165,7 @@ def _attempts(
             return _said(decision, progress)
         left -= replanning
         then = observation if read is None else read.observation
-        halted = execution.run(decision, then, horizon, read=read)
+        halted = execution.run(decision, then, horizon, read=read, again=left > 0)
         if halted is not None and halted.final:
             return halted
         read, refused = None, execution.refusal

@@ -12,8 +12,8 @@ from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.motions import Carry, Motion, Reach, Slide
 from wonderful_team.core.values import GateCheck, Limits, View
 from wonderful_team.images.relief import Relief, covered, outline
-from wonderful_team.runtime.course import Stage
 from wonderful_team.runtime.passing import LEAST_SPECKS, PROUD_M, Piece
+from wonderful_team.runtime.stage import Stage
 
 AGREE_M = 0.02
 """How far the height of a pick or of a place that no plan names may be from the surface seen there [m]."""
@@ -200,6 +200,13 @@ def _level(shape: Any, z_m: float, relief: Relief, others: Array, limits: Limits
     return [
         GateCheck(None, "place is level", share >= LEVEL_SHARE, value, f"at least {100 * LEVEL_SHARE:.0f} %", margin)
     ]
+
+
+def taken_checks(stage: Stage) -> list[GateCheck]:
+    """Whether something that the plan names, and has not moved, lies where a thing is to go."""
+    if not stage.taken:
+        return []
+    return [GateCheck(None, "place is open", False, f"the {stage.taken} lies there", "moved away before")]
 
 
 def way_checks(stage: Stage, pieces: Sequence[Piece], tool_radius_m: float) -> list[GateCheck]:

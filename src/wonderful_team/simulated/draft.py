@@ -200,7 +200,8 @@ def _free(plan: Written, to: Spot, words: Names, meaning: Meaning, name: str, sp
     # The same words must not mean two places.
     where += f"; move {spots}" if spots > 1 else ""
     said = "free area" if spots == 1 else f"free area for the {name}"
-    return plan.target("area", said, meaning, "place", where), "to a free area"
+    lies = f" in or on the {words.of(to.thing)}" if to.thing is not None else ""
+    return plan.target("area", said, meaning, "place", where), f"to a free area{lies}"
 
 
 def _trace(plan: Written, move: Trace, words: Names) -> tuple[str, list[str], str]:

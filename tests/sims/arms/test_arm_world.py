@@ -82,7 +82,7 @@ def test_what_slips_out_of_the_fingers_is_noticed(world: ArmWorld) -> None:
     table.put(name, np.array([0.65, 0.3, 0.0]), 0.0)
     report = world.execute(actions[5])
     assert not report.executed
-    assert "closed on nothing" in str(report.fault)
+    assert "hold nothing any more" in str(report.fault)
     assert report.measured["holding"] is False
 
 
@@ -90,7 +90,9 @@ def test_what_slips_out_of_the_fingers_is_noticed(world: ArmWorld) -> None:
 def test_a_touch_on_the_way_down_stops_the_arm_and_is_reported(world: ArmWorld) -> None:
     name = wanted(world)
     x, y, _ = at(world, name)
-    world.execute(Gripper("close"))
+    empty = world.execute(Gripper("close"))
+    assert not empty.executed
+    assert "closed on nothing" in str(empty.fault)
     report = world.execute(MoveTo(Pose.at((x, y, 0.012))))
     assert not report.executed
     assert "touched something" in str(report.fault)

@@ -77,7 +77,7 @@ def _listed(*lists: str) -> list[str]:
 
 
 def test_there_are_the_29_shapes_of_vima_bench_by_name() -> None:
-    fruits = set(shape_names("fruit")) | {"paper", "price tag", "label", "cube", "plate", *BOTTLES}
+    fruits = set(shape_names("fruit")) | {"paper", "price tag", "label", "cube", "plate", "box", "lid", *BOTTLES}
     assert sorted(set(shape_names()) - fruits) == sorted(_listed(CARRIED, HOLDING, SWEPT))
     assert len(_listed(CARRIED, HOLDING, SWEPT)) == 29
 

@@ -5,15 +5,21 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
+import numpy as np
+
 from wonderful_team.offline.description import FREE
 from wonderful_team.offline.eyes import Eyes
 from wonderful_team.offline.goals.aims import Aim, Named, seen_named
 from wonderful_team.offline.vision import Thing
+from wonderful_team.offline.vision.table import height_above_table
 
 LOWER_M = 0.002
 """What is lower than a thing by more than this does not lie on it [m]."""
 SAME_COLOURS = 0.6
 """Likeness of colours from which two patches belong to one thing (0 to 1)."""
+
+DEEP_M, HOLLOW_M, HOLLOW_SHARE = 0.03, 0.012, 0.05
+"""A container is at least so high; where it is open, at least this share of its middle lies so far below its top [m]."""
 
 
 def _shows_through(upper: Thing, thing: Thing, eyes: Eyes) -> bool:
@@ -38,6 +44,25 @@ def obstacles(aim: Aim, others: Sequence[Aim], eyes: Eyes) -> list[Aim]:
         for upper in eyes.scene.on(thing)
         if upper.area_px <= thing.area_px and upper.number not in elsewhere and not _shows_through(upper, thing, eyes)
     ]
+
+
+def closed_by(holder: Thing | None, eyes: Eyes) -> Thing | None:
+    """What stands on the middle of a thing that should be open there and shows no hollow; None where it may be open.
+
+    A thing in an open container stands lower than what closes one: round it the container's floor shows. Only depth tells.
+    """
+    depth = eyes.looked_at.depth_m
+    if holder is None or holder.height_m is None or holder.height_m < DEEP_M or depth is None:
+        return None
+    uppers = [one for one in eyes.scene.on(holder) if one.box.contains(holder.box.centre)]
+    heights = height_above_table(depth, np.isfinite(depth))
+    if not uppers or heights is None:
+        return None
+    middle = holder.box.scaled(0.5)
+    inside = heights[round(middle.y0) : round(middle.y1) + 1, round(middle.x0) : round(middle.x1) + 1]
+    known = inside[np.isfinite(inside)]
+    hollow = float((known < holder.height_m - HOLLOW_M).mean()) if known.size else 1.0
+    return uppers[0] if hollow < HOLLOW_SHARE else None
 
 
 def out_of_the_way(thing: Thing, eyes: Eyes, why: str) -> Aim:

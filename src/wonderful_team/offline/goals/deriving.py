@@ -21,6 +21,7 @@ from wonderful_team.offline.eyes import (
     unique_words,
 )
 from wonderful_team.offline.goals.aims import Aim, Aims, Named
+from wonderful_team.offline.goals.clearing import closed_by
 from wonderful_team.offline.goals.ranking import ranked_aims
 from wonderful_team.offline.goals.showing import shown_aims
 from wonderful_team.offline.goals.sweeps import swept_aims
@@ -153,6 +154,11 @@ def _places(
     fits = goal.how == "in" or (goal.how == "on" and goal.what is not None and goal.what.noun in HOLDERS)
     held = eyes.thing(things[0].number) if len(things) == 1 and fits else None
     to = None if goal.what is None else _one(goal.what, eyes, result, strict, taken=taken, holds=held)
+    shut = closed_by(eyes.thing(to.number), eyes) if goal.how == "in" and to is not None else None
+    if to is not None and shut is not None:
+        said = f"the {to.words} is closed: it shows no opening, and the {seen_as(eyes, shut)} stands on what covers it"
+        said += "; no way is known to open it"
+        result.absent += [] if said in result.absent else [said]
     return to, None if goal.other is None else _one(goal.other, eyes, result, strict, taken=taken)
 
 

@@ -1,6 +1,6 @@
 """Arms at a table: real arm models in MuJoCo that run the arm's vocabulary by contact. Needs the optional part `arms`."""
 
-from wonderful_team.sims.arms.options import TIERS
+from wonderful_team.sims.arms.options import TIERS, asked
 from wonderful_team.sims.arms.rows import ARMS, check_ready
 from wonderful_team.sims.arms.tasks import task_names
 from wonderful_team.sims.arms.world import ArmWorld
@@ -14,4 +14,13 @@ def partitions(name: str) -> tuple[str, ...]:
     return ()
 
 
-__all__ = ["ARMS", "TIERS", "ArmWorld", "check_ready", "make_world", "partitions", "task_names"]
+def check_options(task: str) -> None:
+    """Whether what stands behind a task's name can be asked for, as in "block_in_bowl@depth=1@nudge=1".
+
+    Raises:
+        ConfigError: It cannot; says what can.
+    """
+    asked(task, None, 0, 0)
+
+
+__all__ = ["ARMS", "TIERS", "ArmWorld", "check_options", "check_ready", "make_world", "partitions", "task_names"]

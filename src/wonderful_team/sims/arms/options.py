@@ -1,11 +1,13 @@
-"""What can be asked of an arm's world behind the task's name: "block_in_bowl@xarm7@depth=2@calibration=1"."""
+"""What can be asked of an arm's world behind the task's name: "block_in_bowl@xarm7@depth=2@calibration=1@nudge=1"."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from wonderful_team.errors import ConfigError
+from wonderful_team.sims.arms.disturbances import DISTURBANCES
 from wonderful_team.sims.arms.rows import ARMS, DEFAULT
 
 TIERS = ("depth", "calibration")
@@ -19,12 +21,14 @@ class Asked:
     Attributes:
         depth: Faults of the depth sensor, 0 (none) to 3.
         calibration: Error of the top camera's calibration, 0 (none) to 3.
+        disturbances: How often each kind of disturbance happens, 1 to 3; see `disturbances.py`.
     """
 
     task: str
     arm: str = DEFAULT
     depth: int = 0
     calibration: int = 0
+    disturbances: Mapping[str, int] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         for name in TIERS:
@@ -48,11 +52,15 @@ def asked(name: str, arm: str | None, depth: int, calibration: int) -> Asked:
                 raise ConfigError(f"{tier}: the name says {level}, the option {getattr(found, tier)}; say it once")
             more: dict[str, Any] = {tier: int(level)}
             found = replace(found, **more)
+        elif equals and tier in DISTURBANCES and level in map(str, range(1, HARDEST + 1)):
+            if tier in found.disturbances:
+                raise ConfigError(f"{name!r}: {tier} is said twice; say it once")
+            found = replace(found, disturbances={**found.disturbances, tier: int(level)})
         elif part in ARMS and arm in (None, part):
             found = replace(found, arm=part)
         else:
             raise ConfigError(
-                f"{name!r}: {part!r} is no option; after @ come an arm ({', '.join(ARMS)}) or "
-                f"{' or '.join(f'{tier}=1 to {tier}={HARDEST}' for tier in TIERS)}"
+                f"{name!r}: {part!r} is no option; after @ come an arm ({', '.join(ARMS)}) or any of "
+                f"{', '.join(f'{tier}=1 to {tier}={HARDEST}' for tier in (*TIERS, *DISTURBANCES))}"
             )
     return found

@@ -44,6 +44,7 @@ class ArmTruth(TableTruth[ArmTable]):
             "arm": table.asked.arm,
             "things": things,
             "held": table.held(),
+            "disturbances": [to_jsonable(one) for one in table.disturbances.happened],
             "grips": [to_jsonable(grip) for grip in table.grips],
             "goals": [to_jsonable(goal) for goal in table.rules.goals],
             "words": dict(table.scene.words),

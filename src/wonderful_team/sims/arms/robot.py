@@ -290,6 +290,14 @@ class Robot:
         self.closed = closed
         return self._ended(goal, yaw, pressed, "")
 
+    def loosen(self) -> None:
+        """The fingers give way, as when something slips: nobody has told the gripper to open."""
+        self._state.ctrl[self._grip] = self._built.row.grip_ctrl[0]
+
+    def tighten(self) -> None:
+        """The fingers close again as they were told to."""
+        self._state.ctrl[self._grip] = self._built.row.grip_ctrl[1 if self.closed else 0]
+
     def _keep(self, goal: Array, yaw_rad: float, q: Array) -> Array:
         """Stay with the middle between the fingertips where it is, while the fingers swing."""
         found = self.kinematics.solve(*self._flange_at(goal, yaw_rad), start=q)

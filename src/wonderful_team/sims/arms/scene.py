@@ -24,10 +24,10 @@ APART_M = 0.14
 
 
 class Work(Protocol):
-    """What a task does beside moving things: its tool leaves something behind that the scorer looks at.
+    """What a task does beside moving things: its tool leaves something behind that the scorer looks at, or its steps matter.
 
     Attributes:
-        facts: What planners are told of it.
+        facts: What planners are told of its tool; "" for the gripper alone.
     """
 
     facts: str
@@ -54,6 +54,24 @@ class Work(Protocol):
 
     def oracle(self, poses: Poses) -> Sequence[Action]:
         """Actions that do it from here; [] when it is done."""
+        ...
+
+
+class Sorting(Protocol):
+    """Work in which things have to go somewhere.
+
+    Attributes:
+        wants: Their names, in the order in which the task names them.
+    """
+
+    wants: tuple[str, ...]
+
+    def arrived(self, name: str, poses: Poses) -> bool:
+        """Whether one of them is where it has to go."""
+        ...
+
+    def placed_by_hand(self, name: str) -> None:
+        """Somebody else than the robot moves a thing."""
         ...
 
 

@@ -9,13 +9,16 @@ from typing import Any
 
 import numpy as np
 
+from wonderful_team.core.geometry.arrays import Array
+from wonderful_team.core.protocols import offers
 from wonderful_team.core.values import Instruction
 from wonderful_team.sims.arms.cameras import SIZE_PX, lenses, sensed
+from wonderful_team.sims.arms.disturbances import Disturbances, both
 from wonderful_team.sims.arms.model import BuiltArm, build
 from wonderful_team.sims.arms.options import Asked
 from wonderful_team.sims.arms.robot import Moved, Robot
 from wonderful_team.sims.arms.rows import find_arm
-from wonderful_team.sims.arms.scene import ArmScene
+from wonderful_team.sims.arms.scene import ArmScene, Sorting
 from wonderful_team.sims.tabletop.appearance import PLAIN_LIGHT, Look
 from wonderful_team.sims.tabletop.engine import mj
 from wonderful_team.sims.tabletop.goals import Poses, footprint_of
@@ -80,10 +83,14 @@ class ArmTable(SimulatedTable):
         mj.mj_forward(self.built.model, self._state)
         self.robot = Robot(self.built, self._state)
         self.rest()
+        self.disturbances = Disturbances(self, dict(asked.disturbances))
         if self.work is not None:
             self.work.begin(self.built, self._state, self.robot)
             self.robot.each_step = self.work.step
             self.rest()
+        if asked.disturbances:
+            watched = [self.disturbances.step] if self.work is None else [self.work.step, self.disturbances.step]
+            self.robot.each_step = both(*watched)
         self._state.time = 0.0
         self._start = self.poses()
         self.grips: list[Grip] = []
@@ -140,12 +147,31 @@ class ArmTable(SimulatedTable):
     def grip(self, closed: bool, tight: bool) -> Moved:
         """Close or open the fingers, and keep in mind what came of it."""
         x, y, _ = self.robot.tool_m
+        held = self.held() if self.robot.closed else ()
         moved = self.robot.grip(closed, tight)
         if closed:
             self.grips.append(Grip(self.thing_at(float(x), float(y)), self.held()))
         else:
             self.rest()
+            self.disturbances.let_go(held)
         return moved
+
+    def put(self, name: str, position_m: Array, yaw_rad: float) -> None:
+        if offers(self.work, Sorting):
+            self.work.placed_by_hand(name)
+        super().put(name, position_m, yaw_rad)
+
+    def wanted_things(self) -> tuple[str, ...]:
+        """Things that have to go into or onto something, in the order in which the task names them."""
+        if offers(self.work, Sorting):
+            return self.work.wants
+        return tuple(dict.fromkeys(goal.thing for goal in self.rules.goals if goal.inside))
+
+    def arrived(self, name: str) -> bool:
+        """Whether such a thing is where it has to go."""
+        if offers(self.work, Sorting):
+            return self.work.arrived(name, self.poses())
+        return all(goal.met(self.poses(), self.things) for goal in self.rules.goals if goal.thing == name)
 
     def thing_at(self, x_m: float, y_m: float) -> str | None:
         """The highest thing over a point of the table."""

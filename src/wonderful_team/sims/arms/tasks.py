@@ -12,6 +12,7 @@ from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.errors import UnknownNameError
 from wonderful_team.sims.arms.bottle_tasks import cap, shake
 from wonderful_team.sims.arms.drawing import Drawing
+from wonderful_team.sims.arms.lid import ClosedBox
 from wonderful_team.sims.arms.scene import ArmScene
 from wonderful_team.sims.arms.star import star_points, star_problem
 from wonderful_team.sims.arms.wiping import Wiping
@@ -30,6 +31,10 @@ PAPERS = ("green", "yellow", "orange", "cyan", "pink")
 NEAR_ROOM_M: Room = (0.3, -0.3, 0.66, 0.3)
 STAR_M = 0.065
 """From the middle of the oracle's star to its tips [m]."""
+BOX_ROOM_M: Room = (0.36, -0.3, 0.62, 0.3)
+"""Where the closed box stands: its middle can be reached from above, and so can that of a lid beside it [m]."""
+HEIGHTS = (0.7, 1.0, 1.3, 1.6)
+"""Of the blocks beside the closed box, as many times as high as wide."""
 FRUITS = ("all_match", "no_area", "misplaced", "both")
 _TASKS: dict[str, TabletopTask] = {}
 
@@ -101,6 +106,39 @@ def wipe(scene: Scene, rng: np.random.Generator) -> None:
 
 task("shake", instruction="shake the {colour} bottle", horizon=2 * MOVES)(shake)
 task("cap", instruction="open the {colour} bottle", horizon=2 * MOVES)(cap)
+
+
+def _lid_box(scene: Scene, count: int) -> None:
+    """A closed box and four blocks of different heights; the first `count` of them are to go in."""
+    colours = [str(name) for name in scene.colours.permutation(COLOURS)[:4]]
+    paints = [str(name) for name in scene.colours.permutation(BOWLS)]
+    closed = scene.add("box", paints[0], yaw_rad=0.0, name="box", within=BOX_ROOM_M)
+    lid = scene.add(
+        "lid", paints[1], at=(closed.x_m, closed.y_m), yaw_rad=0.0, name="lid", lifted_m=closed.body.height_m
+    )
+    heights = [float(h) for h in scene.layout.permutation(HEIGHTS)]
+    blocks = [
+        scene.add("cube", colour, name=f"{colour} block", stretch=stretch)
+        for colour, stretch in zip(colours, heights, strict=True)
+    ]
+    # There is room for the lid beside everything.
+    scene.free_place(lid)
+    scene.say(**{f"colour{k}" if count > 1 else "colour": colours[k] for k in range(count)})
+    assert isinstance(scene, ArmScene)
+    scene.work = ClosedBox(closed, lid, blocks[:count], blocks[count:])
+
+
+@task("lid_box/one", instruction="put the {colour} block into the box", horizon=3 * MOVES)
+def lid_box_one(scene: Scene, rng: np.random.Generator) -> None:
+    """The box with a lid: one of four blocks of different heights goes in, and nothing says that the box is closed."""
+    _lid_box(scene, 1)
+
+
+@task("lid_box/two", instruction="put the {colour0} block and the {colour1} block into the box", horizon=4 * MOVES)
+def lid_box_two(scene: Scene, rng: np.random.Generator) -> None:
+    """The box with a lid: two of four blocks of different heights go in, and nothing says that the box is closed."""
+    _lid_box(scene, 2)
+
 
 for _variation in FRUITS:
     _found = find_task(f"fruit_placement/{_variation}")

@@ -34,10 +34,10 @@ REASONS = {
     "wrist": "the wrist does not turn so far from how it stands: let go, turn back, and take hold again",
 }
 
-
 TRACED = 60
 """Most points of a measured path that a report holds."""
-LOST = "the fingers have closed on nothing: what they held slipped or was knocked out"
+EMPTY = "the fingers have closed on nothing"
+LOST = "the fingers hold nothing any more: what they held slipped or was knocked out"
 
 
 class ArmWorld(SimulatedWorld[ArmTable, ArmTruth]):
@@ -103,6 +103,8 @@ class ArmWorld(SimulatedWorld[ArmTable, ArmTruth]):
         report = self._report(action, fault, moved)
         robot.trace = None
         held, self._held = self._held, robot.holding
+        if isinstance(action, Gripper) and action.state != "open" and not robot.holding:
+            return StepReport(action, False, report.measured, EMPTY)
         if held and not robot.holding and not isinstance(action, Gripper):
             return StepReport(action, False, report.measured, LOST)
         return report
@@ -197,7 +199,7 @@ def _facts(row: ArmRow, table: ArmTable) -> str:
         "both sides of the thing. How the gripper is turned to grip is computed from depth.",
         "The gripper turns at most once round, and less where its wrist comes to the end of its range: such a turn is refused.",
     ]
-    if work is not None:
+    if work is not None and work.facts:
         tool = [work.facts] if isinstance(work, HeldTool) else [*tool, work.facts]
     return "\n".join(
         (

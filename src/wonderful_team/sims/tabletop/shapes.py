@@ -45,6 +45,12 @@ BASES = ("pan", "bowl", "frame", "square", "container", "pallet")
 AREAS = ("paper", "line")
 PLATE, PLATE_M, WELL_M = "plate", (0.1, 0.006), 0.08
 """A flat round plate: its radius and height, and the radius of the part inside its edge [m]."""
+BOX, BOX_M = "box", (0.07, 0.008, 0.104, 0.055)
+"""A box with a wide rim: half the room inside it, thickness of its walls, half of what its rim covers, and its height [m]."""
+LID, LID_M = "lid", (0.077, 0.008)
+"""A lid that rests on that rim: half its side, thickness of its plate [m]."""
+HANDLE_M = (0.01, 0.03, 0.04)
+"""The handle on the lid: half its width and half its length, and the height of its top over the lid's underside [m]."""
 SMALL = {"shorter block": (BLOCK_M, 0.03), "small block": (0.03, 0.03), "cube": (0.045, 0.045)}
 """Cuboids by name: side and height [m]."""
 CARDS = {"price tag": (0.11, 0.075), "label": (0.11, 0.044)}
@@ -99,7 +105,7 @@ def shape_names(kind: Kind | None = None) -> tuple[str, ...]:
     return (
         chosen[kind]
         if kind
-        else (*KIT, *SMALL, *BASES, THREE_SIDED, PLATE, *AREAS, *CARDS, *bottles.BOTTLES, *fruits.NAMES)
+        else (*KIT, *SMALL, *BASES, THREE_SIDED, PLATE, BOX, LID, *AREAS, *CARDS, *bottles.BOTTLES, *fruits.NAMES)
     )
 
 
@@ -123,6 +129,10 @@ def shape(name: str, stretch: float = 1.0) -> Shape:
         return _three_sided()
     if name == PLATE:
         return _plate()
+    if name == BOX:
+        return _box()
+    if name == LID:
+        return _lid()
     if name in AREAS or name in CARDS:
         width, depth = {"paper": (0.17, 0.17), "line": LINE_M, **CARDS}[name]
         across, along = width / 2, depth / 2
@@ -156,6 +166,24 @@ def _plate() -> Shape:
     (radius, height), well = PLATE_M, Point(0, 0).buffer(WELL_M)
     edge = Point(0, 0).buffer(radius).difference(well)
     return _from_layers(PLATE, "base", [(edge, 0.0, height)], [(well, 0.0, height)], movable=False)
+
+
+def _box() -> Shape:
+    """Walls and a floor; a rim stands out from the walls at their top, so that what a lid rests on shows round the lid."""
+    inner, thick, rim, height = BOX_M
+    room, walls, edge = (box(-half, -half, half, half) for half in (inner, inner + thick, rim))
+    layers: list[Layer] = [
+        (walls.difference(room), 0.0, height - 0.006),
+        (edge.difference(room), height - 0.006, height),
+    ]
+    return _from_layers(BOX, "base", layers, [(room, 0.0, 0.005)], movable=False)
+
+
+def _lid() -> Shape:
+    """A flat plate with a narrow upright handle on its middle."""
+    (half, thick), (across, along, top) = LID_M, HANDLE_M
+    plate, handle = box(-half, -half, half, half), box(-along, -across, along, across)
+    return _from_layers(LID, "kit", [(plate, 0.0, thick), (handle, thick, top)], [], movable=True)
 
 
 def _kit(name: str) -> Shape:

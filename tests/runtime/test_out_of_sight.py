@@ -1,0 +1,66 @@
+"""After a failed action an arm with an empty hand goes home, so that the next plan is made from a picture of the whole scene."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+import pytest
+
+from tests.runtime.runtime_fakes import SquaresWorld
+from wonderful_team.core.actions import ARM, Action, Gripper, OpenStep, Vocabulary
+from wonderful_team.core.protocols import Act, Done, GaveUp, Situation
+from wonderful_team.core.values import Observation, PlannedAction, RobotState, StepReport, Trial
+from wonderful_team.runtime import rollout
+
+
+@dataclass
+class FailingArm(SquaresWorld):
+    """An arm of which the first action fails."""
+
+    vocabulary: Vocabulary = ARM
+    holding: bool = False
+    done: list[Action] = field(default_factory=list)
+
+    def observe(self) -> Observation:
+        seen = super().observe()
+        return replace(seen, robot=RobotState(np.array([0.5, 0.0, 0.2]), 1.0, self.holding))
+
+    def execute(self, action: Action) -> StepReport:  # type: ignore[override]
+        self.done.append(action)
+        first = len(self.done) == 1
+        return StepReport(action, not first, {}, "it slipped" if first else None)
+
+
+@dataclass
+class Opens:
+    """Opens the gripper, and is done when it is asked again."""
+
+    name: str = "opens"
+    seen: list[Situation] = field(default_factory=list)
+
+    def decide(self, situation: Situation) -> Act | Done | GaveUp:
+        self.seen.append(situation)
+        open_ = PlannedAction(OpenStep("G1"), Gripper("open"))
+        return Act((open_,)) if len(self.seen) == 1 else Done("as good as it gets")
+
+
+def ran(world: FailingArm, replans: int) -> tuple[Trial, Opens]:
+    policy = Opens()
+    return rollout(policy, world, replans=replans), policy
+
+
+def test_it_goes_home_where_it_is_asked_again() -> None:
+    world = FailingArm()
+    trial, policy = ran(world, replans=1)
+    assert [action.kind for action in world.done] == ["gripper", "home"]
+    (told,) = policy.seen[1].executed
+    assert [report.executed for report in told.reports] == [False, True]
+    assert any(not report.executed and report.fault == "it slipped" for report in trial.reports)
+
+
+@pytest.mark.parametrize(("replans", "holding"), [(0, False), (1, True)], ids=["nobody asks again", "it holds a thing"])
+def test_it_stays_otherwise(replans: int, holding: bool) -> None:
+    world = FailingArm(holding=holding)
+    ran(world, replans)
+    assert [action.kind for action in world.done] == ["gripper"]

@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from wonderful_team import registry
+from wonderful_team.api.known_suites import known_suites
 from wonderful_team.api.study import Study
 from wonderful_team.core.protocols import privileged
 from wonderful_team.errors import ConfigError, UnknownNameError
@@ -104,4 +105,7 @@ def test_names_and_truth_as_in_every_world() -> None:
 def test_the_papers_table_runs_it() -> None:
     table = PAPER_TABLES["fetch"]
     assert not table.lacks
-    assert set(table.suites) == {"fetch/lid", "fetch/lid_two"}
+    suites = known_suites()
+    single, again = (suites[name] for name in table.suites)
+    assert single.tasks == again.tasks == ("fetch/lid", "fetch/lid_two")
+    assert (single.protocol.replans, again.protocol.replans) == (0, 3)

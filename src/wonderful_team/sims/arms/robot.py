@@ -12,6 +12,7 @@ import numpy as np
 from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.sims.arms.kinematics import Kinematics, downwards
 from wonderful_team.sims.arms.model import BuiltArm
+from wonderful_team.sims.arms.touch import Touch
 from wonderful_team.sims.tabletop.engine import mj
 from wonderful_team.sims.tabletop.model import TIMESTEP_S
 
@@ -85,7 +86,7 @@ class Robot:
         self._grip = built.arm_id(obj.mjOBJ_ACTUATOR, row.grip)
         self._flange = built.arm_id(obj.mjOBJ_SITE, row.flange)
         self._tips = [(built.arm_id(obj.mjOBJ_BODY, name), np.array(at)) for name, at in row.tips]
-        self._fingers = [built.arm_id(obj.mjOBJ_BODY, name) for name in row.fingers]
+        self._touch = Touch(built, state)
         self.watch: Callable[[], None] | None = None
         self.each_step: Callable[[], None] | None = None
         self.trace: list[Array] | None = None
@@ -157,24 +158,11 @@ class Robot:
 
     def held_bodies(self) -> frozenset[int]:
         """Bodies that both fingers touch."""
-        contact, bodies = self._state.contact, self._model.geom_bodyid
-        pairs = bodies[contact.geom[: self._state.ncon]].reshape(-1, 2)
-        touched = [
-            {int(b if a == finger else a) for a, b in pairs if finger in (a, b)} - set(self._built.bodies)
-            for finger in self._fingers
-        ]
-        return frozenset(touched[0] & touched[1] - {0})
+        return self._touch.held()
 
     def force_n(self) -> float:
         """Sum of the forces with which what does not belong to the robot presses on it or on what it holds [N]."""
-        own = self._built.bodies | (self.held_bodies() if self.closed else frozenset())
-        total, force = 0.0, np.zeros(6)
-        for k in range(self._state.ncon):
-            a, b = (int(self._model.geom_bodyid[geom]) for geom in self._state.contact.geom[k])
-            if (a in own) != (b in own):
-                mj.mj_contactForce(self._model, self._state, k, force)
-                total += float(force[0])
-        return total
+        return self._touch.force_n(self.closed)
 
     # Motion.
 

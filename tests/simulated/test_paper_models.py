@@ -9,10 +9,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from wonderful_team.contracts import BoxMove, BoxPx, JudgeBox, PointPx
+from wonderful_team.contracts import BoxMove, BoxPx, JudgeBox, MoveBox, PointPx
 from wonderful_team.core.geometry import Box
 from wonderful_team.core.pictures import BoxMark, Picture
-from wonderful_team.core.values import Request, View
+from wonderful_team.core.values import Request, Target, View
 from wonderful_team.errors import ConfigError
 from wonderful_team.images import crop, whole
 from wonderful_team.simulated.error_sampler import ErrorSampler, ring_distance
@@ -92,12 +92,38 @@ def test_a_correction_errs_by_a_share_of_itself() -> None:
         }
     )  # fmt: skip
     profile = PAPER_MODELS["paper-gpt-4o"]
-    request = Request("x", "ground", "mover", None, (), BoxMove)  # type: ignore[arg-type]
+    request = asked_to_move(Box(400, 400, 600, 600))
     moved = [ErrorSampler(replace(profile, seed=seed), request).perturb(move, request) for seed in range(500)]
     right = np.array([one.right_px for one in moved])
     assert right.mean() == pytest.approx(40.0, abs=2.0)
     assert right.std() == pytest.approx(profile.correction * 40.0, rel=0.15)
     assert all(one.down_px == 0.0 for one in moved)
+
+
+def asked_to_move(box: Box) -> Request:
+    """A request about a box on the toy table."""
+    shown = toy_picture().marked(BoxMark(box))
+    question = MoveBox(Target("T1", "object", "red circle"), shown, ())
+    return Request("x", "ground", "mover", question, (shown,), BoxMove)
+
+
+@pytest.mark.parametrize("action", ["move", "resize"])
+def test_a_correction_never_leaves_the_picture_nor_turns_a_box_inside_out(action: str) -> None:
+    """Far off, or as narrow as it goes: errors of the profile's size would make of it what no answer may be."""
+    amounts = {"right_px": 380.0, "down_px": 0.0} if action == "move" else {"right_px": 0.0, "down_px": 0.0}
+    grow = -18.0 if action == "resize" else 0.0
+    move = BoxMove.model_validate(
+        {
+            "reasoning": "", "action": action, **amounts, "grow_left_px": grow, "grow_top_px": 0.0, "grow_right_px": grow,
+            "grow_bottom_px": 0.0, "cut_edges": [],
+        }
+    )  # fmt: skip
+    request = asked_to_move(Box(560, 400, 600, 600))
+    profile = replace(PAPER_MODELS["paper-gpt-4o"], correction=1.0)
+    moved = [ErrorSampler(replace(profile, seed=seed), request).perturb(move, request) for seed in range(200)]
+    assert len({(one.right_px, one.grow_left_px) for one in moved}) > 50
+    for one in moved:
+        request.question.validate(one)
 
 
 def test_a_box_and_its_points_lie_off_together() -> None:

@@ -19,6 +19,7 @@ from wonderful_team.contracts import (
     MarkChoice,
     MarkSelection,
     MotionMarks,
+    MoveBox,
     ObjectList,
     Outcome,
     PointChoice,
@@ -87,7 +88,7 @@ class ErrorSampler:
             case TurnChoice():
                 return self._choice(value, len(question.turns))
             case BoxMove():
-                return self._move(value)
+                return self._move(value, question)
             case RevisionVerdict():
                 return self._revision(value)
             case Outcome():
@@ -139,13 +140,19 @@ class ErrorSampler:
         ]
         return item.model_copy(update={"box": self.box(item.box, picture, item.id), "points": points})
 
-    def _move(self, value: BoxMove) -> BoxMove:
+    def _move(self, value: BoxMove, question: MoveBox) -> BoxMove:
+        """A revision by too much or too little; the right one where that would leave no box in the picture."""
         if not self.profile.correction:
             return value
         names = ("right_px", "down_px", "grow_left_px", "grow_top_px", "grow_right_px", "grow_bottom_px")
         shares = self._rng("correction").normal(1.0, self.profile.correction, len(names))
         moved = {name: getattr(value, name) * float(share) for name, share in zip(names, shares, strict=True)}
-        return value.model_copy(update=moved)
+        revised = value.model_copy(update=moved)
+        try:
+            question.validate(revised)
+        except ValueError:
+            return value
+        return revised
 
     def _selection(self, value: MarkSelection, count: int) -> MarkSelection:
         if not value.numbers or not self.draws(self.profile.wrong_choice, "choice"):

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 import pytest
 
-from tests.runtime.runtime_fakes import SquaresWorld
+from tests.runtime.runtime_fakes import SquaresWorld, make_plan
 from wonderful_team.core.actions import ARM, Action, Gripper, OpenStep, Vocabulary
 from wonderful_team.core.protocols import Act, Done, GaveUp, Situation
 from wonderful_team.core.values import Observation, PlannedAction, RobotState, StepReport, Trial
@@ -45,6 +45,16 @@ class Opens:
         return Act((open_,)) if len(self.seen) == 1 else Done("as good as it gets")
 
 
+class Given:
+    """Runs the plan that it is given, and is done when it is asked again."""
+
+    name = "given"
+
+    def decide(self, situation: Situation) -> Act | Done | GaveUp:
+        plan = situation.plan
+        return Done("as good as it gets") if plan is None else Act(plan.actions, plan)
+
+
 def ran(world: FailingArm, replans: int) -> tuple[Trial, Opens]:
     policy = Opens()
     return rollout(policy, world, replans=replans), policy
@@ -63,4 +73,14 @@ def test_it_goes_home_where_it_is_asked_again() -> None:
 def test_it_stays_otherwise(replans: int, holding: bool) -> None:
     world = FailingArm(holding=holding)
     ran(world, replans)
+    assert [action.kind for action in world.done] == ["gripper"]
+
+
+def test_of_a_plan_that_was_read_exactly_its_actions_run() -> None:
+    world = FailingArm()
+    seen = world.observe()
+    open_ = PlannedAction(OpenStep("G1"), Gripper("open"))
+    plan = replace(make_plan(seen, []), steps=(open_.step,), actions=(open_,))
+    trial = rollout(Given(), world, plan=plan, plan_observation=seen, replans=1)
+    assert trial.gates[0].admitted, trial.gates[0].reasons
     assert [action.kind for action in world.done] == ["gripper"]

@@ -85,10 +85,11 @@ class Execution:
             then: The picture that it was made from; None when that is not at hand.
             horizon: The world's limit on actions, over the whole run.
             read: The plan that was read beforehand, if this is where it has to run: it runs, or nothing does.
-            again: Whether the policy will be asked again: an arm that failed is then brought out of the picture.
+            again: Whether the policy will be asked again: an arm that failed is then brought out of the picture, but never where a
+                plan was read, of which exactly its actions run.
         """
         self.refusal = self.declined = None
-        self._again = again
+        self._again = again and read is None
         self._age_limit_s = self._max_age_s if read is None or read.same_clock else None
         now, report = self._gate(decision, then, read)
         self._progress.passed_gate("before motion", report)

@@ -222,10 +222,11 @@ def way_checks(stage: Stage, pieces: Sequence[Piece], tool_radius_m: float) -> l
 
 def _level_way(piece: Piece) -> GateCheck:
     """Nothing under a level way is as high as the lowest point of what passes."""
-    low, nearest = float(piece.start_m[2]) - piece.hanging_m, piece.in_order()
-    top = float(piece.top_m[nearest[0]]) if len(nearest) else -np.inf
+    low = float(min(piece.start_m[2], piece.end_m[2])) - piece.hanging_m
+    tops = np.sort(piece.top_m[~piece.meant])[::-1]
+    top = float(tops[min(LEAST_SPECKS, len(tops) - 1)]) if len(tops) else -np.inf
     room = low - PROUD_M - top
-    value = "nothing seen" if not len(nearest) else f"{top:z.3f} m is the highest there"
+    value = "nothing seen" if not len(tops) else f"{top:z.3f} m is the highest there"
     return GateCheck(None, piece.check, room >= 0, value, f"below {low - PROUD_M:.3f} m", f"{room:+.3f} m")
 
 

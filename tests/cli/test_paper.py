@@ -13,7 +13,8 @@ from wonderful_team import registry
 from wonderful_team.api.known_suites import known_suites
 from wonderful_team.cli.app import run
 from wonderful_team.errors import ConfigError
-from wonderful_team.evals.paper_tables import PAPER_TABLES, filled
+from wonderful_team.evals.paper_filled import filled
+from wonderful_team.evals.paper_tables import PAPER_TABLES
 from wonderful_team.evals.summary import Summary
 from wonderful_team.evals.trials import Condition, Row, TrialRow, TrialSpec
 from wonderful_team.registry.worlds import task_names

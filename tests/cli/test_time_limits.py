@@ -242,7 +242,7 @@ def test_an_endless_page(monkeypatch: pytest.MonkeyPatch, runs_folder: Path, cap
     from wonderful_team.api import recording
 
     held = threading.Event()
-    monkeypatch.setattr(recording, "write_page", lambda folder: held.wait())
+    monkeypatch.setattr(recording, "write_page", lambda folder, coded: held.wait())
     with pytest.warns(UserWarning, match="the page of .* could not be written: .*the cap of 2 s is reached"):
         code = run(["plan", DESK, "put the red block into the blue bowl", "--max-seconds", LIMIT])
     held.set()

@@ -135,7 +135,7 @@ def _options(table: PaperTable, options: dict[str, Any]) -> dict[str, Any]:
 
 
 def _told(table: PaperTable, summary: Summary | None) -> dict[str, Any]:
-    from wonderful_team.evals.paper_tables import filled
+    from wonderful_team.evals.paper_filled import filled
 
     head, lines = filled(table, summary)
     return {

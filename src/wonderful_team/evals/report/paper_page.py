@@ -15,7 +15,8 @@ from wonderful_team.core.filesystem import make_private_folder, write_redacted
 from wonderful_team.core.text import visible
 from wonderful_team.evals.names import short_names
 from wonderful_team.evals.paper import published
-from wonderful_team.evals.paper_tables import PaperTable, filled
+from wonderful_team.evals.paper_filled import filled
+from wonderful_team.evals.paper_tables import PaperTable
 from wonderful_team.evals.report.content import link
 from wonderful_team.evals.report.latex import tex, to_latex
 from wonderful_team.evals.report.tables import markdown_table

@@ -265,8 +265,8 @@ class Robot:
             if self._halted:
                 return self._ended(goal, yaw, pressed, "stop")
             self._state.ctrl[self._grip] = start + (end - start) * min(1.0, (k + 1) / count)
-            if closed and not held and self.held_bodies():
-                # From here on it would lift, or press down, what it holds.
+            if closed and not held and still >= 2 and self.held_bodies():
+                # From here on it would lift, or press down, what it holds. Fingertips that only touch, such as the plate under a handle, go on.
                 held, self._state.ctrl[self._drives] = True, self.q
             if closed and not held and k % 3 == 0:
                 q = self._keep(goal, yaw, q)

@@ -9,7 +9,7 @@ import pytest
 
 from tests.motion.block_scenes import LIMITS, Block, cameras, found, scene
 from wonderful_team.cli.wording import action_line, numbers_line
-from wonderful_team.core.actions import At, Beside, PickPlaceStep, Place
+from wonderful_team.core.actions import At, Beside, PickPlace, PickPlaceStep, Place
 from wonderful_team.core.geometry import Box
 from wonderful_team.core.values import GroundedTarget, Instruction, NumberSource, Plan, PlannedAction, Target, View
 from wonderful_team.motion import ground_actions
@@ -82,3 +82,21 @@ def test_the_page_says_where_the_tool_ends() -> None:
     record = {"planner": {"plans": [plan_to_json(plan)], "gates": []}}
     (chapter,) = page_actions(record)
     assert [source["tool"] for source in chapter["rows"][0]["sources"]] == ["", "(198.0, 280.0)"]
+
+
+@pytest.mark.parametrize("name", ["pinhole", "tilted", "panned"])
+def test_the_pixel_where_the_tool_ends_is_that_of_its_metres_for_cameras_in_perspective(name: str) -> None:
+    """A tall thing that is picked far from its middle: its top shows larger than the ground where it is put."""
+    camera = cameras()[name]
+    tall, pan = Block(0.40, -0.22, 0.48, -0.06, 0.2), Block(0.5, 0.05, 0.62, 0.2, 0.01)
+    grounded = {
+        "T1": found(camera, "T1", tall, {"pick": (0.15, 0.9)}),
+        "T2": found(camera, "T2", pan, {"place": (0.5, 0.5)}),
+    }
+    view = scene(camera, tall, pan)
+    (planned,) = ground_actions([PickPlaceStep("G1", "T1", At("T2"), 0.0)], grounded, view, LIMITS)
+    source = place_of(planned)
+    assert isinstance(planned.action, PickPlace)
+    assert source.tool_px is not None
+    seen = camera.project([planned.action.place_m])[0]
+    assert source.tool_px == pytest.approx((float(seen[0]), float(seen[1])), abs=0.5)

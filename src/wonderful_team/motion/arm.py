@@ -101,7 +101,7 @@ def _tool_goal(step: MoveStep, places: Places, progress: MotionState) -> tuple[R
         return ResolvedPoint(tool.px, np.array([x, y, resting]), f"where the tool holds {held.target}"), False
     yaw_rad = progress.yaw_rad - held.yaw_rad
     goal = places.destination(step.to, progress, held.target, yaw_rad)
-    return put_spot(held.tool, held.centre, goal, yaw_rad, held.target), False
+    return put_spot(held.tool, held.centre, goal, yaw_rad, held.target, places.lift.camera), False
 
 
 def _at_height(

@@ -7,6 +7,7 @@ import math
 import numpy as np
 
 from wonderful_team.core.actions import PickPlace, PickPlaceStep
+from wonderful_team.core.geometry import Camera, PinholeCamera
 from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.values import PlannedAction
 from wonderful_team.motion.deprojector import ResolvedPoint
@@ -29,7 +30,7 @@ def ground_pick_place(step: PickPlaceStep, places: Places, progress: MotionState
     pick = places.spot(step.pick, TO_PICK, progress)[1]
     centre = places.centre(step.pick, progress)
     goal = places.destination(step.place, progress, step.pick, yaw_rad)
-    put = put_spot(pick, centre, goal, yaw_rad, step.pick)
+    put = put_spot(pick, centre, goal, yaw_rad, step.pick, places.lift.camera)
     moved = Moved(places.step, pick.px, put.px, _on_support(pick, places, step.pick, progress), put.position_m, yaw_rad)
     action = None
     if pick.position_m is not None and put.position_m is not None:
@@ -52,7 +53,12 @@ def ground_pick_place(step: PickPlaceStep, places: Places, progress: MotionState
 
 
 def put_spot(
-    tool: ResolvedPoint, centre: ResolvedPoint, goal: ResolvedPoint, yaw_rad: float, name: str
+    tool: ResolvedPoint,
+    centre: ResolvedPoint,
+    goal: ResolvedPoint,
+    yaw_rad: float,
+    name: str,
+    camera: Camera | None,
 ) -> ResolvedPoint:
     """Where the tool has to end so that the thing's centre ends at `goal`; heights are left to the caller's goal."""
     dx, dy = turned_px((centre.px[0] - tool.px[0], centre.px[1] - tool.px[1]), yaw_rad)
@@ -64,6 +70,10 @@ def put_spot(
     how = goal.how
     if np.hypot(shift[0], shift[1]) > 5e-4:
         how += f"; shifted ({shift[0]:+.3f}, {shift[1]:+.3f}) m so that the centre of {name} lands there"
+        if isinstance(camera, PinholeCamera):
+            # Pixels at the thing's top are wider than those at the height where it is put.
+            at, there = camera.project([goal.position_m, position])
+            px = (goal.px[0] + float(there[0] - at[0]), goal.px[1] + float(there[1] - at[1]))
     return ResolvedPoint(px, position, how)
 
 

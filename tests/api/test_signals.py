@@ -273,10 +273,13 @@ def test_a_command_has_it_so(monkeypatch: pytest.MonkeyPatch) -> None:
     assert told == ["exits at once", "runs", "leaves"]
 
 
-def test_a_study_ends_with_the_signals_number(own: Path, start, tmp_path: Path) -> None:
+@pytest.mark.parametrize("ignoring", [(), (signal.SIGINT,)], ids=["on a terminal", "in the background"])
+def test_a_study_ends_with_the_signals_number(ignoring: tuple[int, ...], own: Path, start, tmp_path: Path) -> None:
+    """A shell that runs a job in the background has it ignore Ctrl-C."""
     process = start(
         *("-m", "wonderful_team", "bench", "tabletop/rotate", "--model", f"{own}:Thinking", "--jobs", "1"),
         *("--no-control", "all", "--seeds", "0:1", "--store", str(tmp_path / "s.db"), "--trial-max-seconds", "3"),
+        ignoring=ignoring,
     )
     until(process, "ASKED")
     process.send_signal(signal.SIGTERM)

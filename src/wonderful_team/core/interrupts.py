@@ -116,8 +116,9 @@ def as_keyboard() -> Iterator[None]:
     def as_interrupt(number: int, frame: FrameType | None) -> None:
         _state.came = number
         handler = signal.getsignal(signal.SIGINT)
-        if callable(handler):
-            handler(signal.SIGINT, frame)
+        # A background job has Ctrl-C ignored, and yet it ends when it is asked to.
+        answer = handler if callable(handler) else signal.default_int_handler
+        answer(signal.SIGINT, frame)
 
     for number in SIGNALS:
         if before[number] not in (signal.SIG_IGN, None):

@@ -11,7 +11,8 @@ import pytest
 from wonderful_team import registry
 from wonderful_team.api.trial import run_trial
 from wonderful_team.cli.app import run
-from wonderful_team.evals.paper_tables import PAPER_TABLES, filled
+from wonderful_team.evals.paper_filled import filled
+from wonderful_team.evals.paper_tables import PAPER_TABLES
 from wonderful_team.evals.trials import VALID_SUBGOAL, Condition, RunSettings, TrialSpec
 
 SEED = 1000

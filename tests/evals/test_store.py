@@ -190,6 +190,20 @@ def test_a_store_of_the_second_schema_opens_and_goes_on(tmp_path: Path) -> None:
     assert (again.status.here, again.status.done) == (4, 12)
 
 
+@pytest.mark.skipif(not Path("/proc/self/fd").is_dir(), reason="counts open files where Linux tells them")
+def test_a_file_that_is_no_store_is_closed_again(tmp_path: Path) -> None:
+    path = tmp_path / "notes.db"
+    with closing(sqlite3.connect(path)) as base:
+        base.execute("CREATE TABLE notes(words TEXT)")
+        base.commit()
+    with pytest.raises(ConfigError, match="another program's database") as caught:
+        Store(path)
+    opened = [os.readlink(one) for one in Path("/proc/self/fd").iterdir() if one.is_symlink()]
+    # The error is at hand, and with it all that its frames hold.
+    assert caught.value.__traceback__ is not None
+    assert str(path) not in opened
+
+
 def _without_what_came_fourth(base: sqlite3.Connection) -> None:
     for kind, name in base.execute("SELECT type, name FROM sqlite_master WHERE type = 'trigger'").fetchall():
         base.execute(f"DROP {kind} {name}")

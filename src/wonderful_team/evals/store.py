@@ -62,7 +62,11 @@ class Store:
                 pass  # SQLite keeps the mode of a file that is there, and gives it to those beside it
             self._base = sqlite3.connect(self.path, timeout=60.0, isolation_level=None, check_same_thread=False)
             self._base.row_factory = sqlite3.Row
-            self._open()
+            try:
+                self._open()
+            except BaseException:
+                self._base.close()
+                raise
         except (sqlite3.Error, OSError, UnicodeDecodeError) as error:
             raise ConfigError(f"store {str(self.path)!r} cannot be used: {error}") from error
 

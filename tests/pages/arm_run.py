@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from tests.motion.block_scenes import LIMITS, Block, affine_top, area, found, scene
-from tests.runtime.test_gate_arm import carried
+from tests.runtime.carrying import carried
 from wonderful_team.core.actions import ARM, Action, Gripper, MoveTo
 from wonderful_team.core.protocols import Act, Decision, Done, Situation
 from wonderful_team.core.values import (

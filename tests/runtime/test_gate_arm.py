@@ -3,28 +3,11 @@
 from __future__ import annotations
 
 from tests.motion.block_scenes import LIMITS, Block, affine_top, area, found, scene
-from wonderful_team.core.actions import ARM, At, CloseStep, HomeStep, MoveStep, OpenStep, Step
-from wonderful_team.core.values import GateReport, Instruction, Observation, Plan
-from wonderful_team.motion import ground_actions
-from wonderful_team.runtime import check_gate
+from tests.runtime.carrying import gate_of_carrying
+from wonderful_team.core.values import GateReport
 
 CAMERA = affine_top()
 RED, BLUE = Block(0.38, -0.34, 0.48, -0.24), Block(0.48, 0.06, 0.58, 0.16)
-
-
-def carried(thing: str, place: str) -> tuple[Step, ...]:
-    return (
-        OpenStep("G1"),
-        MoveStep("G1", At(thing), "clear"),
-        MoveStep("G1", At(thing), "at"),
-        CloseStep("G1"),
-        MoveStep("G1", At(thing), "clear"),
-        MoveStep("G1", At(place), "clear"),
-        MoveStep("G1", At(place), "at"),
-        OpenStep("G1"),
-        MoveStep("G1", At(place), "clear"),
-        HomeStep("G1"),
-    )
 
 
 def judged(*moves: tuple[str, str]) -> GateReport:
@@ -37,11 +20,7 @@ def judged(*moves: tuple[str, str]) -> GateReport:
         "A1": area("A1", (220.0, 100.0)),
         "A2": area("A2", (was_red[0], was_red[1])),
     }
-    steps = tuple(step for thing, place in moves for step in carried(thing, place))
-    actions = ground_actions(steps, grounded, view, LIMITS)
-    now = Observation({"top": view})
-    plan = Plan(Instruction("tidy up"), "planned", actions=actions, grounded=grounded, scene_hash=now.hash)
-    return check_gate(plan.actions, vocabulary=ARM, limits=LIMITS, plan=plan, then=now, now=now)
+    return gate_of_carrying(view, grounded, moves, LIMITS)
 
 
 def test_a_place_that_an_arm_has_emptied_is_free() -> None:

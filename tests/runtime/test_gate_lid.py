@@ -7,11 +7,8 @@ from dataclasses import replace
 import pytest
 
 from tests.motion.block_scenes import LIMITS, Block, area, found, looking_down, scene
-from tests.runtime.test_gate_arm import carried
-from wonderful_team.core.actions import ARM
-from wonderful_team.core.values import Fingers, GateReport, Instruction, Observation, Plan
-from wonderful_team.motion import ground_actions
-from wonderful_team.runtime import check_gate
+from tests.runtime.carrying import gate_of_carrying
+from wonderful_team.core.values import Fingers, GateReport
 
 SIZE = (640, 400)
 CAMERA = replace(looking_down(1.1), K=looking_down().K * 0 + [[620.0, 0, 320], [0, 620.0, 200], [0, 0, 1]])
@@ -33,11 +30,7 @@ def judged(*moves: tuple[str, str], aside: tuple[float, float] = FREE_M) -> Gate
         "T3": replace(found(CAMERA, "T3", BOX), points={"place": on_handle}),
         "A1": area("A1", (float(x), float(y))),
     }
-    steps = tuple(step for thing, place in moves for step in carried(thing, place))
-    actions = ground_actions(steps, grounded, view, LIMITS_OF_ARM)
-    now = Observation({"top": view})
-    plan = Plan(Instruction("tidy up"), "planned", actions=actions, grounded=grounded, scene_hash=now.hash)
-    return check_gate(plan.actions, vocabulary=ARM, limits=LIMITS_OF_ARM, plan=plan, then=now, now=now)
+    return gate_of_carrying(view, grounded, moves, LIMITS_OF_ARM)
 
 
 def test_the_lid_goes_to_a_free_place_and_the_block_into_the_box() -> None:

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from tests.motion.block_scenes import LIMITS, Block, affine_top, area, found, looking_down, scene
-from tests.runtime.test_gate_arm import carried
+from tests.runtime.carrying import carried
 from wonderful_team.core.actions import ARM, At, PickPlaceStep, Step, Trajectory, Vocabulary
 from wonderful_team.core.geometry import Camera
 from wonderful_team.core.steps import FollowStep

@@ -7,10 +7,11 @@ from typing import Any
 
 import numpy as np
 
+import wonderful_team as wt
 from wonderful_team.core.actions import Action
 from wonderful_team.core.geometry import Pose
 from wonderful_team.core.protocols import Score
-from wonderful_team.core.values import StepReport
+from wonderful_team.core.values import StepReport, Trial
 from wonderful_team.sims.arms import ArmWorld
 from wonderful_team.sims.tabletop.moving import put_body
 
@@ -19,6 +20,15 @@ def play(world: ArmWorld, actions: Iterable[Action]) -> tuple[Score, list[StepRe
     """Run these actions; how the scene is judged then, and what was reported."""
     reports = [world.execute(action) for action in actions]
     return world.privileged.score(), reports
+
+
+def by_team(task: str, seed: int, model: str = "simulated:perfect", **options: Any) -> Trial:
+    """The whole team, once through a task."""
+    world = wt.make_world(task, seed=seed)
+    try:
+        return wt.rollout(wt.Team(model=model), world, **options)
+    finally:
+        world.close()
 
 
 def lay_down(world: ArmWorld, name: str) -> None:

@@ -6,16 +6,13 @@ import pytest
 
 import wonderful_team as wt
 from tests.sims.arms.needed import needs_arms
+from tests.sims.arms.playing import by_team
 
 
 @needs_arms
 @pytest.mark.parametrize("model", ["offline", pytest.param("simulated:perfect", marks=pytest.mark.slow)])
 def test_a_block_goes_into_the_bowl(model: str) -> None:
-    world = wt.make_world("arms/block_in_bowl", seed=2)
-    try:
-        trial = wt.rollout(wt.Team(model=model), world)
-    finally:
-        world.close()
+    trial = by_team("arms/block_in_bowl", 2, model)
     assert trial.outcome == "success", trial.reason
     assert all(report.executed for report in trial.reports)
     assert [report.action.kind for report in trial.reports][-1] == "home"
@@ -25,22 +22,14 @@ def test_a_block_goes_into_the_bowl(model: str) -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("variation", ["all_match", "no_area", "misplaced", "both"])
 def test_fruits_go_onto_papers_of_their_colour(variation: str) -> None:
-    world = wt.make_world(f"arms/fruit_placement/{variation}", seed=2)
-    try:
-        trial = wt.rollout(wt.Team(model="simulated:perfect"), world)
-    finally:
-        world.close()
+    trial = by_team(f"arms/fruit_placement/{variation}", 2)
     assert trial.outcome == "success", trial.reason
 
 
 @needs_arms
 @pytest.mark.parametrize("task", ["star", pytest.param("wipe", marks=pytest.mark.slow)])
 def test_a_written_path_is_run_in_the_sandbox_reviewed_and_followed_by_touch(task: str) -> None:
-    world = wt.make_world(f"arms/{task}", seed=2)
-    try:
-        trial = wt.rollout(wt.Team(model="simulated:perfect"), world)
-    finally:
-        world.close()
+    trial = by_team(f"arms/{task}", 2)
     assert trial.outcome == "success", trial.reason
     (path,) = (report.action for report in trial.reports if report.action.kind == "trajectory")
     assert path.waypoints_m[0][2] > 0.15  # type: ignore[union-attr]
@@ -50,11 +39,7 @@ def test_a_written_path_is_run_in_the_sandbox_reviewed_and_followed_by_touch(tas
 @needs_arms
 @pytest.mark.parametrize("task", ["cap", pytest.param("shake", marks=pytest.mark.slow)])
 def test_bottles_are_opened_and_shaken_by_a_plan_that_was_checked(task: str) -> None:
-    world = wt.make_world(f"arms/{task}", seed=2)
-    try:
-        trial = wt.rollout(wt.Team(model="simulated:perfect"), world)
-    finally:
-        world.close()
+    trial = by_team(f"arms/{task}", 2)
     assert trial.outcome == "success", trial.reason
     assert "close" in {step.kind for step in trial.plans[-1].steps if getattr(step, "tight", False)}
     wanted = "rotate_gripper" if task == "cap" else "trajectory"

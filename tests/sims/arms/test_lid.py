@@ -11,6 +11,7 @@ import pytest
 
 import wonderful_team as wt
 from tests.sims.arms.needed import needs_arms
+from tests.sims.arms.playing import by_team
 from wonderful_team.core.actions import Gripper, Home, MoveTo
 from wonderful_team.core.geometry import Pose
 from wonderful_team.sims.arms import ArmWorld, make_world
@@ -172,11 +173,7 @@ def test_the_lid_hangs_level_from_its_handle_and_the_block_falls_in(seed: int) -
 @pytest.mark.slow
 @pytest.mark.parametrize("task", ["lid_box/one", "lid_box/two"])
 def test_the_whole_team_lifts_the_lid_first(task: str) -> None:
-    world = wt.make_world(f"arms/{task}", seed=3)
-    try:
-        trial = wt.rollout(wt.Team(model="simulated:perfect"), world)
-    finally:
-        world.close()
+    trial = by_team(f"arms/{task}", 3)
     assert trial.outcome == "success", trial.reason
     assert "lid" in trial.plans[-1].subgoals[0].text
 

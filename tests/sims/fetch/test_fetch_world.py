@@ -83,6 +83,15 @@ def test_reports_say_what_a_robot_measures(open_world: Open) -> None:
     assert held["held_width_m"] == pytest.approx(0.0238, abs=0.001)
 
 
+def test_fingers_that_close_on_nothing_have_not_done_what_was_asked(open_world: Open) -> None:
+    world = open_world()
+    world.execute(to(0.3, -0.2, 0.25))
+    empty = world.execute(Gripper("close"))
+    assert (empty.executed, empty.measured["holding"]) == (False, False)
+    assert "closed on nothing" in (empty.fault or "")
+    assert world.execute(Gripper("open")).executed
+
+
 @pytest.mark.parametrize(
     ("action", "fault"),
     [

@@ -29,8 +29,6 @@ ARRIVED_M, ARRIVED_RAD = 0.0015, 0.01
 """A motion is over when the tool is this near to its goal."""
 WAIT_S = 1.5
 """How long a motion that has ended is waited for to settle, and a gripper to stop moving [s]."""
-AWAY_M = 0.012
-"""A motion that ends farther than this from its goal did not do what was asked [m]."""
 EMPTY_M = 0.003
 """Fingers that are closed up to this hold nothing [m]."""
 MOST_LEAP_RAD = 1.0

@@ -11,33 +11,23 @@ from wonderful_team.core.actions import ARM, Action, Gripper, Home, MoveTo, Rota
 from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.values import Fingers, Limits, RobotState, StepReport
 from wonderful_team.errors import ConfigError
+from wonderful_team.sims.arms import reports
 from wonderful_team.sims.arms.held import HeldTool
 from wonderful_team.sims.arms.model import REACH_HIGH_M, REACH_LOW_M, upright
 from wonderful_team.sims.arms.options import asked as read_options
 from wonderful_team.sims.arms.privileged import ArmTruth
-from wonderful_team.sims.arms.robot import AWAY_M, Moved
+from wonderful_team.sims.arms.robot import Moved
 from wonderful_team.sims.arms.rows import ArmRow, check_ready, find_arm
 from wonderful_team.sims.arms.table import ArmTable
 from wonderful_team.sims.arms.tasks import find_arm_task
 from wonderful_team.sims.tabletop.simulated_world import SimulatedWorld
 
-LEANS_RAD = 0.01
 LOW_M = 0.14
 """A path whose points lie lower than this runs along a surface; in the air it lies at the clearance or higher [m]."""
 SEEK_M = 0.006
 """How far below its first low point a path's surface is looked for by touch [m]."""
-REASONS = {
-    "reach": "out of the arm's reach",
-    "collision": "stopped: something pressed on the arm",
-    "contact": "stopped: the tool touched something on its way down",
-    "stop": "the world was stopped",
-    "wrist": "the wrist does not turn so far from how it stands: let go, turn back, and take hold again",
-}
-
 TRACED = 60
 """Most points of a measured path that a report holds."""
-EMPTY = "the fingers have closed on nothing"
-LOST = "the fingers hold nothing any more: what they held slipped or was knocked out"
 
 
 class ArmWorld(SimulatedWorld[ArmTable, ArmTruth]):
@@ -82,12 +72,12 @@ class ArmWorld(SimulatedWorld[ArmTable, ArmTruth]):
         if action.kind not in self.vocabulary.kinds:
             raise ConfigError(f"this world runs {', '.join(self.vocabulary.kinds)}; got {action.kind}")
         if self._stopped:
-            return StepReport(action, False, self._measured(None), REASONS["stop"])
+            return StepReport(action, False, self._measured(None), reports.REASONS["stop"])
         robot = self._table.robot
         match action:
             case MoveTo(pose=pose):
-                fault = self._out_of_reach(pose.position_m[None])
-                if upright(pose.quaternion_wxyz) > LEANS_RAD:
+                fault = reports.out_of_reach(pose.position_m[None], REACH_LOW_M, REACH_HIGH_M)
+                if upright(pose.quaternion_wxyz) > reports.LEANS_RAD:
                     fault = "the pose leans over; this arm points straight down"
                 moved = None if fault else robot.move(pose.position_m, pose.yaw_rad)
             case Gripper(state=state):
@@ -95,19 +85,15 @@ class ArmWorld(SimulatedWorld[ArmTable, ArmTruth]):
             case RotateGripper(yaw_rad=yaw):
                 fault, moved = "", robot.rotate(yaw)
             case Trajectory(waypoints_m=points):
-                fault = self._out_of_reach(points)
+                fault = reports.out_of_reach(points, REACH_LOW_M, REACH_HIGH_M)
                 moved = None if fault else self._follow(points)
             case _:
                 assert isinstance(action, Home)
                 fault, moved = "", robot.park()
-        report = self._report(action, fault, moved)
+        found = self._measured(moved)
         robot.trace = None
         held, self._held = self._held, robot.holding
-        if isinstance(action, Gripper) and action.state != "open" and not robot.holding:
-            return StepReport(action, False, report.measured, EMPTY)
-        if held and not robot.holding and not isinstance(action, Gripper):
-            return StepReport(action, False, report.measured, LOST)
-        return report
+        return reports.report(action, fault, moved, found, held=held, holding=robot.holding)
 
     def _follow(self, points_m: Array) -> Moved:
         """Along a path: where it is low, down until the tool touches the surface, and then along it."""
@@ -135,48 +121,13 @@ class ArmWorld(SimulatedWorld[ArmTable, ArmTruth]):
                 break
         return Moved(moved.error_m, moved.error_rad, force, moved.stopped_by)
 
-    def _report(self, action: Action, fault: str, moved: Moved | None) -> StepReport:
-        measured = self._measured(moved)
-        if moved is None:
-            return StepReport(action, False, measured, fault)
-        if moved.stopped_by == "contact":
-            # What is held comes to lie where it touches; an empty tool that touches something early is not where it should be.
-            short = moved.error_m > AWAY_M
-            said = f"{REASONS['contact']}, {1000 * moved.error_m:.0f} mm before its goal (limit {1000 * AWAY_M:.0f} mm)"
-            return StepReport(action, not short or self._table.robot.holding, measured, said if short else None)
-        if moved.stopped_by:
-            return StepReport(action, False, measured, REASONS[moved.stopped_by])
-        if moved.error_m > AWAY_M and not isinstance(action, Gripper):
-            said = f"ended {1000 * moved.error_m:.0f} mm from its goal (limit {1000 * AWAY_M:.0f} mm)"
-            return StepReport(action, False, measured, said)
-        return StepReport(action, True, measured)
-
     def _measured(self, moved: Moved | None) -> dict[str, Any]:
         robot = self._table.robot
-        found: dict[str, Any] = {
-            "tool_m": tuple(round(float(v), 4) for v in robot.tool_m),
-            "yaw_rad": round(robot.yaw_rad, 4),
-            "opening_m": round(robot.opening_m, 4),
-            "holding": robot.holding,
-            "held_width_m": round(robot.opening_m, 4) if robot.holding else None,
-        }
+        found = reports.measured(robot.tool_m, robot.opening_m, robot.holding, moved)
+        found["yaw_rad"] = round(robot.yaw_rad, 4)
         if robot.trace:
             found["path_m"] = [tuple(round(float(v), 4) for v in point) for point in evenly(robot.trace, TRACED)]
-        if moved is not None:
-            found |= {
-                "pose_error_m": round(moved.error_m, 4),
-                "force_n": round(moved.force_n, 1),
-                "contact": moved.stopped_by == "contact" or moved.force_n > 0.5,
-            }
         return found
-
-    def _out_of_reach(self, points_m: Array) -> str:
-        for point in points_m:
-            for axis in range(3):
-                low, high, value = REACH_LOW_M[axis], REACH_HIGH_M[axis], float(point[axis])
-                if not low - 1e-6 <= value <= high + 1e-6:
-                    return f"{'xyz'[axis]} = {value:.3f} m is out of reach [{low}, {high}] m"
-        return ""
 
     def stop(self) -> None:
         """The arm stays where it is from the next command on, and what it holds stays held, until a new world is made."""

@@ -21,8 +21,8 @@ STEP_M = 0.05
 SPEED_M_S, CONTACT_SPEED_M_S = 0.3, 0.12
 GAIN, MOST = 10.0, 0.6
 """Of the error [m] to the action, and the largest share of it that is used: beyond, the arm's weld stretches."""
-SETTLE_STEPS, ARRIVED_M, AWAY_M = 40, 0.0015, 0.012
-"""Waited for at most at a motion's end; when it is over; and how far from its goal a motion failed [m]."""
+SETTLE_STEPS, ARRIVED_M = 40, 0.0015
+"""Waited for at most at a motion's end; and how near to its goal it is over [m]."""
 TOUCH_N, COLLISION_N = 8.0, 60.0
 """A tool that goes down stops at the first force; any other motion at the second [N]."""
 DOWN_SHARE = 0.5

@@ -11,11 +11,11 @@ from wonderful_team.core.actions import Action, Gripper, Home, MoveTo, Vocabular
 from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.values import Fingers, Instruction, Limits, Observation, RobotState, StepReport, View
 from wonderful_team.errors import ConfigError, WorldUnavailableError
+from wonderful_team.sims.arms import reports
 from wonderful_team.sims.arms.cameras import sensed
 from wonderful_team.sims.arms.tasks import MOVES
-from wonderful_team.sims.arms.world import LEANS_RAD, LOST, REASONS
 from wonderful_team.sims.fetch.cameras import CAMERA_NAMES, SIZE_PX, lenses
-from wonderful_team.sims.fetch.driver import AWAY_M, FULLY_OPEN_M, Driver, Felt, Moved
+from wonderful_team.sims.fetch.driver import FULLY_OPEN_M, Driver, Felt, Moved
 from wonderful_team.sims.fetch.finding import OPEN_TIMEOUT_S, find_python, start
 from wonderful_team.sims.fetch.privileged import Episode, FetchTruth
 from wonderful_team.sims.fetch.remote.bench import ASSETS
@@ -136,7 +136,7 @@ class FetchWorld:
         if action.kind not in self.vocabulary.kinds:
             raise ConfigError(f"this world runs {', '.join(self.vocabulary.kinds)}; got {action.kind}")
         if self._stopped:
-            return StepReport(action, False, self._measured(None), REASONS["stop"])
+            return StepReport(action, False, self._measured(None), reports.REASONS["stop"])
         driver = self._driver
         fault, moved = "", None
         self._moved = True
@@ -157,10 +157,7 @@ class FetchWorld:
                 assert isinstance(action, Home)
                 moved = driver.home()
         held, self._held = self._held, driver.holding
-        report = self._report(action, fault, moved)
-        if held and not driver.holding and not isinstance(action, Gripper):
-            return StepReport(action, False, report.measured, LOST)
-        return report
+        return reports.report(action, fault, moved, self._measured(moved), held=held, holding=driver.holding)
 
     def stop(self) -> None:
         """The arm stays where it is from the next step on, and what it holds stays held, until a new world is made."""
@@ -186,36 +183,8 @@ class FetchWorld:
     def _step(self, action: Array) -> Felt:
         return _felt(self._simulator.ask("step", {"action": action}, timeout_s=STEP_TIMEOUT_S)[0])
 
-    def _report(self, action: Action, fault: str, moved: Moved | None) -> StepReport:
-        measured = self._measured(moved)
-        if moved is None:
-            return StepReport(action, False, measured, fault)
-        if moved.stopped_by == "contact":
-            short = moved.error_m > AWAY_M
-            said = f"{REASONS['contact']}, {1000 * moved.error_m:.0f} mm before its goal (limit {1000 * AWAY_M:.0f} mm)"
-            return StepReport(action, not short or self._driver.holding, measured, said if short else None)
-        if moved.stopped_by:
-            return StepReport(action, False, measured, REASONS[moved.stopped_by])
-        if moved.error_m > AWAY_M and not isinstance(action, Gripper):
-            said = f"ended {1000 * moved.error_m:.0f} mm from its goal (limit {1000 * AWAY_M:.0f} mm)"
-            return StepReport(action, False, measured, said)
-        return StepReport(action, True, measured)
-
     def _measured(self, moved: Moved | None) -> dict[str, Any]:
-        felt, holding = self._driver.felt, self._driver.holding
-        found: dict[str, Any] = {
-            "tool_m": tuple(round(float(v), 4) for v in felt.tool_m),
-            "opening_m": round(felt.opening_m, 4),
-            "holding": holding,
-            "held_width_m": round(felt.opening_m, 4) if holding else None,
-        }
-        if moved is not None:
-            found |= {
-                "pose_error_m": round(moved.error_m, 4),
-                "force_n": round(moved.force_n, 1),
-                "contact": moved.stopped_by == "contact" or moved.force_n > 0.5,
-            }
-        return found
+        return reports.measured(self._driver.felt.tool_m, self._driver.felt.opening_m, self._driver.holding, moved)
 
     def _check_open(self) -> None:
         if not self._simulator.alive:
@@ -231,13 +200,12 @@ def _felt(said: Mapping[str, Any]) -> Felt:
 
 def _not_possible(action: MoveTo) -> str:
     """Why the arm cannot go to a pose; "" when it can."""
-    for axis in range(3):
-        low, high, value = LOW_M[axis], HIGH_M[axis], float(action.pose.position_m[axis])
-        if not low - 1e-6 <= value <= high + 1e-6:
-            return f"{'xyz'[axis]} = {value:.3f} m is out of reach [{low}, {high}] m"
+    far = reports.out_of_reach(action.pose.position_m[None], LOW_M, HIGH_M)
+    if far:
+        return far
     turn = action.pose.rotation
-    if turn[2, 2] < np.cos(LEANS_RAD):
+    if turn[2, 2] < np.cos(reports.LEANS_RAD):
         return "the pose leans over; this arm points straight down"
-    if abs(turn[0, 0]) < np.cos(LEANS_RAD):
+    if abs(turn[0, 0]) < np.cos(reports.LEANS_RAD):
         return f"the pose is turned by {np.degrees(action.pose.yaw_rad):.0f} degrees; this gripper does not turn"
     return ""

@@ -9,11 +9,12 @@ from pathlib import Path
 import pytest
 
 from wonderful_team import registry
-from wonderful_team.api.known_suites import known_suites
+from wonderful_team.api.known_suites import check_levels, known_suites
 from wonderful_team.api.study import Study
 from wonderful_team.core.protocols import privileged
 from wonderful_team.errors import ConfigError, UnknownNameError
 from wonderful_team.evals.paper_tables import PAPER_TABLES
+from wonderful_team.evals.suites import OPEN_LOOP, Suite
 from wonderful_team.registry.worlds import own_tiers
 from wonderful_team.sims.fetch import FetchWorld
 from wonderful_team.sims.fetch.finding import PYTHON_VARIABLE, check_ready, find_python
@@ -100,6 +101,12 @@ def test_names_and_truth_as_in_every_world() -> None:
     other = registry.make_world("fetch/lid", seed=1, instruction="Tidy up.")
     assert privileged(other) is None
     other.close()
+
+
+def test_a_study_takes_what_may_stand_behind_a_tasks_name() -> None:
+    check_levels([Suite("lid", ("fetch/lid@depth=2",), OPEN_LOOP)])
+    with pytest.raises(ConfigError, match="depth=1 to depth=3"):
+        check_levels([Suite("lid", ("fetch/lid@nudge=1",), OPEN_LOOP)])
 
 
 def test_the_papers_table_runs_it() -> None:

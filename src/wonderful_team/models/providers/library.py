@@ -59,7 +59,7 @@ def library_version() -> str:
         raise MissingExtraError("models of vendors and servers", "vendors") from error
 
 
-def preload(service: Vendor, text: str) -> None:
+def preload(service: Vendor, text: str) -> Future[None]:
     """Start to import what a service needs, in a thread: it takes seconds, in which pictures are read; see `loaded`.
 
     Raises:
@@ -70,10 +70,11 @@ def preload(service: Vendor, text: str) -> None:
     module = service.module
     with _lock:
         if module in _loading:
-            return
+            return _loading[module]
         future: Future[None] = Future()
         _loading[module] = future
     start_thread(_import, (*_OF_ALL, module), future, name="client library")
+    return future
 
 
 def loaded(service: Vendor, text: str) -> None:
@@ -82,9 +83,9 @@ def loaded(service: Vendor, text: str) -> None:
     Raises:
         MissingExtraError: Part of it is not installed.
     """
-    preload(service, text)
+    future = preload(service, text)
     try:
-        _loading[service.module].result()
+        future.result()
     except ImportError as error:
         with _lock:
             _loading.pop(service.module, None)  # it may be installed while the process goes on

@@ -6,7 +6,16 @@ import json
 import sys
 import unicodedata
 
-from wonderful_team.core.text import counted, picture_names, spoken, visible, visible_json
+from wonderful_team.core.text import (
+    MOST_IN_ORDER,
+    ORDINALS,
+    counted,
+    ordinal,
+    picture_names,
+    spoken,
+    visible,
+    visible_json,
+)
 
 SEEN_ANYWAY = set(map(chr, (*range(0x600, 0x606), 0x6DD, 0x890, 0x891, 0x8E2, 0x110BD, 0x110CD)))
 """Format characters that are drawn: signs of numbers and verses in Arabic and Kaithi."""
@@ -50,3 +59,11 @@ def test_pictures_are_called_by_number_in_the_order_of_the_words() -> None:
     names = picture_names("Put {dragged_obj_1} on {base} like {dragged_obj_1}.", ["base", "dragged_obj_1", "unsaid"])
     assert names == {"dragged_obj_1": "picture 1", "base": "picture 2", "unsaid": "picture 3"}
     assert spoken("the thing of {base}, not {other}", names) == "the thing of [picture 2], not {other}"
+
+
+def test_places_in_an_order_are_read_as_they_are_written() -> None:
+    assert [ordinal(number) for number in (1, 10, 11, 13, 21, 22, 23, 100)] == [
+        "first", "tenth", "11th", "13th", "21st", "22nd", "23rd", "100th"
+    ]  # fmt: skip
+    assert all(ORDINALS[ordinal(number)] == number for number in range(1, MOST_IN_ORDER + 1))
+    assert ORDINALS["1st"] == ORDINALS["first"]

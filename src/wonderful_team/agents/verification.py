@@ -61,8 +61,9 @@ target that was moved lies where it was put. For each, one short clause:
 - asked: is it the thing, the place, the angle and the order that was asked for? Look at the pictures again for this.
 - verdict: wrong when an answer speaks against it; cannot_tell when the pictures do not show it and it matters; else fine.
 
-Then look for what the instruction asks for and no subgoal brings about. A target that no subgoal names may be a subgoal
-that was lost.
+Then look for what the instruction asks for and no subgoal brings about. Where it asks for all of several things, or for a
+number of them, count them in the picture and count the subgoals that serve them. A target that no subgoal names may be a
+subgoal that was lost.
 """.strip()
 
 REVIEW_PLAN = f"""

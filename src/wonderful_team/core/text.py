@@ -28,6 +28,28 @@ def counted(number: int, noun: str) -> str:
     return f"{number:,} {noun}{'' if number == 1 else 's'}"
 
 
+MOST_IN_ORDER = 100
+_ORDINALS = ("", "first", "second", "third", "fourth", "fifth", "sixth", "seventh", "eighth", "ninth", "tenth")
+ORDINALS: Mapping[str, int] = {
+    **{word: number for number, word in enumerate(_ORDINALS) if word},
+    **{
+        f"{number}{'th' if 10 < number % 100 < 14 else {1: 'st', 2: 'nd', 3: 'rd'}.get(number % 10, 'th')}": number
+        for number in range(1, MOST_IN_ORDER + 1)
+    },
+}
+"""Places in an order by the words for them, in letters and in digits."""
+_IN_WORDS = {number: word for word, number in tuple(ORDINALS.items())[::-1]}
+
+
+def ordinal(number: int) -> str:
+    """`third`, and `13th` from eleven on.
+
+    Args:
+        number: From 1 to MOST_IN_ORDER.
+    """
+    return _IN_WORDS[number]
+
+
 def visible(text: Text, *, layout: bool = False) -> Text:
     """The text with every character that hides, moves or reorders what is read written as its escape (ESC: backslash, x1b).
 

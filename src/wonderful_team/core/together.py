@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Awaitable, Iterable
+from collections.abc import Awaitable, Iterable, Iterator, Sequence
 from typing import TypeVar
 
 T = TypeVar("T")
@@ -20,6 +20,13 @@ async def together(jobs: Iterable[Awaitable[T]]) -> list[T]:
             task.cancel()
         await asyncio.gather(*tasks, return_exceptions=True)
         raise
+
+
+def batches(items: Sequence[T], most: int) -> Iterator[Sequence[T]]:
+    """As few parts as possible, in order and of nearly the same size, none of more than `most` items."""
+    count = -(-len(items) // max(most, 1))
+    for part in range(count):
+        yield items[part * len(items) // count : (part + 1) * len(items) // count]
 
 
 async def both(first: Awaitable[T], second: Awaitable[U]) -> tuple[T, U]:

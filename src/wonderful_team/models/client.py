@@ -90,6 +90,11 @@ class ModelClient:
             raise ConfigError(f"no model for role {role!r}; models are set for: {', '.join(self._models)}")
         return model
 
+    def picture_limit(self, role: str) -> int | None:
+        """Most pictures in one request to the model that serves a role; None where nothing is known."""
+        limit = getattr(self.model_for(role), "picture_limit", None)
+        return limit if isinstance(limit, int) and limit > 0 else None
+
     @property
     def model_name(self) -> str:
         """The model's name; where roles have different ones, role=name for each."""

@@ -23,9 +23,11 @@ Relation: TypeAlias = Literal[
 ]  # fmt: skip
 Superlative: TypeAlias = Literal[
     "largest", "smallest", "leftmost", "rightmost", "topmost", "bottommost", "middle", "tallest", "shortest", "nearest",
-    "darkest", "lightest",
+    "darkest", "lightest", "column by column", "row by row",
 ]  # fmt: skip
 
+LINE_BY_LINE: tuple[Superlative, ...] = ("column by column", "row by row")
+"""How many things in a field are counted: from the left, each column from the top; from the top, each row from the left."""
 OPPOSITE: dict[str, Superlative] = {
     "tallest": "shortest", "shortest": "tallest", "darkest": "lightest", "lightest": "darkest", "largest": "smallest",
     "smallest": "largest",

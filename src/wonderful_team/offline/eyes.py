@@ -8,9 +8,10 @@ from functools import cached_property
 
 from wonderful_team.contracts import ShownSlot, ShownTask
 from wonderful_team.core.pictures import Picture, Point
+from wonderful_team.core.text import MOST_IN_ORDER
 from wonderful_team.core.values import Target
 from wonderful_team.images.colours import COLOURS
-from wonderful_team.offline.description import SHAPES, Description, Way
+from wonderful_team.offline.description import LINE_BY_LINE, SHAPES, Description, Way
 from wonderful_team.offline.language import describe, render, try_describe, worded
 from wonderful_team.offline.language.wording import corner_words
 from wonderful_team.offline.pushing.sweeping import find_place, read_place
@@ -28,12 +29,14 @@ from wonderful_team.offline.vision import (
     with_heights,
 )
 from wonderful_team.offline.vision.changes import came_to
-from wonderful_team.offline.vision.relations import shares_from
+from wonderful_team.offline.vision.relations import in_lines, shares_from
 
 NEARLY_EQUAL = 0.06
 """Two scores closer than this, both good, are a genuine ambiguity (0 to 1)."""
 GOOD = 0.55
 """A match with at least this score fits (0 to 1)."""
+FEW = 5
+"""So many things one counts at a glance; a field of more is counted line by line where its lines are clear."""
 SHOWN = 0.5
 """Likeness from which a picture of a table shows a thing (0 to 1)."""
 CLEARLY_LESS = 0.15
@@ -270,7 +273,8 @@ def _means(matches: list[Match], thing: Thing) -> bool:
 
 def _by_place(eyes: Eyes, thing: Thing, base: Description) -> Description:
     """Words such as "the second red block from the left"."""
-    fitting = [match.thing for match in eyes.find(replace(base, quantity="all")) if match.thing is not None]
+    matches = [match for match in eyes.find(replace(base, quantity="all")) if match.thing is not None]
+    fitting = [match.thing for match in matches if match.thing is not None]
     columns = [item.number for item in sorted(fitting, key=lambda item: item.centre[0])]
     rows = [item.number for item in sorted(fitting, key=lambda item: item.centre[1])]
     if thing.number not in columns:
@@ -282,9 +286,17 @@ def _by_place(eyes: Eyes, thing: Thing, base: Description) -> Description:
         replace(base, superlative="topmost", ordinal=rows.index(thing.number) + 1),
     ]
     for description in candidates:
-        if description.ordinal <= 5 and eyes.number(description) == thing.number:
+        found = eyes.find(description) if description.ordinal <= FEW else []
+        clear = len(fitting) <= FEW or (bool(found) and found[0].score >= GOOD)
+        if _means(found, thing) and clear:
             return worded(description)
-    return worded(candidates[0] if place <= 5 else candidates[1])
+    counted = {way: [match.thing for match in in_lines(matches, way)] for way in LINE_BY_LINE}
+    lines = [replace(base, superlative=way, ordinal=order.index(thing) + 1) for way, order in counted.items()]
+    for description in (*lines, *candidates):
+        found = eyes.find(description) if description.ordinal <= MOST_IN_ORDER else []
+        if _means(found, thing) and found[0].score >= GOOD:
+            return worded(description)
+    return worded(candidates[0] if place <= FEW else candidates[1])
 
 
 PICTURE_SIDES = {"leftmost": "on the left", "rightmost": "on the right", "topmost": "at the top",

@@ -88,6 +88,8 @@ class Bounds:
         functions: Versions of one helper function.
         samples: Independent proposals of a centre or a spot.
         clarifications: Questions that the user answers for one plan.
+        targets: Targets in one question to the grounding team; where there are more, several questions are asked at once. Fewer
+            where the model takes fewer pictures.
     """
 
     questions: int = 10
@@ -98,6 +100,7 @@ class Bounds:
     functions: int = 5
     samples: int = 3
     clarifications: int = 3
+    targets: int = 20
 
 
 @dataclass(frozen=True)

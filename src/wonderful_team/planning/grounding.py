@@ -14,7 +14,7 @@ from wonderful_team.agents.scene import SceneShown, plan_lines
 from wonderful_team.contracts import SceneReading, SceneTarget
 from wonderful_team.core.geometry import Box
 from wonderful_team.core.pictures import Point
-from wonderful_team.core.together import both, together
+from wonderful_team.core.together import batches, both, together
 from wonderful_team.core.values import Critique, GroundedTarget, PointRole, Provenance, Subgoal, Target
 from wonderful_team.planning.boxes import BoxFate, judge_together, refine
 from wonderful_team.planning.centres import choose, give_box, propose
@@ -139,9 +139,15 @@ async def settle_reading(
 
     async def together_first() -> list[GroundedTarget]:
         if plain:
-            await judge_together(plain)
+            session = plain[0].session
+            fit = session.client.picture_limit("checker")
+            # A model of one picture sees them on a sheet, however many they are.
+            most = min(session.config.bounds.targets, fit if fit is not None and fit > 1 else len(plain))
+            await together([judge_together(part) for part in batches(plain, most)])
             named = ", ".join(job.target.id for job in plain)
-            plain[0].session.skip("JudgeBox", f"{named} in one question")
+            plain[0].session.skip(
+                "JudgeBox", f"{named} {'in one question' if len(plain) <= most else f'up to {most} in one question'}"
+            )
         return await together([_settle_one(job, provenance) for job in plain])
 
     async def one_by_one() -> list[GroundedTarget]:

@@ -10,6 +10,7 @@ from wonderful_team.agents.scene import SceneShown
 from wonderful_team.contracts import ReadScene, SceneReading, ShownSlot, Strip, WrongPoint
 from wonderful_team.core.geometry import Box
 from wonderful_team.core.pictures import Axes, BoxMark, Picture, Point, PointMark
+from wonderful_team.core.together import batches, together
 from wonderful_team.core.values import Answer, GroundedTarget, GroundingEvent, PointRole, Provenance, Target
 from wonderful_team.images import crop, edge_strips
 from wonderful_team.planning.session import AgentSession
@@ -117,7 +118,15 @@ class Job:
 
 
 async def read_scene(jobs: Sequence[Job]) -> tuple[SceneReading, Provenance]:
-    """Boxes and points of all targets in one answer."""
+    """Boxes and points of all targets, in one answer where they are not too many for it."""
+    parts = list(batches(jobs, jobs[0].session.config.bounds.targets))
+    read = await together([_read_some(part) for part in parts])
+    targets = [target for reading, _ in read for target in reading.targets]
+    reasoning = " ".join(reading.reasoning for reading, _ in read)
+    return SceneReading(reasoning=reasoning, targets=targets), read[0][1]
+
+
+async def _read_some(jobs: Sequence[Job]) -> tuple[SceneReading, Provenance]:
     session, scene = jobs[0].session, jobs[0].scene
     targets = tuple(job.target for job in jobs)
     view = scene.labelled if session.config.axes else scene.views[0]

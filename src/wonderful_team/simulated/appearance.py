@@ -7,6 +7,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from wonderful_team.core.text import ORDINALS
 from wonderful_team.core.values import TrueThing
 from wonderful_team.images.colours import COLOURS, memberships, to_lab
 from wonderful_team.simulated.seeing import Seen
@@ -50,10 +51,9 @@ ALSO: Mapping[str, tuple[str, ...]] = {
 """What else a shape is called."""
 GENERAL = frozenset(
     "object objects thing things item items piece one the a an of in at to with from left right and shown picture "
-    "it that which is area place letter free for shape patterned coloured colored first second third fourth fifth sixth "
-    "seventh eighth ninth tenth leftmost rightmost lightest lighter darkest darker tallest taller highest shortest lowest "
+    "it that which is area place letter free for shape patterned coloured colored leftmost rightmost lightest lighter darkest darker tallest taller highest shortest lowest "
     "largest biggest larger smallest smaller".split()
-)
+).union(ORDINALS)
 """Words that fit everything, or choose among what fits."""
 LEAST_SHARE = 0.25
 """A colour is plain on a thing when it covers at least this much of it."""

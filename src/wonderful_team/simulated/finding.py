@@ -8,10 +8,10 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 from wonderful_team.core.geometry import Box
+from wonderful_team.core.text import ORDINALS
 from wonderful_team.core.values import Target, TrueThing
 from wonderful_team.simulated.appearance import fit, known, lightness, tokens
 from wonderful_team.simulated.draft import Meaning
-from wonderful_team.simulated.naming import ORDINALS
 from wonderful_team.simulated.plan import stands_at
 from wonderful_team.simulated.seeing import Seen
 from wonderful_team.simulated.spots import free_spot, room_spot
@@ -127,9 +127,10 @@ def _one_of(words: str, names: Sequence[str], search: Search) -> str | None:
         return names[0]
     in_order = sorted(names, key=search.at)
     backwards = "from the right" in words
-    for number, ordinal in enumerate(ORDINALS):
-        if re.search(rf"\b{ordinal}\b", words) and number < len(in_order):
-            return in_order[-1 - number] if backwards else in_order[number]
+    numbers = (ORDINALS[word] for word in re.findall(r"\w+", words) if word in ORDINALS)
+    number = next((number for number in numbers if number <= len(in_order)), None)
+    if number is not None:
+        return in_order[-number] if backwards else in_order[number - 1]
     if "leftmost" in words or "rightmost" in words:
         return in_order[0] if "leftmost" in words else in_order[-1]
     measures: Mapping[str, Callable[[str], float]] = {

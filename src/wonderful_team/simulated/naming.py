@@ -6,9 +6,9 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from wonderful_team.core.text import ordinal
 from wonderful_team.core.values import GroundTruthView, TrueThing
 
-ORDINALS = ("first", "second", "third", "fourth", "fifth", "sixth", "seventh", "eighth", "ninth", "tenth")
 TALLER = 1.3
 """A thing this many times as high as another of the same words is called the taller one."""
 
@@ -33,8 +33,8 @@ def unique_words(sight: GroundTruthView, things: Mapping[str, TrueThing]) -> dic
         if len(names) == 2 and heights[high] > TALLER * heights[low]:
             words[high], words[low] = f"taller {said}", f"shorter {said}"
             continue
-        for number, name in enumerate(sorted(names, key=lambda name: _across(sight, things[name]))):
-            words[name] = f"{_ordinal(number)} {said} from the left"
+        for number, name in enumerate(sorted(names, key=lambda name: _across(sight, things[name])), 1):
+            words[name] = f"{ordinal(number)} {said} from the left"
     return words
 
 
@@ -46,7 +46,3 @@ def _across(sight: GroundTruthView, thing: TrueThing) -> tuple[float, float]:
         return float(x), float(y)
     rows, columns = np.nonzero(sight.masks[thing.name])
     return (float(columns.mean()), float(rows.mean())) if len(rows) else (0.0, 0.0)
-
-
-def _ordinal(number: int) -> str:
-    return ORDINALS[number] if number < len(ORDINALS) else f"{number + 1}th"

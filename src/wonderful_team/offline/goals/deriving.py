@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 
-from wonderful_team.offline.description import Description
+from wonderful_team.offline.description import LINE_BY_LINE, Description
 from wonderful_team.offline.eyes import (
     GOOD,
     NEARLY_EQUAL,
@@ -187,11 +187,17 @@ def _things(
     if not matches:
         result.misses(description, eyes)
     noun = description.noun if description.noun != "thing" else "object"
-    return [
+    named = [
         Named(unique_words(eyes, match.thing, noun, description.name, description.shape), match.thing.number)
         for match in matches
         if match.thing is not None  # always: filtered above
     ]
+    told_apart = len({item.words for item in named})
+    if told_apart < len(named):
+        result.absent.append(
+            f"{len(named)} things fit '{description.text}', but words tell only {told_apart} of them apart"
+        )
+    return named
 
 
 def _miscounted(description: Description, count: int) -> Iterator[str]:
@@ -270,7 +276,11 @@ def _presumed(description: Description, number: int, chosen: Match, eyes: Eyes) 
     elif wish in PICTURE_SIDES and len(fits) == 1 and " " not in description.name:
         if not is_at(eyes.scene, chosen.point, wish, OUTER if wish == "middle" else 1 / 2):
             yield f"the {render(compared)} is not {side_words(wish)}"
-    elif wish not in (None, "middle", "nearest") and " " not in description.name and len(fits) > description.ordinal:
+    elif (
+        wish not in (None, "middle", "nearest", *LINE_BY_LINE)
+        and " " not in description.name
+        and len(fits) > description.ordinal
+    ):
         assert wish is not None  # ruled out just now
         first, second = sorted(superlative_keys(fits, wish))[description.ordinal - 1 :][:2]
         least = ASIDE * chosen.box.width if wish in PICTURE_SIDES else AS_LARGE * max(abs(first), abs(second))

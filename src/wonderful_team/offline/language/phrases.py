@@ -97,6 +97,8 @@ _LISTED: dict[Entry, str] = {
     ("SUPER", "rightmost"): "right most",
     ("SUPER", "topmost"): "top most",
     ("SUPER", "bottommost"): "bottom most",
+    ("SUPER", "column by column"): "counted column by column from top left; counted column by column",
+    ("SUPER", "row by row"): "counted row by row from top left; counted row by row",
     ("BETWEEN", "between"): """
     in between; in gap between; in space between; into gap between; into space between; halfway between;
     midway between; in middle between; in middle , between; right between""",

@@ -9,7 +9,7 @@ from wonderful_team.errors import NotUnderstoodError
 from wonderful_team.offline.language.phrases import PHRASES
 from wonderful_team.offline.language.vocabulary import ARTICLES, FILLERS, NUMBERS, WORDS, kind_of, nearest_words
 
-_PIECE = re.compile(r"\{[^{}]+\}|beside_[a-z]+|\d+(?:\.\d+)?(?:nd|rd|th)?|°|[^\W\d_]+|[,;.:!?()]", re.UNICODE)
+_PIECE = re.compile(r"\{[^{}]+\}|beside_[a-z]+|\d+(?:\.\d+)?(?:st|nd|rd|th)?|°|[^\W\d_]+|[,;.:!?()]", re.UNICODE)
 _LONGEST = max(len(phrase) for phrase in PHRASES)
 _STARTS_NOUN_PHRASE = frozenset(
     "NOUN SHAPE COLOUR ORANGE PATTERN ONE SIDE SLOT DARK SUPER LETTER MATERIAL LOOK".split()

@@ -10,6 +10,8 @@ import re
 from collections.abc import Iterable, Iterator
 from difflib import get_close_matches
 
+from wonderful_team.core.text import ORDINALS
+
 Entry = tuple[str, object]
 """Kind of token (a terminal of the grammar) and its value."""
 
@@ -136,8 +138,7 @@ _SUPERLATIVES = _listed(
 )
 _SIDES = {"left": "leftmost", "right": "rightmost", "top": "topmost", "bottom": "bottommost", "upper": "topmost",
           "lower": "bottommost"}  # fmt: skip
-_ORDINALS = {"first": 1, "1st": 1, "last": -1, "second": 2, "third": 3, "fourth": 4, "fifth": 5, "sixth": 6, "2nd": 2,
-             "3rd": 3, "4th": 4, "5th": 5, "6th": 6}  # fmt: skip
+_ORDINALS = {**ORDINALS, "last": -1}
 NUMBERS = {"two": 2, "three": 3, "four": 4, "five": 5, "six": 6, "seven": 7, "eight": 8, "nine": 9, "ten": 10,
            "fifteen": 15, "twenty": 20, "thirty": 30, "forty": 40, "fortyfive": 45, "fifty": 50, "sixty": 60,
            "seventy": 70, "eighty": 80, "ninety": 90, "hundred": 100}  # fmt: skip

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from wonderful_team.offline.description import Description, Related
+from wonderful_team.core.text import ordinal
+from wonderful_team.offline.description import LINE_BY_LINE, Description, Related
 from wonderful_team.offline.language.vocabulary import plural
 
 _RELATION_WORDS = {"left_of": "left of", "right_of": "right of", "above": "above", "below": "below", "near": "next to", "nearest": "nearest to",
                    "far_from": "far from", "on": "on top of", "inside": "inside", "between": "between",
                    "same_colour": "with the same colour as", "same_pattern": "with the same texture as",
                    "same_shape": "with the same shape as"}  # fmt: skip
-_ORDINAL_WORDS = {2: "second", 3: "third", 4: "fourth", 5: "fifth"}
 _FROM = {"leftmost": "left", "rightmost": "right", "topmost": "top", "bottommost": "bottom"}
 
 
@@ -45,9 +45,11 @@ def _counted(description: Description) -> tuple[list[str], list[str]]:
         words.append(description.quantity)
     elif description.quantity == "number":
         words.append(str(description.number))
-    superlative, ordinal = description.superlative, _ORDINAL_WORDS.get(description.ordinal)
-    if ordinal:
-        words.append(ordinal)
+    superlative = description.superlative
+    if superlative in LINE_BY_LINE:
+        return [*words, ordinal(description.ordinal)], [f"counted {superlative} from the top left"]
+    if description.ordinal > 1:
+        words.append(ordinal(description.ordinal))
         if superlative in _FROM:
             return words, [f"from the {_FROM[superlative]}"]
     if superlative and not _is_corner(description):

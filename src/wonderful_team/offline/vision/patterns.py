@@ -76,6 +76,7 @@ def study_surface(lab: Array, mask: Array) -> Surface:
         inner = cv2.erode(mask.astype(np.uint8), np.ones((3, 3), np.uint8)).astype(bool)
     if inner.sum() < 20:
         inner = mask
+    inner = _without_blurred_rim(lab, inner)
     pixels = lab[inner].astype(np.float64)
     contrast = _contrast(pixels, inner)
     one_way, two_way, edges = _directions(lab, inner)
@@ -91,6 +92,20 @@ def study_surface(lab: Array, mask: Array) -> Surface:
     vivid = chroma > 22
     counts = np.histogram(hue[vivid], bins=12, range=(-np.pi, np.pi))[0] / max(len(pixels), 1)
     return Surface(contrast, one_way, two_way, edges, spots, spotted, share, int((counts > 0.06).sum()), fit)
+
+
+ON_THE_RIM = 0.9
+"""A second tone of which this share lies on the outermost pixels is the table's, blurred into the edge."""
+
+
+def _without_blurred_rim(lab: Array, inner: Array) -> Array:
+    """The mask without its outermost pixels where these alone differ from the rest."""
+    core = cv2.erode(inner.astype(np.uint8), np.ones((3, 3), np.uint8), borderValue=0).astype(bool)
+    if core.sum() < 40:
+        return inner
+    rare = np.zeros(inner.shape, bool)
+    rare[inner] = _two_colours(lab[inner].astype(np.float64))[0] == 1
+    return core if rare.any() and (rare & ~core).sum() >= ON_THE_RIM * rare.sum() else inner
 
 
 def _contrast(pixels: Array, inner: Array) -> float:

@@ -10,7 +10,7 @@ import cv2
 import numpy as np
 
 from wonderful_team.core.geometry.arrays import Array
-from wonderful_team.offline.description import OPPOSITE
+from wonderful_team.offline.description import LINE_BY_LINE, OPPOSITE
 from wonderful_team.offline.vision.examples import alike_colour, alike_pattern
 from wonderful_team.offline.vision.outlines import filled, largest_contour, same_form, study_outline
 from wonderful_team.offline.vision.things import Look, Match, Scene, Thing
@@ -130,6 +130,8 @@ def pick_superlative(matches: list[Match], superlative: str, ordinal: int) -> li
         return []
     if superlative == "middle":
         return _middle(placed)
+    if superlative in LINE_BY_LINE:
+        return in_lines(placed, superlative)[ordinal - 1 : ordinal]
     keys = superlative_keys([match.thing for match in placed if match.thing is not None], superlative)
     order = np.argsort(keys, kind="stable")
     chosen = int(order[ordinal - 1])
@@ -140,6 +142,26 @@ def pick_superlative(matches: list[Match], superlative: str, ordinal: int) -> li
     best = placed[chosen]
     sure = float(np.clip(0.5 + 5 * lead, 0, 1))
     return [replace(best, score=best.score * sure, why=f"{best.why}, {superlative} {sure:.2f}")]
+
+
+APART, TOGETHER = 0.4, 0.2
+"""Two lines of things are apart, two things in one line, by these shares of a thing's width."""
+
+
+def in_lines(placed: list[Match], superlative: str) -> list[Match]:
+    """All in the order in which a field is counted; the less certain it is in which line one lies, the lower its score."""
+    across, along = (0, 1) if superlative == "column by column" else (1, 0)
+    points = np.array([match.point for match in placed])
+    size = float(np.median([(match.box.width, match.box.height)[across] for match in placed]))
+    order = np.argsort(points[:, across], kind="stable")
+    gaps = np.diff(points[order, across]) / size
+    line = np.zeros(len(placed), int)
+    line[order] = np.concatenate([[0], np.cumsum(gaps > (APART + TOGETHER) / 2)])
+    doubtful = {
+        int(line[order[k + side]]) for k in np.flatnonzero((gaps > TOGETHER) & (gaps < APART)) for side in (0, 1)
+    }
+    counted = np.lexsort((points[:, along], line))
+    return [replace(placed[k], score=placed[k].score * (0.5 if int(line[k]) in doubtful else 1.0)) for k in counted]
 
 
 OUTER = 1 / 3

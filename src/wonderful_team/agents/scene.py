@@ -163,14 +163,22 @@ class SceneShown:
     def examples(self, targets: Sequence[Target], ticks: bool = True) -> tuple[ShownSlot, ...]:
         """The instruction's pictures of these targets, in the instruction's order; whole tables with tick labels or without.
 
-        A place is found with the scenes that define it. Where nobody says which these are, it gets all of them.
+        A place is found with the scenes that define it. Where nobody says which these are, it gets all of them. Of a whole
+        table that the main camera sees, the other views say nothing of where something lies in the main one.
         """
         scenes = {slot.name for slot in self.slots if slot.whole_scene}
         wanted = {name for target in targets for name in target.like}
         for target in targets:
             if target.kind == "area" and not scenes & set(target.like):
                 wanted |= scenes
-        return tuple(slot for slot in (self.ticked_slots if ticks else self.slots) if slot.name in wanted)
+        found = (slot for slot in (self.ticked_slots if ticks else self.slots) if slot.name in wanted)
+        return tuple(replace(slot, pictures=self._from_main(slot)) for slot in found)
+
+    def _from_main(self, slot: ShownSlot) -> tuple[Picture, ...]:
+        """A slot's pictures; of a whole table those of the main camera alone, where it has any."""
+        main = self.views[0].size_px
+        same = tuple(picture for picture in slot.pictures if picture.size_px == main) if slot.whole_scene else ()
+        return same or slot.pictures
 
 
 def scale_facts(view: View, limits: Limits) -> tuple[str, ...]:

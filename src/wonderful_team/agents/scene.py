@@ -50,15 +50,16 @@ class SceneShown:
     def arranged(self, target: Target) -> tuple[str, View] | None:
         """The instruction's scene that defines a place, as seen where the main view is: its name and view.
 
-        None without one, and for one of another size: places in it are then no places in the main view.
+        Of several frames of a motion, the last one: a motion ends there. None without one, and for one of another size:
+        places in it are then no places in the main view.
         """
         main = next(iter(self.observation.views))
-        for name in target.like if target.kind == "area" else ():
-            slot = self.instruction.slots.get(name)
-            if slot is not None and slot.kind in ARRANGED:
-                view = slot.views.get(main) or next(iter(slot.views.values()))
-                if view.size_px == self.view.size_px:
-                    return name, view
+        named = (self.instruction.slots.get(name) for name in target.like if target.kind == "area")
+        scenes = [slot for slot in named if slot is not None and slot.kind in ARRANGED]
+        for slot in sorted(scenes, key=lambda one: one.index if one.index is not None else -1, reverse=True):
+            view = slot.views.get(main) or next(iter(slot.views.values()))
+            if view.size_px == self.view.size_px:
+                return slot.name, view
         return None
 
     @cached_property

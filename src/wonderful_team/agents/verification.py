@@ -88,7 +88,8 @@ from what the camera sees. Go through the steps in order and ask of each:
   alone is where a thing is held that is turned or moved where it stands. The arrow of a push begins beside the thing instead, on the side away from where it should go, and its strip
   ends where the front of the tool stops: the thing then lies before it.
 - Can it be done with this robot, and what does it hit, sweep along or cover? What the robot lifts over other things
-  does not hit them; what it pushes does.
+  does not hit them; what it pushes does, and drifts a little: a strip that runs close along what must not be touched, with
+  more room on its other side, is a doubt.
 
 Approve when no answer speaks against a step, nor against the plan where it is to be checked too. Otherwise ask one
 question, the most serious one; about a step, give its number. The kinds:

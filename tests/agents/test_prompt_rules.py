@@ -43,7 +43,7 @@ RULES = [
     ("verification.ReviewPlan.md", "taken until a later subgoal clears it"),
     ("supervisor.DraftPlan.md", "on what an earlier subgoal moved, where it then lies"),
     ("supervisor.DraftPlan.md", "stay where they are, also when a picture of what is wanted leaves them out"),
-    ("supervisor.DraftPlan.md", "what was only moved out of the way goes back too"),
+    ("supervisor.DraftPlan.md", "Going back to how things were takes back what was moved out of the way, too"),
     ("supervisor.DraftPlan.md", "A second push needs no start of its own"),
     ("supervisor.DraftPlan.md", "or that a helper function's path is only led over"),
     ("checker.JudgeBoxes.md", "A lid or a thing that covers a place now is no reason against it"),

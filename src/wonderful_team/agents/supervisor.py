@@ -55,8 +55,8 @@ How to write the plan
   of its own, and a place must be free by the time something goes there. Several things that go into one container may
   lie on each other. Things that the instruction does not concern stay where they are, also when a picture of what is
   wanted leaves them out.
-- If the instruction asks for a sequence, an order or going back to how things were, each stage is a subgoal; what was
-  only moved out of the way goes back too.
+- If the instruction asks for a sequence, an order or going back to how things were, each stage is a subgoal. Going back to
+  how things were takes back what was moved out of the way, too.
 - An object's picture in the instruction shows what to look for. A picture of a scene, a frame or a before and after
   pair shows an arrangement or a motion to reproduce: work out from it which thing goes where. How things are turned there
   counts too, unless what is known of the robot says otherwise; state a turn in degrees and its direction.
@@ -68,8 +68,8 @@ How to write the plan
   whether the tool touches the surface on it.
 - move: for a subgoal that one pick and one place carry out, what is picked, where it goes and how far it is turned: "at" a
   target is the point chosen on it (on what an earlier subgoal moved, where it then lies), "beside" a target needs a side as
-  the main view shows it, "origin" is where the target stood at the start. rotate_deg is only what the instruction or its pictures state. null for a push, a path, several
-  moves, or when you are not sure; the steps are then written later.
+  the main view shows it, "origin" is where the target stood at the start. rotate_deg is only what the instruction or its
+  pictures state. null for a push, a path, several moves, or when you are not sure; the steps are then written later.
 - unsure: what about the plan you are not sure of after looking closely, such as an angle that you had to estimate or two
   things that look the same; it is then looked at more closely. Empty when nothing is in doubt, as in most plain scenes.
 - mode: one_step for a short plan without obstacles; full when many subgoals depend on each other.

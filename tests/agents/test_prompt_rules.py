@@ -52,7 +52,7 @@ RULES = [
     ("verification.ReviewSteps.md", "What a gripper carries is one arrow"),
     (
         "verification.ReviewSteps.md",
-        "a strip that runs close along what must not be touched, with more room on its other side",
+        "a strip that runs close along what must not be touched, with much more room on its other side",
     ),
     ("checker.JudgeRevision.md", "what is still wrong with the box that is kept"),
 ]

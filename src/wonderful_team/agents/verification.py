@@ -90,7 +90,7 @@ from what the camera sees. Go through the steps in order and ask of each:
   lies before it.
 - Can it be done with this robot, and what does it hit, sweep along or cover? What the robot lifts over other things
   does not hit them; what it pushes does, and drifts a little: a strip that runs close along what must not be touched, with
-  more room on its other side, is a doubt.
+  much more room on its other side, is a doubt.
 
 Approve when no answer speaks against a step, nor against the plan where it is to be checked too. Otherwise ask one
 question, the most serious one; about a step, give its number. The kinds:

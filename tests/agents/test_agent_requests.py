@@ -150,7 +150,7 @@ def test_request_carries_output_type_role_and_notes(question: Question) -> None:
     assert question.contract in asker.asks
     assert (request.role, request.system) == (asker.name, asker.system)
     assert (request.notes, request.sample) == (notes, 2)
-    assert "which mug: the striped one (from checker)" in shown(request)
+    assert "- which mug: the striped one\n" in f"{shown(request)}\n"
     assert "which mug: the striped one" not in shown(build(question))
 
 

@@ -41,6 +41,19 @@ RULES = [
     ("supervisor.DraftPlan.md", "what a second push of it needs is a guess until there is a new picture"),
     ("verification.ReviewPlan.md", "Several things that go into one container may lie on each other"),
     ("verification.ReviewPlan.md", "taken until a later subgoal clears it"),
+    ("supervisor.DraftPlan.md", "on what an earlier subgoal moved, where it then lies"),
+    ("supervisor.DraftPlan.md", "stay where they are, also when a picture of what is wanted leaves them out"),
+    ("supervisor.DraftPlan.md", "Going back to how things were takes back what was moved out of the way, too"),
+    ("supervisor.DraftPlan.md", "A second push needs no start of its own"),
+    ("supervisor.DraftPlan.md", "or that a helper function's path is only led over"),
+    ("checker.JudgeBoxes.md", "A lid or a thing that covers a place now is no reason against it"),
+    ("checker.JudgeBox.md", "push_start: beside the target, clear of it; of an area, inside it"),
+    ("verification.ReviewSteps.md", "nor against the plan where it is to be checked too"),
+    ("verification.ReviewSteps.md", "What a gripper carries is one arrow"),
+    (
+        "verification.ReviewSteps.md",
+        "a strip that runs close along what must not be touched, with much more room on its other side",
+    ),
     ("checker.JudgeRevision.md", "what is still wrong with the box that is kept"),
 ]
 

@@ -120,3 +120,30 @@ def test_single_things_are_cut_out_and_keep_their_exact_frames() -> None:
     middle = top.rgb[int(shown.centre[1]), int(shown.centre[0])]
     assert np.array_equal(middle, BLUE)
     assert min(top.size_px) >= 200
+
+
+def test_to_find_a_place_the_other_views_of_a_scene_are_not_sent() -> None:
+    stacked = scene_of(slot("goal", "scene", (200, 60, RED), (200, 60, BLUE)))
+    (goal,) = stacked.slots
+    target = Target("T1", "area", "where the red one lies in {goal}", like=("goal",), use=("place",))
+    (example,) = stacked.examples([target])
+    assert [picture.name for picture in goal.pictures][:1] == [picture.name for picture in example.pictures]
+    assert example.pictures[0].size_px == stacked.views[0].size_px
+    # A scene that another camera took is all there is.
+    other = Slot("goal", "scene", {"phone": look("slot:goal:phone", *NOW, camera="phone", size=(200, 300))})
+    (kept,) = scene_of(other).examples([target])
+    assert [picture.name for picture in kept.pictures] == ["{goal} phone"]
+
+
+def test_of_several_frames_that_define_a_place_the_last_one_is_compared() -> None:
+    frames = [slot(f"frame_{number}", "frame", (40 * number, 100, RED), index=number) for number in (1, 2, 3)]
+    scene = scene_of(*frames, slot("goal", "scene", (120, 100, RED)))
+    for like, wanted in (
+        (("frame_1", "frame_2"), "frame_2"),
+        (("frame_3", "frame_1"), "frame_3"),
+        (("goal",), "goal"),
+    ):
+        found = scene.arranged(Target("T1", "area", "where it ends", like=like, use=("place",)))
+        assert found is not None
+        assert found[0] == wanted
+    assert scene.arranged(Target("T1", "object", "it", like=("frame_1",))) is None

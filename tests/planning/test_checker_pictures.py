@@ -11,7 +11,7 @@ from tests.planning.stub_model import stub_model
 from tests.planning.test_doubted_targets import of_target, verdict
 from wonderful_team.agents import build_request
 from wonderful_team.agents.scene import SceneShown
-from wonderful_team.contracts import JudgeBox, Tolerance
+from wonderful_team.contracts import JudgeBox, JudgeBoxes, Tolerance
 from wonderful_team.core.actions import PICK_PLACE
 from wonderful_team.core.geometry import Box
 from wonderful_team.core.pictures import BoxMark, PointMark
@@ -129,3 +129,27 @@ def test_a_place_that_a_scene_defines_comes_with_the_same_crop_of_that_scene():
     assert judge_box(job_of(target, arranged(size=(320, 240 + 40))), Box(40, 20, 80, 60), {}).goal is None
     thing = Target("T1", "object", "block", source="slot", like=("goal",))
     assert judge_box(job_of(thing, arranged()), box, {}).goal is None
+
+
+def test_of_a_scene_whose_part_is_shown_nothing_else_is_sent_and_the_point_stands_on_it_too():
+    box, seen = Box(400, 200, 480, 280), arranged()
+    there = Target("T1", "area", "place of the block in {goal}", source="slot", like=("goal",), use=("place",))
+    question = judge_box(job_of(there, seen), box, {"place": (440, 240)})
+    points = [[mark for mark in shown.marks if isinstance(mark, PointMark)] for shown in (question.crop, question.goal)]
+    assert points[0] == points[1] != []
+    request = build_request(question, id="q", stage="ground")
+    assert [picture.name for picture in request.pictures] == [question.goal.name, question.crop.name]
+    both = build_request(JudgeBoxes((question,)), id="q", stage="ground")
+    assert [picture.name for picture in both.pictures] == [question.goal.name, question.crop.name]
+    # Where no part of it can be shown, the scene itself is the only thing to judge by.
+    small = judge_box(job_of(there, arranged(size=(320, 280))), Box(40, 20, 80, 60), {})
+    names = [picture.name for picture in build_request(small, id="q", stage="ground").pictures]
+    assert names == ["{goal} photo", "crop"]
+
+
+def test_only_what_has_edges_is_judged_by_them():
+    box, free = Box(400, 200, 480, 280), Target("T1", "area", "free table beside the bowl", use=("place",))
+    assert "Good enough on this crop" not in said(judge_box(job_of(free), box, {}))
+    assert "any box that lies in what is described will do" in said(judge_box(job_of(free), box, {}))
+    there = Target("T1", "area", "place of the block in {goal}", source="slot", like=("goal",), use=("place",))
+    assert "Good enough on this crop" in said(judge_box(job_of(there, arranged()), box, {}))

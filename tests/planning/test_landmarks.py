@@ -7,6 +7,7 @@ from typing import Any
 import pytest
 
 from tests.planning.helpers import asked, draft, plan_with, scripted, subgoal
+from wonderful_team.core.actions import ARM
 from wonderful_team.core.values import Request, Words
 from wonderful_team.planning import TeamConfig
 
@@ -49,3 +50,14 @@ def test_without_a_grounding_team_a_point_has_to_do() -> None:
     plan_with(model, TeamConfig(ablation="s7"))
     assert all(request.question.target.roles == ("pick",) for request in asked(model, "LocatePoints"))
     assert len(asked(model, "LocatePoints")) == 2
+
+
+@pytest.mark.parametrize(("use", "roles"), [([], ()), (["grasp"], ("grasp",))])
+def test_what_a_path_is_led_over_needs_no_point_of_its_own(use: list[str], roles: tuple[str, ...]) -> None:
+    plan = draft(subgoal("G1", "a star is drawn on the paper", targets=["T1"], function="a star on the paper"))
+    plan["targets"] = [{**plan["targets"][0], "use": use}]
+    model = scripted(DraftPlan=plan)
+    plan_with(model, TeamConfig(), vocabulary=ARM)
+    (reading,) = asked(model, "ReadScene")
+    assert reading.question.targets[0].roles == roles
+    assert ("no points: only its outline is needed" in text(reading)) == (not roles)

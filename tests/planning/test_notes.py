@@ -10,7 +10,7 @@ import pytest
 from tests.planning.helpers import APPROVED, asked, doubt, draft, plan_with, scripted, subgoal
 from tests.planning.stub_model import stub_script
 from wonderful_team.contracts import QUESTIONS
-from wonderful_team.core.values import Note, Request
+from wonderful_team.core.values import Note, Request, Words
 from wonderful_team.models.scripted import ScriptedModel
 from wonderful_team.planning import TeamConfig
 from wonderful_team.planning.memory import Notebooks
@@ -119,3 +119,11 @@ def test_no_kind_of_question_leaves_more_than_a_line():
     }
     kinds = {question.__name__: question for question in QUESTIONS}
     assert all(note_of(object.__new__(kinds[name]), None) == "" for name in silent)
+
+
+def test_a_note_is_shown_as_a_sentence_without_the_names_of_questions_or_books():
+    plan = {**draft(subgoal("G1")), "unsure": "the angle is estimated"}
+    model = scripted(DraftPlan=plan)
+    assert plan_with(model, TeamConfig()).status == "planned"
+    shown = [part.text for request in asked(model, "ReviewPlan") for part in request.parts if isinstance(part, Words)]
+    assert "Notes kept from earlier in this task:\n- The Supervisor is not sure: the angle is estimated" in shown

@@ -154,7 +154,9 @@ def test_the_drawn_plan_shows_a_turn_as_an_arc_and_the_turned_outline():
     # A quarter about its middle: sides swapped, the top left corner at the top right.
     assert ends[0] == pytest.approx((box.centre[0] + box.height / 2, box.centre[1] - box.width / 2), abs=0.6)
     assert np.mean(ends, axis=0) == pytest.approx(box.centre, abs=0.6)
-    assert not any(isinstance(mark, PathMark) for mark in shown.marks), "no arrow for what stays where it is"
+    (held,) = (mark for mark in shown.marks if isinstance(mark, PathMark))
+    assert len(held.points) == 1, "no arrow for what stays where it is, a dot where it is held"
+    assert shown.frame.point_to_view(held.points[0]) == pytest.approx(plan.grounded["T1"].points["pick"], abs=0.6)
     # What is carried and turned has both.
     plan, model = plan_for(arranged(90), 90, area=True)
     shown = asked(model, "ReviewSteps")[0].question.overview

@@ -45,8 +45,10 @@ inwards and outwards, is stated with the target.
 Judge every point that is drawn, by the use that stands at it. List in wrong_points those that would not work:
 - pick, grasp: it has to lie on the solid surface of the target itself, not in a hole, not beside it, not on something
   that covers it. It need not be exactly in the middle.
-- place: it has to lie inside the container, on the surface or in the free space that is described.
-- push_start: beside the target, clear of it. push_end: where something can be pushed to.
+- place: it has to lie inside the container, on the surface or in the free space that is described; where the same part of
+  the instruction's scene is shown, in the middle of what lies there. A lid or a thing that covers a place now is no reason
+  against it: the plan says whether it leaves first.
+- push_start: beside the target, clear of it; of an area, inside it. push_end: where something can be pushed to.
 """
 
 JUDGE_BOXES = f"""
@@ -67,6 +69,14 @@ go outward or inward. It is empty after take_after_stop.
 """
 
 
+def _exactness_parts(question: JudgeBox) -> list[Part]:
+    if question.target.kind == "area" and question.goal is None:
+        return words(
+            "It is described in words alone and has no exact edges: any box that lies in what is described will do."
+        )
+    return _tolerance_parts(question.crop)
+
+
 def _tolerance_parts(picture: Picture) -> list[Part]:
     tolerance = Tolerance.on(picture)
     return words(
@@ -79,15 +89,20 @@ def _render_judge_box(question: JudgeBox) -> list[Part]:
     later = "they are chosen later" if question.target.roles else "only the outline is needed"
     uses = ", ".join(question.uses) or f"none; {later}"
     return [
-        *example_parts(question.examples),
+        *example_parts(_examples(question)),
         *_optional(question.alike, "another thing of the same description, whose box was accepted"),
         *_optional(question.whole, "the whole main view, to see which one it is"),
-        *_optional(question.goal, "the same part of the instruction's scene, with the same box"),
+        *_optional(question.goal, "the same part of the instruction's scene, with the same box and points"),
         *picture_parts(question.crop, "the neighbourhood of the box"),
         *words(f"Target {target_words(question.target)}"),
-        *_tolerance_parts(question.crop),
+        *_exactness_parts(question),
         *words(f"Points drawn, by their use: {uses}."),
     ]
+
+
+def _examples(question: JudgeBox) -> tuple[ShownSlot, ...]:
+    """The example pictures, but for the part of a scene that is shown beside the crop."""
+    return tuple(slot for slot in question.examples if question.goal is None or slot.pictures != (question.goal,))
 
 
 def _optional(picture: Picture | None, about: str) -> list[Part]:
@@ -95,7 +110,7 @@ def _optional(picture: Picture | None, about: str) -> list[Part]:
 
 
 def _render_judge_boxes(question: JudgeBoxes) -> list[Part]:
-    examples: dict[str, ShownSlot] = {slot.name: slot for item in question.boxes for slot in item.examples}
+    examples: dict[str, ShownSlot] = {slot.name: slot for item in question.boxes for slot in _examples(item)}
     parts = example_parts(tuple(examples.values()))
     for number, item in enumerate(question.boxes, start=1):
         parts += words(f"Box {number} of {len(question.boxes)}, for {item.target.id}:")

@@ -54,7 +54,8 @@ How to write targets, where they are to be listed now
 - use: what its points serve for. pick: it is picked up. place: the middle of something is to come to lie there, carried or
   pushed (a bowl that receives something is an object with use place). push_start: where the front of the tool comes
   down for a push. push_end: where the front of the tool stops; for where the pushed thing's middle should end, use
-  place. grasp: a gripper closes on it. Empty for a thing that others are only placed beside.
+  place. grasp: a gripper closes on it. Empty for a thing that others are only placed beside, or that a helper function's
+  path is only led over.
 - A thing that is moved beside another thing, or back to where it stood, needs no area of its own: steps can say
   "beside" and "origin".
 """.strip()

@@ -22,7 +22,7 @@ from wonderful_team.core.pictures import (
     Tiles,
     TurnMark,
 )
-from wonderful_team.core.values import Note, Part, Subgoal, Target, Words
+from wonderful_team.core.values import NOTEBOOK, Note, Part, Subgoal, Target, Words
 from wonderful_team.images.captions import axes_words, size_words
 from wonderful_team.images.panels import fit, side_by_side
 
@@ -91,8 +91,7 @@ def mark_words(mark: Mark) -> str:
                 return f"points {mark.prefix}1 to {mark.prefix}{count}" if count > 1 else f"one point {mark.prefix}1"
             return f"points numbered 1 to {count}" if count > 1 else "one point numbered 1"
         case PathMark():
-            strip = " with the strip that the tool sweeps" if mark.width else ""
-            return (f"a path labelled {mark.label}" if mark.label else "a path with an arrow at its end") + strip
+            return _path_words(mark)
         case Tiles():
             return f"pictures numbered 1 to {len(mark.boxes)}"
         case Grid():
@@ -101,12 +100,19 @@ def mark_words(mark: Mark) -> str:
             return (
                 "an arc with the degrees of a turn"
                 + (f" labelled {mark.label}" if mark.label else "")
-                + (", and the outline of the thing after it")
+                + ", and the box of the thing as it is turned then"
             )
         case LineMark():
             return "a line where the box's edge lies"
         case RegionMark():
             return "a region that nothing may enter" + (f" labelled {mark.label}" if mark.label else "")
+
+
+def _path_words(mark: PathMark) -> str:
+    if len(mark.points) == 1:
+        return "a dot where a thing is held" + (f" labelled {mark.label}" if mark.label else "")
+    strip = " with the strip that the tool sweeps" if mark.width else ""
+    return (f"a path labelled {mark.label}" if mark.label else "a path with an arrow at its end") + strip
 
 
 def caption(picture: Picture, about: str = "") -> str:
@@ -336,6 +342,9 @@ def ability_parts(step_kinds: Sequence[str]) -> list[Part]:
 
 
 def note_parts(notes: Sequence[Note]) -> list[Part]:
-    """The role's notebook and the system memory, in order."""
-    lines = [f"{note.key}: {note.text}" + (f" (from {note.source})" if note.source else "") for note in notes]
+    """The role's notebook and the system memory, in order.
+
+    A line of a notebook is a sentence; its key is the name of a question, which the role does not know.
+    """
+    lines = [note.text if note.source == NOTEBOOK else f"{note.key}: {note.text}" for note in notes]
     return listed("Notes kept from earlier in this task", lines)

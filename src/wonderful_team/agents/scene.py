@@ -50,15 +50,16 @@ class SceneShown:
     def arranged(self, target: Target) -> tuple[str, View] | None:
         """The instruction's scene that defines a place, as seen where the main view is: its name and view.
 
-        None without one, and for one of another size: places in it are then no places in the main view.
+        Of several frames of a motion, the last one: a motion ends there. None without one, and for one of another size:
+        places in it are then no places in the main view.
         """
         main = next(iter(self.observation.views))
-        for name in target.like if target.kind == "area" else ():
-            slot = self.instruction.slots.get(name)
-            if slot is not None and slot.kind in ARRANGED:
-                view = slot.views.get(main) or next(iter(slot.views.values()))
-                if view.size_px == self.view.size_px:
-                    return name, view
+        named = (self.instruction.slots.get(name) for name in target.like if target.kind == "area")
+        scenes = [slot for slot in named if slot is not None and slot.kind in ARRANGED]
+        for slot in sorted(scenes, key=lambda one: one.index if one.index is not None else -1, reverse=True):
+            view = slot.views.get(main) or next(iter(slot.views.values()))
+            if view.size_px == self.view.size_px:
+                return slot.name, view
         return None
 
     @cached_property
@@ -163,14 +164,22 @@ class SceneShown:
     def examples(self, targets: Sequence[Target], ticks: bool = True) -> tuple[ShownSlot, ...]:
         """The instruction's pictures of these targets, in the instruction's order; whole tables with tick labels or without.
 
-        A place is found with the scenes that define it. Where nobody says which these are, it gets all of them.
+        A place is found with the scenes that define it. Where nobody says which these are, it gets all of them. Of a whole
+        table that the main camera sees, the other views say nothing of where something lies in the main one.
         """
         scenes = {slot.name for slot in self.slots if slot.whole_scene}
         wanted = {name for target in targets for name in target.like}
         for target in targets:
             if target.kind == "area" and not scenes & set(target.like):
                 wanted |= scenes
-        return tuple(slot for slot in (self.ticked_slots if ticks else self.slots) if slot.name in wanted)
+        found = (slot for slot in (self.ticked_slots if ticks else self.slots) if slot.name in wanted)
+        return tuple(replace(slot, pictures=self._from_main(slot)) for slot in found)
+
+    def _from_main(self, slot: ShownSlot) -> tuple[Picture, ...]:
+        """A slot's pictures; of a whole table those of the main camera alone, where it has any."""
+        main = self.views[0].size_px
+        same = tuple(picture for picture in slot.pictures if picture.size_px == main) if slot.whole_scene else ()
+        return same or slot.pictures
 
 
 def scale_facts(view: View, limits: Limits) -> tuple[str, ...]:

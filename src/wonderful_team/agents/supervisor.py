@@ -53,20 +53,23 @@ How to write the plan
   for each thing that you count in the main view; "any" means one of your choice: name that one.
 - Look at the scene before you write: what covers, blocks or closes something has to be dealt with first, in a subgoal
   of its own, and a place must be free by the time something goes there. Several things that go into one container may
-  lie on each other. Things that the instruction does not concern stay where they are.
-- If the instruction asks for a sequence, an order or going back to how things were, each stage is a subgoal.
+  lie on each other. Things that the instruction does not concern stay where they are, also when a picture of what is
+  wanted leaves them out.
+- If the instruction asks for a sequence, an order or going back to how things were, each stage is a subgoal. Going back to
+  how things were takes back what was moved out of the way, too.
 - An object's picture in the instruction shows what to look for. A picture of a scene, a frame or a before and after
   pair shows an arrangement or a motion to reproduce: work out from it which thing goes where. How things are turned there
   counts too, unless what is known of the robot says otherwise; state a turn in degrees and its direction.
 - A subgoal that pushes says where the thing should end and what it must keep away from. Where friction leaves a thing is
-  not certain: what a second push of it needs is a guess until there is a new picture, so give it room.
+  not certain: what a second push of it needs is a guess until there is a new picture, so give it room. A second push
+  needs no start of its own: code computes it, behind the thing where the first push should leave it.
 - after: only the subgoals without which this one cannot be reached. function: null, unless a subgoal needs a path of
   its own shape, such as a circle, a zigzag or up and down, and the robot can follow paths; then say what is to be computed, and
   whether the tool touches the surface on it.
 - move: for a subgoal that one pick and one place carry out, what is picked, where it goes and how far it is turned: "at" a
-  target is the point chosen on it, "beside" a target needs a side as the main view shows it, "origin" is where the target
-  stood at the start. rotate_deg is only what the instruction or its pictures state. null for a push, a path, several
-  moves, or when you are not sure; the steps are then written later.
+  target is the point chosen on it (on what an earlier subgoal moved, where it then lies), "beside" a target needs a side as
+  the main view shows it, "origin" is where the target stood at the start. rotate_deg is only what the instruction or its
+  pictures state. null for a push, a path, several moves, or when you are not sure; the steps are then written later.
 - unsure: what about the plan you are not sure of after looking closely, such as an angle that you had to estimate or two
   things that look the same; it is then looked at more closely. Empty when nothing is in doubt, as in most plain scenes.
 - mode: one_step for a short plan without obstacles; full when many subgoals depend on each other.

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 from wonderful_team.contracts import JudgeBox
 from wonderful_team.core.geometry import Box
@@ -24,15 +25,18 @@ def judge_box(job: Job, box: Box, points: Mapping[PointRole, Point], name: str =
     drawn = {role: point for role, point in points.items() if near.contains(point) and job.view_box.contains(point)}
     also = [Box.around(point, 1, 1) for point in drawn.values()]
     shown = _boxed(job, crop(job.scene.view, box, name, also=also), box)
-    marks = (PointMark(shown.frame.point_to_picture(point), said_of(role)) for role, point in drawn.items())
+    marks = [PointMark(shown.frame.point_to_picture(point), said_of(role)) for role, point in drawn.items()]
+    goal = _goal(job, box, also, marks)
+    # Of a scene whose part is shown, the rest tells nothing of this box.
+    shown_part = {} if goal is None else {goal[0]: (goal[1],)}
     return JudgeBox(
         job.target,
         shown.marked(*marks),
-        job.examples,
+        tuple(replace(slot, pictures=shown_part.get(slot.name, slot.pictures)) for slot in job.examples),
         tuple(drawn),
         _whole_view(job, box),
         _alike(job),
-        _goal(job, box, also),
+        None if goal is None else goal[1],
     )
 
 
@@ -64,11 +68,14 @@ def _alike(job: Job) -> Picture | None:
     return None
 
 
-def _goal(job: Job, box: Box, also: list[Box]) -> Picture | None:
-    """The same part of the scene that defines an area, with the same box; only of a scene as large as the view."""
+def _goal(job: Job, box: Box, also: list[Box], marks: Sequence[PointMark]) -> tuple[str, Picture] | None:
+    """The scene that defines an area, and the part of it that the crop shows, with the same marks.
+
+    Only of a scene as large as the view.
+    """
     arranged = job.scene.arranged(job.target)
     if arranged is None:
         return None
     name, view = arranged
     shown = crop(view, box, f"{{{name}}}, the same part as the crop of {job.target.id}", also=also)
-    return _boxed(job, shown, box)
+    return name, _boxed(job, shown, box).marked(*marks)

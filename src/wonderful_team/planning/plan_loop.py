@@ -17,6 +17,7 @@ from wonderful_team.contracts import (
     PlanRevision,
     ReviewPlan,
     RevisePlan,
+    SubgoalDraft,
     TargetList,
     WalkedReview,
 )
@@ -87,14 +88,22 @@ def _as_written(state: PlanState, written: PlanDraft, session: AgentSession) -> 
 
 
 def _is_landmark(target: Target, written: PlanDraft) -> bool:
-    """Whether a target has no use of its own and is only what others are placed beside."""
+    """Whether a target has no use of its own: others are placed beside it, or a helper function's path is led over it."""
     named = [item for item in written.subgoals if target.id in item.targets]
-    moves = [item.move for item in named]
-    beside = all(
-        move is not None and (move.place.target, move.place.how) == (target.id, "beside") and move.pick != target.id
-        for move in moves
+    return (
+        target.kind == "object"
+        and not target.use
+        and bool(named)
+        and all(_outline_serves(target, item) for item in named)
     )
-    return target.kind == "object" and not target.use and bool(named) and beside
+
+
+def _outline_serves(target: Target, item: SubgoalDraft) -> bool:
+    """Whether a subgoal that names a target needs no more of it than its outline."""
+    move = item.move
+    if move is None:
+        return item.function is not None
+    return (move.place.target, move.place.how) == (target.id, "beside") and move.pick != target.id
 
 
 async def verify_where_needed(

@@ -11,7 +11,7 @@ from wonderful_team.agents import build_request
 from wonderful_team.agents.request import role_for
 from wonderful_team.contracts import QUESTIONS, MemoryEntry, Question, Remember
 from wonderful_team.core.protocols import Detector
-from wonderful_team.core.values import Answer, Detection, Note, View
+from wonderful_team.core.values import NOTEBOOK, Answer, Detection, Note, View
 from wonderful_team.detectors import found_words, look, name_of
 from wonderful_team.errors import ConfigError, ModelOutputError
 from wonderful_team.models.client import ModelClient
@@ -71,7 +71,7 @@ class AgentSession:
         write_down = self.notebooks.begin(asker.name, branch)
         answer = await self.client.ask(request)
         said = note_of(question, answer.value)
-        write_down(Note(question.contract, said, "notebook") if said else None)
+        write_down(Note(question.contract, said, NOTEBOOK) if said else None)
         return answer
 
     async def look(self, view: View, words: Sequence[str]) -> tuple[Detection, ...]:
@@ -89,7 +89,7 @@ class AgentSession:
 
     def note(self, role: str, key: str, text: str) -> None:
         """Write a line into a role's notebook that no answer of its own brought."""
-        self.notebooks.begin(role, "")(Note(key, text, "notebook"))
+        self.notebooks.begin(role, "")(Note(key, text, NOTEBOOK))
 
     def skip(self, contract: str, why: str, about: str = "") -> None:
         """Note that a question is not asked, and why; told in one line when planning ends."""

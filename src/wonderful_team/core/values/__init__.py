@@ -21,7 +21,7 @@ from wonderful_team.core.values.plan import (
 )
 from wonderful_team.core.values.plan_size import MAX_ACTIONS, MAX_SUBGOALS, MAX_TARGETS, size_problem
 from wonderful_team.core.values.read import ReadPlan
-from wonderful_team.core.values.request import Answer, Note, Part, Request, SentPicture, Usage, Words
+from wonderful_team.core.values.request import NOTEBOOK, Answer, Note, Part, Request, SentPicture, Usage, Words
 from wonderful_team.core.values.result import (
     GateCheck,
     GateReport,
@@ -34,6 +34,7 @@ from wonderful_team.core.values.result import (
 )
 
 __all__ = [
+    "NOTEBOOK",
     "Alike",
     "Answer",
     "AskUser",

@@ -10,6 +10,9 @@ from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.pictures import Picture
 from wonderful_team.core.values.plan import Provenance
 
+NOTEBOOK = "notebook"
+"""Source of a note that a role made of its own answer."""
+
 
 @dataclass(frozen=True)
 class Usage:
@@ -43,7 +46,7 @@ class Usage:
 
 @dataclass(frozen=True)
 class Note:
-    """One entry of a role's notebook or of the system memory."""
+    """One entry of a role's notebook (`source` is then NOTEBOOK) or of the system memory."""
 
     key: str
     text: str

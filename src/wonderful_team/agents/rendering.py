@@ -335,6 +335,15 @@ def ability_parts(step_kinds: Sequence[str]) -> list[Part]:
     )
 
 
+def function_parts(lines: Sequence[str]) -> list[Part]:
+    """The helper functions of earlier steps, for whoever writes a plan."""
+    return listed(
+        "Helper functions that were accepted earlier in this task; where the same path is needed again, `function` names one and "
+        'says for what, as in "path_1 again, for the other plate"',
+        lines,
+    )
+
+
 def note_parts(notes: Sequence[Note]) -> list[Part]:
     """The role's notebook and the system memory, in order."""
     lines = [f"{note.key}: {note.text}" + (f" (from {note.source})" if note.source else "") for note in notes]

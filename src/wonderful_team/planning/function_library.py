@@ -40,8 +40,10 @@ def code_by_name(kept: Sequence[HelperFunction]) -> dict[str, str]:
     return {one.name: one.code for one in kept}
 
 
-async def with_function(kept: tuple[HelperFunction, ...], new: HelperFunction) -> tuple[HelperFunction, ...]:
-    """Those that are kept once this one was accepted.
+async def with_function(
+    kept: tuple[HelperFunction, ...], new: HelperFunction
+) -> tuple[tuple[HelperFunction, ...], str]:
+    """Those that are kept once this one was accepted, and what became of it in words.
 
     Left out is one that adds nothing (an earlier one gives the same path for its boxes), and one that cannot be called by its name,
     such as one that counts its own calls in a global variable. At the limit the oldest one goes that no other one calls.
@@ -49,15 +51,18 @@ async def with_function(kept: tuple[HelperFunction, ...], new: HelperFunction) -
     return await asyncio.to_thread(_with_function, kept, new)
 
 
-def _with_function(kept: tuple[HelperFunction, ...], new: HelperFunction) -> tuple[HelperFunction, ...]:
+def _with_function(kept: tuple[HelperFunction, ...], new: HelperFunction) -> tuple[tuple[HelperFunction, ...], str]:
     boxes = [item.box for item in new.boxes]
-    if any(_gives(one, kept, boxes, new.path) for one in kept) or not _gives(new, (*kept, new), boxes, new.path):
-        return kept
+    same = next((one for one in reversed(kept) if _gives(one, kept, boxes, new.path)), None)
+    if same is not None:
+        return kept, f"the path of {same.name} again"
+    if not _gives(new, (*kept, new), boxes, new.path):
+        return kept, "not kept, it gives another path when it is called by a name"
     more = (*kept, new)
     while len(more) > MAX_FUNCTIONS:
         spare = next((one for one in more if not _is_called(one, more)), more[0])
         more = tuple(one for one in more if one is not spare)
-    return more
+    return more, f"kept as {new.name}"
 
 
 def _is_called(one: HelperFunction, by: Sequence[HelperFunction]) -> bool:

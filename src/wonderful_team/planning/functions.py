@@ -19,9 +19,10 @@ from wonderful_team.errors import PlanError
 from wonderful_team.motion.follow import carried_z_m, most_up_m, path_problem, seen_from
 from wonderful_team.planning.function_library import code_by_name, next_name, same_purpose, with_function
 from wonderful_team.planning.function_library import shown as functions_shown
+from wonderful_team.planning.notes import one_line
 from wonderful_team.planning.plan_loop import PlanState
 from wonderful_team.planning.session import AgentSession
-from wonderful_team.sandbox import SandboxError, called, run_path
+from wonderful_team.sandbox import SandboxError, run_path
 
 
 async def write_functions(
@@ -61,14 +62,10 @@ def _in_turns(asking: Sequence[Subgoal]) -> tuple[list[Subgoal], list[Subgoal]]:
 
 
 async def _keep(session: AgentSession, subgoal: Subgoal, made: HelperFunction) -> None:
-    """Offer an accepted function to later steps, and tell what came of it."""
-    uses = ", ".join(called(made.code, code_by_name(session.functions)))
-    before, made = session.functions, replace(made, name=next_name(session.functions))
-    session.functions = await with_function(before, made)
-    kept = f"kept as {made.name}" if made in session.functions else "adds nothing to those that are kept"
-    session.stage(
-        "function", f"{subgoal.id} ({made.purpose}): accepted" + (f", calls {uses}" if uses else "") + f"; {kept}"
-    )
+    """Offer an accepted function to later steps, and tell what became of it."""
+    made = replace(made, name=next_name(session.functions))
+    session.functions, became = await with_function(session.functions, made)
+    session.stage("function", f"{subgoal.id}: accepted, {became} ({one_line(made.purpose)})")
 
 
 async def _write_one(

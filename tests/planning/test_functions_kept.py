@@ -14,7 +14,16 @@ from tests.planning.rounds import photo
 from wonderful_team.core.actions import ARM
 from wonderful_team.core.geometry import Box
 from wonderful_team.core.protocols import Situation
-from wonderful_team.core.values import NO_WORKSPACE, FunctionBox, HelperFunction, Instruction, Plan, Request, Words
+from wonderful_team.core.values import (
+    NO_WORKSPACE,
+    FunctionBox,
+    HelperFunction,
+    Instruction,
+    Plan,
+    Request,
+    Subgoal,
+    Words,
+)
 from wonderful_team.models.scripted import ScriptedModel
 from wonderful_team.planning import TeamConfig, TeamPolicy
 from wonderful_team.planning import function_library as library
@@ -89,7 +98,9 @@ def written(model: ScriptedModel) -> list[tuple[str, list[str]]]:
 
 
 def test_a_second_subgoal_with_the_same_purpose_waits_and_calls_the_first_ones_function() -> None:
-    model = drawing(goal("G1", "T1"), goal("G2", "T2", "A path  round it"), goal("G3", "T2", "a line across"))
+    model = drawing(
+        goal("G1", "T1", "a path round T1"), goal("G2", "T2", "A path  round T2"), goal("G3", "T2", "a line across")
+    )
     plan = plan_with(model, TeamConfig(), vocabulary=ARM)
     assert plan.status == "planned", plan.message
     assert [name for name, _ in written(model)] == ["G1", "G3", "G2"], "only what has the same purpose waits"
@@ -158,7 +169,7 @@ def test_a_replan_is_told_of_them_and_offers_them_and_a_first_plan_hears_nothing
         (),
         ("path_1: a path round it (T1 was the red block)",),
     )
-    assert "path_1 again, for the other plate" in words_of(second)
+    assert 'as in "a circle round T2, by path_1"' in words_of(second)
     assert "- path_1: a path round it (T1 was the red block)" in words_of(second)
     assert written(model) == [("G1", []), ("G1", ["path_1"])]
     one, two = asked(model, "WriteFunction")
@@ -222,6 +233,10 @@ def function(number: int, text: str = ACROSS, purpose: str | None = None, side: 
     )
 
 
+def asks(purpose: str) -> Subgoal:
+    return Subgoal("G1", "it is drawn", (), ("T5",), purpose)
+
+
 def lines(number: int, calls: str = "") -> HelperFunction:
     """A function of its own, which may call another."""
     text = f"def path(boxes):\n    {calls}\n    return [(0, 0), ({number}, {number})]"
@@ -263,12 +278,16 @@ def test_at_the_limit_the_oldest_goes_that_no_other_one_calls() -> None:
 
 def test_what_is_shown_is_bounded_and_begins_with_what_is_asked_for() -> None:
     held = tuple(function(number) for number in range(1, 8))
-    assert [one.name for one in shown(held, "a star")] == ["path_7", "path_6", "path_5"]
-    assert len(shown(held, "a star")) == MOST_SHOWN
-    assert [one.name for one in shown(held, "Line  2")] == ["path_2", "path_7", "path_6"]
-    assert [one.name for one in shown(held, "path_3 again, for the cup")] == ["path_3", "path_7", "path_6"]
-    assert [one.name for one in shown((*held, function(8, purpose="line 7")), "")] == ["path_8", "path_6", "path_5"]
-    long = shown((function(1, ACROSS + "\n#" + "x" * 5_000),), "")[0]
+    assert [one.name for one in shown(held, asks("a star"))] == ["path_7", "path_6", "path_5"]
+    assert len(shown(held, asks("a star"))) == MOST_SHOWN
+    assert [one.name for one in shown(held, asks("Line  2"))] == ["path_2", "path_7", "path_6"]
+    assert [one.name for one in shown(held, asks("path_3 again, for the cup"))] == ["path_3", "path_7", "path_6"]
+    assert [one.name for one in shown((*held, function(8, purpose="line 7")), asks(""))] == [
+        "path_8",
+        "path_6",
+        "path_5",
+    ]
+    long = shown((function(1, ACROSS + "\n#" + "x" * 5_000),), asks(""))[0]
     assert len(long.code) < MOST_CODE + 50
     assert long.code.endswith("more characters)")
     wordy = function(1, purpose="a star " * 500)
@@ -286,7 +305,7 @@ def test_what_is_shown_is_bounded_and_begins_with_what_is_asked_for() -> None:
     ids=["rising", "one spot without a box", "far out"],
 )
 def test_any_path_can_be_drawn_on_white(change: Callable[[HelperFunction], HelperFunction]) -> None:
-    (one,) = shown((change(function(1)),), "")
+    (one,) = shown((change(function(1)),), asks(""))
     assert max(one.drawn.size_px) <= 330
     assert min(one.drawn.size_px) >= 1
     inside = one.drawn.frame.whole_box

@@ -6,6 +6,7 @@ Source of the role: Wang, Shen & Stadie 2024, arXiv:2407.19094; the words are ou
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import zip_longest
 
 from wonderful_team.agents.common import ANSWER, DATA, EXAMPLES, INSTRUCTION, PICTURES, TARGETS, system_words
 from wonderful_team.agents.manager import LOCATE_POINTS, render_locate_points
@@ -145,12 +146,6 @@ list of (x, y) in pixels of the picture, whose width and height are stated with 
 - If an error or a criticism of the last version is shown, repair its cause and return the whole function again.
 """
 
-EARLIER = """
-Helper functions that were accepted earlier in this task. Your code may call them by name, with boxes under the ids that they know:
-path_1({"T1": boxes["T3"]}) gives what path_1 computes, for this subgoal's T3. Where one of them does what this subgoal asks,
-path(boxes) need do nothing else. Where what went wrong before lay in the path itself, compute a better one.
-""".strip()
-
 REVIEW_PATH = """
 The path that your helper function computed is drawn on the picture. Does it do what the subgoal asks: right place,
 right shape, right order, away from things it must not touch?
@@ -235,17 +230,24 @@ def _render_function(question: WriteFunction) -> list[Part]:
 def _earlier_parts(question: WriteFunction) -> list[Part]:
     if not question.earlier:
         return []
+    first = question.earlier[0]
+    mine = [f'boxes["{name}"]' for name in question.boxes][: len(first.takes)]
+    given = ", ".join(f'"{name}": {box}' for name, box in zip_longest(first.takes, mine, fillvalue="(x0, y0, x1, y1)"))
     return [
-        *words(EARLIER),
+        *words(
+            "Helper functions that were accepted earlier in this task. Your code may call them by name, each with boxes under the ids "
+            f"that it was written for, as in {first.name}({{{given}}}). Where one of them computes what this subgoal asks for, path(boxes) may just "
+            "return what it gives; where the path itself is what went wrong before, compute a better one."
+        ),
         *(part for one in question.earlier for part in _one_earlier(one)),
         *listed(BEFORE, question.advice),
     ]
 
 
 def _one_earlier(one: EarlierFunction) -> list[Part]:
-    takes = ", ".join(f'"{name}" ({said})' for name, said in one.takes.items())
+    were = "; ".join(f"{name} was {said}" for name, said in one.takes.items())
     return [
-        *words(f"{one.name}: {one.purpose}. It takes {takes or 'no box'}.", fenced("code", one.code)),
+        *words(f"{one.name}: {one.purpose}" + (f" ({were})" if were else ""), fenced("code", one.code)),
         *picture_parts(one.drawn, "what it drew then, on white"),
         *_rise_parts(one.up_m),
     ]

@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import asyncio
 import math
-from collections.abc import Mapping, Sequence
+import re
+from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
 
 from wonderful_team.contracts import EarlierFunction
 from wonderful_team.core.geometry import Box, Frame
 from wonderful_team.core.pictures import BoxMark, PathMark, PathPoint, Picture, rises_of
-from wonderful_team.core.values import MAX_FUNCTIONS, HelperFunction
+from wonderful_team.core.values import MAX_FUNCTIONS, HelperFunction, Subgoal
 from wonderful_team.planning.notes import one_line
 from wonderful_team.sandbox import SandboxError, called, run_path
 
@@ -26,13 +27,16 @@ SAME_PX = 0.5
 _SKETCH_PX, _RIM = 320, 0.08
 
 
-def same_purpose(one: str, other: str) -> bool:
-    """Whether two functions are asked for in the same words."""
-    return _words(one) == _words(other)
+def purpose_key(purpose: str | None, targets: Iterable[str]) -> str:
+    """The same for functions that are asked for in the same words, whatever targets they are for: a circle round T1, one round T2."""
+    text = " ".join((purpose or "").split())
+    for number, name in enumerate(targets, start=1):
+        text = re.sub(rf"\b{re.escape(name)}\b", f"<{number}>", text)
+    return text.casefold()
 
 
-def _words(purpose: str) -> str:
-    return " ".join(purpose.casefold().split())
+def _key(one: HelperFunction) -> str:
+    return purpose_key(one.purpose, (item.id for item in one.boxes))
 
 
 def code_by_name(kept: Sequence[HelperFunction]) -> dict[str, str]:
@@ -91,23 +95,25 @@ def next_name(kept: Sequence[HelperFunction]) -> str:
     return f"path_{max((one.number for one in kept), default=0) + 1}"
 
 
-def shown(kept: Sequence[HelperFunction], purpose: str) -> tuple[EarlierFunction, ...]:
-    """What to show to whoever writes a function for this purpose: those that it names or that had it first, then the newest.
+def shown(kept: Sequence[HelperFunction], subgoal: Subgoal) -> tuple[EarlierFunction, ...]:
+    """What to show to whoever writes a function for this subgoal: those that it names or that had its purpose first, then the newest.
 
     Of several that were asked for in the same words only the newest is shown: it was written knowing the others.
     """
     newest: dict[str, HelperFunction] = {}
     for one in reversed(kept):
-        newest.setdefault(_words(one.purpose), one)
-    own = newest.get(_words(purpose))
-    first = [one for one in reversed(kept) if one is own or called(purpose, {one.name: one.code})]
+        newest.setdefault(_key(one), one)
+    own = newest.get(purpose_key(subgoal.function, subgoal.targets))
+    named = called(subgoal.function or "", code_by_name(kept))
+    first = [one for one in reversed(kept) if one is own or one.name in named]
     rest = [one for one in newest.values() if one not in first]
     return tuple(_shown(one) for one in (*first, *rest)[:MOST_SHOWN])
 
 
 def _shown(one: HelperFunction) -> EarlierFunction:
-    cut = len(one.code) - MOST_CODE
-    code = one.code if cut <= 0 else f"{one.code[:MOST_CODE]}\n... ({cut} more characters)"
+    code = one.code.strip("\n")
+    if len(code) > MOST_CODE:
+        code = f"{code[:MOST_CODE]}\n... ({len(code) - MOST_CODE} more characters)"
     takes = {item.id: one_line(item.words) for item in one.boxes}
     return EarlierFunction(one.name, one_line(one.purpose), takes, code, sketch(one), rises_of(one.path))
 

@@ -17,7 +17,7 @@ from wonderful_team.core.together import together
 from wonderful_team.core.values import FunctionBox, GroundedTarget, HelperFunction, Subgoal
 from wonderful_team.errors import PlanError
 from wonderful_team.motion.follow import carried_z_m, most_up_m, path_problem, seen_from
-from wonderful_team.planning.function_library import code_by_name, next_name, same_purpose, with_function
+from wonderful_team.planning.function_library import code_by_name, next_name, purpose_key, with_function
 from wonderful_team.planning.function_library import shown as functions_shown
 from wonderful_team.planning.notes import one_line
 from wonderful_team.planning.plan_loop import PlanState
@@ -54,11 +54,10 @@ def _in_turns(asking: Sequence[Subgoal]) -> tuple[list[Subgoal], list[Subgoal]]:
     side by side. Of those with the same purpose the first alone is written; the others need only call it, where side by side each
     would be written anew, perhaps differently, and reviewed as often as it is criticised.
     """
-    first: list[Subgoal] = []
+    first: dict[str, Subgoal] = {}
     for subgoal in asking:
-        if not any(same_purpose(subgoal.function or "", one.function or "") for one in first):
-            first.append(subgoal)
-    return first, [subgoal for subgoal in asking if subgoal not in first]
+        first.setdefault(purpose_key(subgoal.function, subgoal.targets), subgoal)
+    return [*first.values()], [subgoal for subgoal in asking if subgoal not in first.values()]
 
 
 async def _keep(session: AgentSession, subgoal: Subgoal, made: HelperFunction) -> None:
@@ -86,8 +85,7 @@ async def _write_one(
     mine = {name: target for name, target in grounded.items() if name in subgoal.targets}
     carried_m = carried_z_m(mine, scene.view, scene.limits)
     up_m = most_up_m(carried_m, scene.limits)
-    purpose, known = subgoal.function or "", code_by_name(session.functions)
-    earlier = functions_shown(session.functions, purpose)
+    known, earlier = code_by_name(session.functions), functions_shown(session.functions, subgoal)
     told = advice if earlier else ()
     error, code = "", ""
     criticised: list[str] = []
@@ -122,7 +120,7 @@ async def _write_one(
                     branch=subgoal.id,
                 )
             found = tuple(FunctionBox(name, grounded[name].target.words, box) for name, box in boxes.items())
-            return HelperFunction(next_name(session.functions), purpose, code, found, path), in_view
+            return HelperFunction(next_name(session.functions), subgoal.function or "", code, found, path), in_view
         error = f"the path was drawn and refused: {review.problem}"
         criticised.append(review.problem)
     raise PlanError(

@@ -173,6 +173,7 @@ def test_a_replan_is_told_of_them_and_offers_them_and_a_first_plan_hears_nothing
     assert "- path_1: a path round it (T1 was the red block)" in words_of(second)
     assert written(model) == [("G1", []), ("G1", ["path_1"])]
     one, two = asked(model, "WriteFunction")
+    assert "where its path is what went wrong before, compute a better one" in words_of(two)
     assert "the pen never touched the table" in words_of(two)
     assert two.pictures[-1].marks[-1].label == "path_1", "what it drew is shown"
     assert all("accepted earlier" not in words_of(one) for one in (first, one))
@@ -300,7 +301,7 @@ def test_what_is_shown_is_bounded_and_begins_with_what_is_asked_for() -> None:
     [
         lambda one: replace(one, path=tuple((x, y, 0.1) for x, y in one.path)),
         lambda one: replace(one, path=((5.0, 5.0), (5.0, 5.0)), boxes=()),
-        lambda one: replace(one, path=((-900.0, 5.0), (5_000.0, 5.0))),
+        lambda one: replace(one, path=((-900.0, 5.0), (1e6, 5.0))),
     ],
     ids=["rising", "one spot without a box", "far out"],
 )
@@ -311,6 +312,13 @@ def test_any_path_can_be_drawn_on_white(change: Callable[[HelperFunction], Helpe
     inside = one.drawn.frame.whole_box
     (path,) = [mark for mark in one.drawn.marks if hasattr(mark, "points")]
     assert all(inside.x0 <= x <= inside.x1 and inside.y0 <= y <= inside.y1 for x, y in path.points)
+
+
+def test_a_path_of_a_plan_file_is_as_bounded_as_one_of_the_sandbox() -> None:
+    with pytest.raises(ValueError, match="up to 1e\\+06 px"):
+        replace(function(1), path=((0.0, 0.0), (1e308, 0.0)))
+    with pytest.raises(ValueError, match="0 points; 2 or more are valid"):
+        replace(function(1), path=())
 
 
 @pytest.mark.parametrize("name", ["star", "path", "path_0", "path_1\nimport os", "len", "path_1_", ""])

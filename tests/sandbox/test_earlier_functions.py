@@ -121,6 +121,11 @@ def test_code_is_taken_as_it_is_written(indent: str) -> None:
     assert run_path(BY_NAME, BOXES, earlier={"path_1": "\n".join(lines)}) == ((1, 2), (3, 4))
 
 
+def test_one_of_more_code_than_may_be_run_is_named() -> None:
+    with pytest.raises(SandboxError, match="path_1 has 30.* characters; at most 20000 are run"):
+        run_path(BY_NAME, BOXES, earlier={"path_1": f"#{'x' * 30_000}\n{LINE}"})
+
+
 def test_long_ones_run_too() -> None:
     long = f"# {'x' * 9_000}\n" + LINE + "\n" + "\n".join(f"unused_{k} = {k}" for k in range(500))
     earlier = {f"path_{k}": long for k in range(1, 13)}

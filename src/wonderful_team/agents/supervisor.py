@@ -233,11 +233,12 @@ def _earlier_parts(question: WriteFunction) -> list[Part]:
     first = question.earlier[0]
     mine = [f'boxes["{name}"]' for name in question.boxes][: len(first.takes)]
     given = ", ".join(f'"{name}": {box}' for name, box in zip_longest(first.takes, mine, fillvalue="(x0, y0, x1, y1)"))
+    better = "; where its path is what went wrong before, compute a better one" if question.advice else ""
     return [
         *words(
             "Helper functions that were accepted earlier in this task. Your code may call them by name, each with boxes under the ids "
-            f"that it was written for, as in {first.name}({{{given}}}). Where one of them computes what this subgoal asks for, path(boxes) may just "
-            "return what it gives; where the path itself is what went wrong before, compute a better one."
+            f"that it was written for, as in {first.name}({{{given}}}). Where one of them computes what this subgoal asks for, "
+            f"path(boxes) may just return what it gives{better}."
         ),
         *(part for one in question.earlier for part in _one_earlier(one)),
         *listed(BEFORE, question.advice),

@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import math
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 
@@ -13,7 +13,6 @@ from wonderful_team.contracts import EarlierFunction
 from wonderful_team.core.geometry import Box, Frame
 from wonderful_team.core.pictures import BoxMark, PathMark, PathPoint, Picture, rises_of
 from wonderful_team.core.values import MAX_FUNCTIONS, HelperFunction, Subgoal
-from wonderful_team.planning.notes import one_line
 from wonderful_team.sandbox import SandboxError, called, run_path
 
 MOST_SHOWN = 3
@@ -22,9 +21,12 @@ MOST_TOLD = 6
 """Functions that are named, without their code, to whoever writes a plan."""
 MOST_CODE = 2_000
 """Characters of a function's code that are shown; by its name it can be called whole."""
+MOST_WORDS = 300
+"""Characters of what a function is for."""
 SAME_PX = 0.5
 """Two paths are the same when no point of one lies farther from the other's [px]."""
 _SKETCH_PX, _RIM = 320, 0.08
+"""Longer side of the picture of what was drawn, and the margin round it as a share of that [px]."""
 
 
 def purpose_key(purpose: str | None, targets: Iterable[str]) -> str:
@@ -114,20 +116,26 @@ def _shown(one: HelperFunction) -> EarlierFunction:
     code = one.code.strip("\n")
     if len(code) > MOST_CODE:
         code = f"{code[:MOST_CODE]}\n... ({len(code) - MOST_CODE} more characters)"
-    takes = {item.id: one_line(item.words) for item in one.boxes}
-    return EarlierFunction(one.name, one_line(one.purpose), takes, code, sketch(one), rises_of(one.path))
+    return EarlierFunction(one.name, in_a_line(one.purpose), _takes(one), code, sketch(one), rises_of(one.path))
 
 
 def told(kept: Sequence[HelperFunction]) -> tuple[str, ...]:
     """The newest functions in a line each, for whoever writes a plan."""
-    return tuple(
-        f"{one.name}: {one_line(one.purpose)}" + _were({item.id: one_line(item.words) for item in one.boxes})
-        for one in reversed(kept[-MOST_TOLD:])
-    )
+    lines = []
+    for one in reversed(kept[-MOST_TOLD:]):
+        were = "; ".join(f"{name} was {words}" for name, words in _takes(one).items())
+        lines.append(f"{one.name}: {in_a_line(one.purpose)}" + (f" ({were})" if were else ""))
+    return tuple(lines)
 
 
-def _were(takes: Mapping[str, str]) -> str:
-    return f" ({'; '.join(f'{name} was {words}' for name, words in takes.items())})" if takes else ""
+def _takes(one: HelperFunction) -> dict[str, str]:
+    return {item.id: in_a_line(item.words) for item in one.boxes}
+
+
+def in_a_line(text: str) -> str:
+    """Words as they were written, in one line, cut where they are long."""
+    line = " ".join(text.split())
+    return line if len(line) <= MOST_WORDS else f"{line[:MOST_WORDS]} ..."
 
 
 def sketch(one: HelperFunction) -> Picture:

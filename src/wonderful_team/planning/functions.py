@@ -17,9 +17,8 @@ from wonderful_team.core.together import together
 from wonderful_team.core.values import FunctionBox, GroundedTarget, HelperFunction, Subgoal
 from wonderful_team.errors import PlanError
 from wonderful_team.motion.follow import carried_z_m, most_up_m, path_problem, seen_from
-from wonderful_team.planning.function_library import code_by_name, next_name, purpose_key, with_function
+from wonderful_team.planning.function_library import code_by_name, in_a_line, next_name, purpose_key, with_function
 from wonderful_team.planning.function_library import shown as functions_shown
-from wonderful_team.planning.notes import one_line
 from wonderful_team.planning.plan_loop import PlanState
 from wonderful_team.planning.session import AgentSession
 from wonderful_team.sandbox import SandboxError, run_path
@@ -42,7 +41,8 @@ async def write_functions(
         written = await together([_write_one(session, scene, subgoal, grounded, state.advice) for subgoal in some])
         for subgoal, (made, path) in zip(some, written, strict=True):
             paths[subgoal.id] = path
-            # Kept in the plan's order, not in that of finishing: what the next one is shown must not be a matter of luck.
+            # Kept in the plan's order once all are done, not in that of finishing: what later ones are shown must not be a matter of
+            # luck. So where one of them fails, nothing of its turn is kept.
             await _keep(session, subgoal, made)
     return paths
 
@@ -64,7 +64,7 @@ async def _keep(session: AgentSession, subgoal: Subgoal, made: HelperFunction) -
     """Offer an accepted function to later steps, and tell what became of it."""
     made = replace(made, name=next_name(session.functions))
     session.functions, became = await with_function(session.functions, made)
-    session.stage("function", f"{subgoal.id}: accepted, {became} ({one_line(made.purpose)})")
+    session.stage("function", f"{subgoal.id}: accepted, {became} ({in_a_line(made.purpose)})")
 
 
 async def _write_one(

@@ -96,10 +96,11 @@ def run_path(
             most `MAX_ERROR_CHARACTERS`.
         SandboxUnavailableError: The workers do not run here, not even an empty program.
     """
-    if len(code) > MAX_CODE_CHARACTERS:
-        raise SandboxError(f"the code has {len(code)} characters; at most {MAX_CODE_CHARACTERS} are run")
-    plain = {name: box.as_tuple for name, box in boxes.items()}
     needed = called(code, earlier)
+    for whose, text in (("the code", code), *needed.items()):
+        if len(text) > MAX_CODE_CHARACTERS:
+            raise SandboxError(f"{whose} has {len(text)} characters; at most {MAX_CODE_CHARACTERS} are run")
+    plain = {name: box.as_tuple for name, box in boxes.items()}
 
     def run(interpreter: Any) -> str:
         try:

@@ -10,6 +10,8 @@ from wonderful_team.core.pictures import PathPoint
 
 NAME = re.compile(r"path_[1-9]\d{0,3}")
 """What later code calls a kept function by: never a word of Python or the name of a shape."""
+MAX_COORDINATE_PX = 1e6
+"""Larger numbers are not pixels."""
 
 
 @dataclass(frozen=True)
@@ -33,7 +35,7 @@ class HelperFunction:
         path: What it gave for these boxes, in pixels of the same picture.
 
     Raises:
-        ValueError: The name is none that a function goes by.
+        ValueError: The name is none that a function goes by, or the path is none that one can have given.
     """
 
     name: str
@@ -45,6 +47,12 @@ class HelperFunction:
     def __post_init__(self) -> None:
         if NAME.fullmatch(self.name) is None:
             raise ValueError(f"name of a helper function {self.name[:80]!r}: valid are path_1, path_2, ...")
+        if len(self.path) < 2:
+            raise ValueError(f"path of {self.name}: {len(self.path)} points; 2 or more are valid")
+        placed = [value for point in self.path for value in point[:2]]
+        placed += [value for item in self.boxes for value in item.box.as_tuple]
+        if max(map(abs, placed)) > MAX_COORDINATE_PX:
+            raise ValueError(f"path and boxes of {self.name}: up to {MAX_COORDINATE_PX:g} px from the corner are valid")
 
     @property
     def number(self) -> int:

@@ -105,6 +105,8 @@ def test_a_second_subgoal_with_the_same_purpose_waits_and_calls_the_first_ones_f
     assert plan.status == "planned", plan.message
     assert [name for name, _ in written(model)] == ["G1", "G3", "G2"], "only what has the same purpose waits"
     assert written(model)[2] == ("G2", ["path_1", "path_2"])
+    order = [one.contract for one in model.requests if one.contract in ("WriteFunction", "ReviewPath")]
+    assert order[:2] == ["WriteFunction"] * 2, "what has another purpose is written side by side"
 
 
 def test_what_is_called_again_is_run_drawn_and_reviewed_for_its_own_boxes() -> None:

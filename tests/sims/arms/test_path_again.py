@@ -5,11 +5,14 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+import pytest
+
 import wonderful_team as wt
 from tests.desk import read_record
 from tests.sims.arms.needed import needs_arms
 from wonderful_team.api.replay import replay
 from wonderful_team.core.actions import Action
+from wonderful_team.record import read_plan
 
 
 class Stuck:
@@ -48,3 +51,24 @@ def test_a_replan_calls_the_function_that_was_accepted_for_the_failed_plan(tmp_p
     found = replay(trial.folder)
     assert found.same
     assert found.now == tuple(plan.id for plan in trial.plans)
+
+
+@needs_arms
+@pytest.mark.slow
+def test_a_run_of_a_plan_file_calls_the_function_that_came_with_the_plan(tmp_path: Path) -> None:
+    def ran(wrap: Any, **options: Any) -> wt.TrialResult:
+        inner = wt.make_world("arms/star", seed=3)
+        try:
+            return wt.rollout(wt.Team(model="simulated:perfect", out=tmp_path), wrap(inner), **options)
+        finally:
+            inner.close()
+
+    made = ran(lambda inner: inner, replans=0)
+    assert made.folder is not None
+    trial = ran(Stuck, replans=1, plan=read_plan(made.folder))
+    assert trial.outcome == "success", trial.reason
+    assert trial.folder is not None
+    requests = read_record(trial.folder)["planner"]["requests"]
+    (code,) = (one["answer"]["parsed"]["code"] for one in requests if one["contract"] == "WriteFunction")
+    assert "path_1(" in code
+    assert replay(trial.folder).same

@@ -60,6 +60,11 @@ def path(boxes):
     x, y, r = (x0 + x1) / 2, (y0 + y1) / 2, max(x1 - x0, y1 - y0)
     return [(x + r * math.cos(k * math.pi / 8), y + r * math.sin(k * math.pi / 8)) for k in range(17)]
 """
+AGAIN = """def path(boxes):
+    return path_1({"T1": boxes["T2"]})
+"""
+LAST = frozenset({"WriteFunction"})
+"""Of these the last request of a run is shown: it offers what was accepted before."""
 
 
 @dataclass(frozen=True)
@@ -75,7 +80,7 @@ class Partly:
 
     name = "offline, in part a script"
 
-    def __init__(self, **script: dict[str, Any]) -> None:
+    def __init__(self, **script: Any) -> None:
         self._scripted = ScriptedModel(script, name="script")
         self._kinds, self._model = frozenset(script), make_model("offline")
 
@@ -167,40 +172,44 @@ def _misread(draft: Any, request: Request) -> Any:
 
 
 def _circle(out: Path) -> Source:
-    """A path of its own shape."""
-    target = {
-        "id": "T1",
-        "kind": "object",
-        "words": "red block",
-        "part": None,
-        "where": "",
-        "like": [],
-        "use": ["place"],
-    }
-    goal = {"id": "G1", "text": "a circle is drawn round the red block", "after": [], "targets": ["T1"]}
+    """Paths of their own shape: the second one is computed by the function of the first."""
+    blocks = {"T1": "red block", "T2": "purple block"}
+    plain = {"kind": "object", "part": None, "where": "", "like": [], "use": ["place"]}
     draft = {
         "reasoning": "",
-        "subgoals": [{**goal, "function": "the points of a circle round T1"}],
-        "targets": [target],
+        "subgoals": [
+            {
+                "id": f"G{number}",
+                "text": f"a circle is drawn round the {words}",
+                "after": [],
+                "targets": [name],
+                "function": f"the points of a circle round {name}",
+            }
+            for number, (name, words) in enumerate(blocks.items(), start=1)
+        ],
+        "targets": [{"id": name, "words": words, **plain} for name, words in blocks.items()],
         "mode": "one_step",
         "clarification": None,
     }
     model = Partly(
         DraftPlan=draft,
         ReviewPlan={"reasoning": "", "approved": True, "doubt": None},
-        WriteFunction={"reasoning": "", "code": CIRCLE},
+        WriteFunction=[{"reasoning": "", "code": text} for text in (CIRCLE, AGAIN)],
         ReviewPath={"reasoning": "", "accepted": True, "problem": ""},
-        WriteSteps={"reasoning": "", "steps": [{"kind": "follow", "subgoal": "G1", "function": "G1"}]},
+        WriteSteps={
+            "reasoning": "",
+            "steps": [{"kind": "follow", "subgoal": name, "function": name} for name in ("G1", "G2")],
+        },
         ReviewSteps={"reasoning": "", "approved": True, "doubt": None},
     )
     world = wt.make_world(TABLE, seed=3)
     try:
         team = wt.Team(model=model, method="team", out=out / "circle")
-        result = team.plan(world.observe(), "draw a circle round the red block", vocabulary=ARM)
+        result = team.plan(world.observe(), "draw a circle round the red block and the purple one", vocabulary=ARM)
     finally:
         world.close()
     assert result.folder is not None
-    return Source(result.folder, "`team` with an arm's actions, plan and function from a script")
+    return Source(result.folder, "`team` with an arm's actions, plan and functions from a script")
 
 
 def gathered(sources: Sequence[Source]) -> dict[str, tuple[Source, dict[str, Any], dict[str, Any]]]:
@@ -209,13 +218,15 @@ def gathered(sources: Sequence[Source]) -> dict[str, tuple[Source, dict[str, Any
     Raises:
         SystemExit: A kind of question was never asked.
     """
-    found = {}
+    found: dict[str, tuple[Source, dict[str, Any], dict[str, Any]]] = {}
     for source in sources:
         record = json.loads((source.folder / "record.json").read_text(encoding="utf-8"))
         # Those with more pictures to show for it come last in a record of branches: the first by name is always the same.
         for request in sorted(record["planner"]["requests"], key=lambda one: one["key"]):
             if request["answer"] is not None and request["invalid"] is None:
-                found.setdefault(request["contract"], (source, record, request))
+                known = found.get(request["contract"])
+                if known is None or (request["contract"] in LAST and known[0] is source):
+                    found[request["contract"]] = (source, record, request)
     missing = set(QUESTIONS_BY_NAME) - set(found)
     if missing:
         raise SystemExit(f"no run asks {', '.join(sorted(missing))}: add one to docs/make_prompts.py")

@@ -14,6 +14,7 @@ from wonderful_team.contracts import (
     ChoosePoint,
     DescribePictures,
     DraftPlan,
+    EarlierFunction,
     ExtractTargets,
     FoundBox,
     GiveBox,
@@ -85,6 +86,7 @@ SUBGOALS = (
     Subgoal("G2", "the mug is back", ("G1",), ("T7",)),
 )
 DOUBT = Critique("G1", "collision", "will the mug hit the lamp?", "it passes behind it", True)
+FUNCTIONS = ("path_4: a star on the cup (T3 was yellow cup)",)
 PLAN = ("G1: the mug stands on the tray", "G2: the mug is back")
 STEPS = (PickPlaceStep("G1", "T7", Beside("T8", "left"), -90.0), MoveStep("G2", OriginOf("T7"), "clear"))
 BOX = BoxMark(Box(10, 5, 30, 20), label="T7")
@@ -96,9 +98,9 @@ STRIPS = tuple(
 )
 
 SAMPLES: tuple[Question, ...] = (
-    DraftPlan(TASK, KINDS, True, ("the lid was closed",)),
+    DraftPlan(TASK, KINDS, True, ("the lid was closed",), FUNCTIONS),
     ReviewPlan(TASK, KINDS, SUBGOALS, (TARGET, AREA), "G2", ("G1 was asked about the lid",)),
-    RevisePlan(TASK, KINDS, SUBGOALS, (TARGET, AREA), DOUBT, True),
+    RevisePlan(TASK, KINDS, SUBGOALS, (TARGET, AREA), DOUBT, True, FUNCTIONS),
     ExtractTargets(TASK, SUBGOALS),
     LocatePoints(
         TARGET,
@@ -173,7 +175,24 @@ SAMPLES: tuple[Question, ...] = (
         KINDS,
     ),
     WriteFunction(
-        SUBGOALS[0], picture("view for path"), {"T7": Box(1.5, 2, 3, 4)}, "NameError: x", "def path(boxes): ...", 17
+        SUBGOALS[0],
+        picture("view for path"),
+        {"T7": Box(1.5, 2, 3, 4)},
+        "NameError: x",
+        "def path(boxes): ...",
+        17,
+        0.35,
+        (
+            EarlierFunction(
+                "path_4",
+                "a star on the cup",
+                {"T3": "yellow cup", "T5": "lid of the cup"},
+                "def path(boxes):\n    return star((1, 2), 3)",
+                picture("path_4", BoxMark(Box(1, 2, 9, 9), label="T3"), PathMark(((1, 2), (3, 4)), "path_4")),
+                (0.0, 0.25),
+            ),
+        ),
+        ("the star was too small",),
     ),
     ReviewPath(
         SUBGOALS[0],
@@ -185,7 +204,14 @@ SAMPLES: tuple[Question, ...] = (
     JudgeOutcome(
         TASK, SUBGOALS, (TARGET, AREA), ("[G1] pick T7",), (picture("top now"), picture("front now")), ("ok",)
     ),
-    Replan(TASK, SUBGOALS, (Verdict("G2", "not_done", "it slipped", "mug on the floor"),), ("suction failed",), 2),
+    Replan(
+        TASK,
+        SUBGOALS,
+        (Verdict("G2", "not_done", "it slipped", "mug on the floor"),),
+        ("suction failed",),
+        2,
+        FUNCTIONS,
+    ),
     PlanDirectly(
         TASK,
         ("pick_place", "push", "move", "open", "close", "rotate_gripper", "home", "navigate"),

@@ -109,7 +109,7 @@ RIGHT: dict[str, dict[str, Any]] = {
         "approved": False,
         "doubt": {"about": "2", "kind": "needless_step", "question": "Why move?"},
     },
-    "WriteFunction": {"reasoning": "", "code": "def path(boxes):\n    return [(1, 2)]"},
+    "WriteFunction": {"reasoning": "", "code": "def path(boxes):\n    return path_4({'T3': boxes['T7']})"},
     "ReviewPath": {"reasoning": "", "accepted": False, "problem": "It crosses the lamp."},
     "Remember": {"keep": True, "key": "lamp", "summary": "The mug stands on the lamp."},
     "JudgeOutcome": {

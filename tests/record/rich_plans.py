@@ -10,7 +10,7 @@ from tests.runtime.runtime_fake_run import world_with_pictures
 from tests.runtime.runtime_fakes import make_plan
 from wonderful_team.core.actions import Beside, FollowStep, MoveStep, MoveTo, OriginOf, PushStep, Trajectory
 from wonderful_team.core.geometry import Box, Pose
-from wonderful_team.core.values import Critique, KeepOut, Plan, PlannedAction
+from wonderful_team.core.values import Critique, FunctionBox, HelperFunction, KeepOut, Plan, PlannedAction
 
 
 def rich_plan() -> Plan:
@@ -30,4 +30,13 @@ def rich_plan() -> Plan:
         questions=(Critique("G1", "collision", "Is it free?", "Yes.", False, "offline"),),
         parent="0123456789ab",
         choices=("red", "blue"),
+        functions=(
+            HelperFunction(
+                "path_1",
+                "a path round T1",
+                "def path(boxes):\n    return [(1, 2), (3, 4)]",
+                (FunctionBox("T1", "the cup", Box(1, 2, 3.5, 4)),),
+                ((1.0, 2.0, 0.0), (3.0, 4.0, 0.05)),
+            ),
+        ),
     )

@@ -341,6 +341,15 @@ def ability_parts(step_kinds: Sequence[str]) -> list[Part]:
     )
 
 
+def function_parts(lines: Sequence[str]) -> list[Part]:
+    """The helper functions of earlier steps, for whoever writes a plan."""
+    return listed(
+        "Helper functions that were accepted earlier in this task; where such a path is needed again, `function` says what is to be "
+        'computed and by which of them, as in "a circle round T2, by path_1"',
+        lines,
+    )
+
+
 def note_parts(notes: Sequence[Note]) -> list[Part]:
     """The role's notebook and the system memory, in order.
 

@@ -68,6 +68,7 @@ def _render_replan(question: Replan) -> list[Part]:
         *subgoal_parts(question.subgoals),
         *listed("Verdicts", [_verdict_words(verdict) for verdict in question.verdicts], "none"),
         *listed("What the robot reported", question.measured, "nothing"),
+        *listed("Helper functions that were accepted in this task", question.functions),
         *words(f"Attempts left: {question.replans_left}."),
     ]
 

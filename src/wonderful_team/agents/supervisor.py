@@ -5,11 +5,15 @@ Source of the role: Wang, Shen & Stadie 2024, arXiv:2407.19094; the words are ou
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from itertools import zip_longest
+
 from wonderful_team.agents.common import ANSWER, DATA, EXAMPLES, INSTRUCTION, PICTURES, TARGETS, system_words
 from wonderful_team.agents.manager import LOCATE_POINTS, render_locate_points
 from wonderful_team.agents.rendering import (
     ability_parts,
     fenced,
+    function_parts,
     listed,
     picture_parts,
     subgoal_parts,
@@ -21,6 +25,7 @@ from wonderful_team.agents.rendering import (
 from wonderful_team.agents.role import Ask, role
 from wonderful_team.contracts import (
     DraftPlan,
+    EarlierFunction,
     ExtractTargets,
     LocatePoints,
     ReviewPath,
@@ -152,11 +157,15 @@ right shape, right order, away from things it must not touch?
 """
 
 
+BEFORE = "What went wrong before, to be avoided now"
+
+
 def _render_draft(question: DraftPlan) -> list[Part]:
     return [
         *task_parts(question.task),
         *ability_parts(question.step_kinds),
-        *listed("What went wrong before, to be avoided now", question.advice),
+        *listed(BEFORE, question.advice),
+        *function_parts(question.functions),
         *_targets_wanted(question.with_targets),
     ]
 
@@ -168,6 +177,7 @@ def _render_revise(question: RevisePlan) -> list[Part]:
         *subgoal_parts(question.subgoals, "Your plan"),
         *target_parts(question.targets),
         *_doubt_parts(question.doubt),
+        *function_parts(question.functions),
         *_targets_wanted(question.with_targets),
     ]
 
@@ -214,18 +224,50 @@ def _render_function(question: WriteFunction) -> list[Part]:
         *listed("boxes, as (x0, y0, x1, y1) in pixels of this picture", boxes, "none"),
         *words(f"At most {question.max_points} points."),
         *(words(f"In the air, up is from 0 to {question.most_up_m:.2f} m.") if question.most_up_m else []),
+        *_earlier_parts(question),
         *(words("Your last version:", fenced("code", question.last_code)) if question.last_code else []),
         *(words("What was wrong with it:", fenced("error", question.error)) if question.error else []),
     ]
 
 
+def _earlier_parts(question: WriteFunction) -> list[Part]:
+    if not question.earlier:
+        return []
+    first = question.earlier[0]
+    mine = [f'boxes["{name}"]' for name in question.boxes][: len(first.takes)]
+    given = ", ".join(f'"{name}": {box}' for name, box in zip_longest(first.takes, mine, fillvalue="(x0, y0, x1, y1)"))
+    better = "; where its path is what went wrong before, compute a better one" if question.advice else ""
+    return [
+        *words(
+            "Helper functions that were accepted earlier in this task. Your code may call them by name, each with boxes under the ids "
+            f"that it was written for, as in {first.name}({{{given}}}). Where one of them computes what this subgoal asks for, "
+            f"path(boxes) may just return what it gives{better}."
+        ),
+        *(part for one in question.earlier for part in _one_earlier(one)),
+        *listed(BEFORE, question.advice),
+    ]
+
+
+def _one_earlier(one: EarlierFunction) -> list[Part]:
+    were = "; ".join(f"{name} was {said}" for name, said in one.takes.items())
+    return [
+        *words(f"{one.name}: {one.purpose}" + (f" ({were})" if were else ""), fenced("code", one.code)),
+        *picture_parts(one.drawn, "what it drew then, on white"),
+        *_rise_parts(one.up_m),
+    ]
+
+
+def _rise_parts(up_m: Sequence[float]) -> list[Part]:
+    rises = [f"{number}: {up:.2f}" for number, up in enumerate(up_m, start=1)]
+    return listed("How far up each point lies over the height at which things are carried [m]", rises)
+
+
 def _render_review_path(question: ReviewPath) -> list[Part]:
-    rises = [f"{number}: {up:.2f}" for number, up in enumerate(question.up_m, start=1)]
     return [
         *words(f"Subgoal {subgoal_words(question.subgoal)}"),
         *picture_parts(question.view, "the main view"),
         *(part for side in question.sides for part in picture_parts(side, "the same path from another side")),
-        *listed("How far up each point lies over the height at which things are carried [m]", rises),
+        *_rise_parts(question.up_m),
     ]
 
 

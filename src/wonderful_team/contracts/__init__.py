@@ -49,7 +49,7 @@ from wonderful_team.contracts.shown import (
     Tolerance,
 )
 from wonderful_team.contracts.steps import PlaceDraft, StepList, step_list_type
-from wonderful_team.contracts.write_function import FunctionCode, WriteFunction
+from wonderful_team.contracts.write_function import EarlierFunction, FunctionCode, WriteFunction
 from wonderful_team.contracts.write_program import (
     Program,
     ProgramFunction,
@@ -116,6 +116,7 @@ __all__ = [
     "EdgePresence",
     "ExtractTargets",
     "FoundBox",
+    "EarlierFunction",
     "FunctionCode",
     "GROUNDING_KINDS",
     "GiveBox",

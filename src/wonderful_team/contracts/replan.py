@@ -8,6 +8,7 @@ from typing import Any, Literal
 from pydantic import Field
 
 from wonderful_team.contracts.shown import AnswerModel, Question, Reasoning, ShownTask
+from wonderful_team.core.later import later
 from wonderful_team.core.values import Subgoal, Verdict
 
 
@@ -22,13 +23,18 @@ class Advice(AnswerModel):
 
 @dataclass(frozen=True, eq=False)
 class Replan(Question):
-    """Asked of the Replanner when a subgoal is not done. The task's views are those of now."""
+    """Asked of the Replanner when a subgoal is not done. The task's views are those of now.
+
+    Attributes:
+        functions: Helper functions that were accepted in the trial so far, a line each.
+    """
 
     task: ShownTask
     subgoals: tuple[Subgoal, ...]
     verdicts: tuple[Verdict, ...]
     measured: tuple[str, ...]
     replans_left: int
+    functions: tuple[str, ...] = later(())
 
     def output(self) -> type[AnswerModel]:
         return Advice

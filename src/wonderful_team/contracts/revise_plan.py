@@ -9,6 +9,7 @@ from pydantic import Field
 
 from wonderful_team.contracts.plans import PlanDraft, settle_plan
 from wonderful_team.contracts.shown import AnswerModel, Question, Reasoning, ShownTask
+from wonderful_team.core.later import later
 from wonderful_team.core.values import Critique, Subgoal, Target
 
 
@@ -23,7 +24,11 @@ class PlanRevision(AnswerModel):
 
 @dataclass(frozen=True, eq=False)
 class RevisePlan(Question):
-    """Asked of the Supervisor after a doubt."""
+    """Asked of the Supervisor after a doubt.
+
+    Attributes:
+        functions: Helper functions that were accepted earlier in the trial, a line each.
+    """
 
     task: ShownTask
     step_kinds: tuple[str, ...]
@@ -31,6 +36,7 @@ class RevisePlan(Question):
     targets: tuple[Target, ...]
     doubt: Critique
     with_targets: bool
+    functions: tuple[str, ...] = later(())
 
     def output(self) -> type[AnswerModel]:
         return PlanRevision

@@ -29,6 +29,27 @@ class FunctionCode(AnswerModel):
 
 
 @dataclass(frozen=True, eq=False)
+class EarlierFunction:
+    """A function that was accepted earlier in the same trial, as shown.
+
+    Attributes:
+        name: What new code may call it by.
+        purpose: What it computes, as it was asked for.
+        takes: Words of the targets that it was written for, by the ids that it knows them by.
+        code: Its source, cut where it is long.
+        drawn: What it drew for them.
+        up_m: How far up each point of that lies [m]; () for a path that does not rise.
+    """
+
+    name: str
+    purpose: str
+    takes: Mapping[str, str]
+    code: str
+    drawn: Picture
+    up_m: tuple[float, ...] = ()
+
+
+@dataclass(frozen=True, eq=False)
 class WriteFunction(Question):
     """Asked of the Supervisor.
 
@@ -37,6 +58,8 @@ class WriteFunction(Question):
         error: What went wrong with the last version: an exception, a bound, or what the review saw; "" at first.
         last_code: The last version; "" at first.
         most_up_m: How far a path in the air may rise over the height at which things are carried [m].
+        earlier: Functions that were accepted earlier in the trial, which the code may call.
+        advice: What went wrong before; told only beside earlier functions, which may be what went wrong.
     """
 
     subgoal: Subgoal
@@ -46,6 +69,8 @@ class WriteFunction(Question):
     last_code: str = ""
     max_points: int = MAX_POINTS
     most_up_m: float = later(0.0)
+    earlier: tuple[EarlierFunction, ...] = later(())
+    advice: tuple[str, ...] = later(())
 
     def output(self) -> type[AnswerModel]:
         return FunctionCode

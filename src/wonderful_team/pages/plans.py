@@ -13,11 +13,16 @@ from wonderful_team.pages.words import step_words, word_diff
 
 
 def plans(record: dict[str, Any]) -> list[dict[str, Any]]:
-    """Every plan: subgoals as a diff against its own first draft, questions, steps."""
-    return [_plan(name, content) for _, name, content in chapters(record)]
+    """Every plan: subgoals as a diff against its own first draft, questions, steps, helper functions."""
+    before: dict[str, Any] = {}
+    found = []
+    for _, name, content in chapters(record):
+        found.append(_plan(name, content, before))
+        before = content
+    return found
 
 
-def _plan(name: str, current: dict[str, Any]) -> dict[str, Any]:
+def _plan(name: str, current: dict[str, Any], last: dict[str, Any]) -> dict[str, Any]:
     before = current["first_draft"] or current["subgoals"]
     rows, names = diff_rows(before, current["subgoals"]), target_words(current)
     return {
@@ -30,6 +35,16 @@ def _plan(name: str, current: dict[str, Any]) -> dict[str, Any]:
         "questions": current["questions"],
         "steps": [{"subgoal": step["subgoal"], "words": step_words(step, names)} for step in current["steps"]],
         "message": current["message"],
+        **_functions(current, last),
+    }
+
+
+def _functions(current: dict[str, Any], last: dict[str, Any]) -> dict[str, Any]:
+    """The helper functions that this plan brought, and the names of those that its steps could call; earlier releases kept none."""
+    known = [one["name"] for one in last.get("functions", ())]
+    return {
+        "functions": [one for one in current.get("functions", ()) if one["name"] not in known],
+        "known": [one["name"] for one in current.get("functions", ()) if one["name"] in known],
     }
 
 

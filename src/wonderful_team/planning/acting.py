@@ -142,7 +142,7 @@ async def check_steps(
             if grounded[about].status != "found":
                 return Acted(replace(state, questions=(*state.questions, doubt)), steps, grounded, None)
             if paths:
-                paths = await write_functions(session, scene, state.subgoals, grounded)
+                paths = {**paths, **await write_functions(session, scene, state, grounded, about)}
         else:
             written = await ask_steps(session, scene, state, tuple(paths), said)
             revised, why = written.to_steps(), written.reasoning

@@ -11,6 +11,7 @@ from wonderful_team.agents.plan_drawn import mark_targets
 from wonderful_team.agents.scene import SceneShown, show_views
 from wonderful_team.contracts import Advice, JudgeOutcome, Outcome, Replan
 from wonderful_team.core.values import Observation, Plan, StepReport, SubgoalRun, Verdict
+from wonderful_team.planning.function_library import told as told_functions
 from wonderful_team.planning.session import AgentSession
 
 
@@ -43,7 +44,8 @@ async def advise(
     replans_left: int,
 ) -> Advice:
     """Whether to stop, and what the next plan should do differently."""
-    question = Replan(scene_now.task, plan.subgoals, verdicts, measured_lines(executed), replans_left)
+    known = told_functions(session.functions)
+    question = Replan(scene_now.task, plan.subgoals, verdicts, measured_lines(executed), replans_left, known)
     advice: Advice = await session.ask(question, stage="replan")
     session.stage("replan", f"{advice.decision.replace('_', ' ')}: {advice.cause or 'all subgoals are done'}")
     return advice

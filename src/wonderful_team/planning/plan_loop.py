@@ -25,6 +25,7 @@ from wonderful_team.core.steps import PickPlaceStep
 from wonderful_team.core.text import counted
 from wonderful_team.core.values import Answer, Critique, Subgoal, Target
 from wonderful_team.errors import NeedsClarification
+from wonderful_team.planning.function_library import told as told_functions
 from wonderful_team.planning.notes import one_line
 from wonderful_team.planning.session import AgentSession
 from wonderful_team.planning.spending import plan_reasons
@@ -38,6 +39,7 @@ class PlanState:
         moves: The picks and places that its subgoals state.
         unsure, reasoning: What the Supervisor was not sure of, and what decided the plan, in its words.
         reviewed: Verification has looked at the plan by itself, whatever it said.
+        advice: What went wrong before, as the Supervisor was told.
     """
 
     subgoals: tuple[Subgoal, ...]
@@ -50,6 +52,7 @@ class PlanState:
     unsure: str = ""
     reasoning: str = ""
     reviewed: bool = False
+    advice: tuple[str, ...] = ()
 
 
 async def draft(session: AgentSession, scene: SceneShown, advice: Sequence[str] = ()) -> PlanState:
@@ -59,11 +62,13 @@ async def draft(session: AgentSession, scene: SceneShown, advice: Sequence[str] 
         NeedsClarification: Neither picture nor instruction settles what is meant.
     """
     with_targets = session.config.mode == "lean"
-    question = DraftPlan(scene.task, scene.vocabulary.step_kinds, with_targets, tuple(advice))
+    known = told_functions(session.functions)
+    question = DraftPlan(scene.task, scene.vocabulary.step_kinds, with_targets, tuple(advice), known)
     written: PlanDraft = await session.ask(question, stage="plan")
     if written.clarification is not None:
         raise NeedsClarification(written.clarification.question, written.clarification.choices)
-    state = _as_written(PlanState((), (), written.mode, written.to_subgoals()), written, session)
+    first = PlanState((), (), written.mode, written.to_subgoals(), advice=tuple(advice))
+    state = _as_written(first, written, session)
     session.stage("draft", _count(state))
     return state
 
@@ -194,9 +199,9 @@ async def resolve(
         NeedsClarification: Neither picture nor instruction settles what is meant.
     """
     with_targets = session.config.mode == "lean"
+    known, kinds = told_functions(session.functions), scene.vocabulary.step_kinds
     reply: Answer = await session.ask_whole(
-        RevisePlan(scene.task, scene.vocabulary.step_kinds, state.subgoals, state.targets, doubt, with_targets),
-        stage="plan",
+        RevisePlan(scene.task, kinds, state.subgoals, state.targets, doubt, with_targets, known), stage="plan"
     )
     revision: PlanRevision = reply.value
     answered = replace(doubt, answer=revision.answer, changed=revision.plan is not None)

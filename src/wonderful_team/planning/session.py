@@ -11,7 +11,7 @@ from wonderful_team.agents import build_request
 from wonderful_team.agents.request import role_for
 from wonderful_team.contracts import QUESTIONS, MemoryEntry, Question, Remember
 from wonderful_team.core.protocols import Detector
-from wonderful_team.core.values import NOTEBOOK, Answer, Detection, Note, View
+from wonderful_team.core.values import NOTEBOOK, Answer, Detection, HelperFunction, Note, View
 from wonderful_team.detectors import found_words, look, name_of
 from wonderful_team.errors import ConfigError, ModelOutputError
 from wonderful_team.models.client import ModelClient
@@ -30,6 +30,8 @@ class AgentSession:
     Attributes:
         attempt: Number of the plan within the trial; part of every request's id.
         detector: Who finds things, where a detector takes the place of the grounding team.
+        functions: Helper functions that this trial accepted, oldest first; later steps may call them. They are the Supervisor's own
+            work and no notes: they are kept without Memory, too.
     """
 
     client: ModelClient
@@ -39,6 +41,7 @@ class AgentSession:
     notebooks: Notebooks = field(default_factory=Notebooks)
     memory: SystemMemory = field(default_factory=SystemMemory)
     attempt: int = 0
+    functions: tuple[HelperFunction, ...] = ()
     _counts: dict[tuple[str, str, str], int] = field(default_factory=dict)
     _skipped: dict[str, dict[str, set[str]]] = field(default_factory=dict)
 

@@ -173,6 +173,7 @@ class TeamPolicy:
             plan = ended_by(progress.plan, error)
         finally:
             await settle(session)
+        plan = replace(plan, functions=session.functions)
         session.tell_skipped()
         session.begin_attempt()
         self._last = (scene, plan)
@@ -285,7 +286,7 @@ class TeamPolicy:
             return progress.plan, absent, None
         if not lean:
             await session.memory.barrier()
-        paths: dict[str, tuple[PathPoint, ...]] = await write_functions(session, scene, state.subgoals, grounded)
+        paths: dict[str, tuple[PathPoint, ...]] = await write_functions(session, scene, state, grounded)
         if steps is None:
             steps = await acting.write_steps(session, scene, state, tuple(paths))
         progress.plan = replace(progress.plan, steps=steps)
@@ -352,6 +353,8 @@ class TeamPolicy:
     def _take_over(self, situation: Situation, plan: Plan) -> Decision:
         self._session = self._begin(situation.instruction)
         self._session.attempt = 1
+        # The plan was made in an earlier sitting of this very task: what was accepted for it need not be written again.
+        self._session.functions = plan.functions
         self._last = (_scene_of(situation), plan)
         return Act(plan.actions, plan)
 

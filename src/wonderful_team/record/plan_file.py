@@ -52,7 +52,12 @@ def plan_from_json(data: Any, where: str = "plan", *, whole: bool = True) -> Pla
         found = plan.id if version == PLAN_SCHEMA_VERSION else plan.short_id()
     except (ValueError, TypeError, ConfigError, RecursionError, OverflowError) as error:
         raise ConfigError(f"{where}: broken plan: {error}") from error
-    problem = size_problem(subgoals=len(plan.subgoals), targets=len(plan.targets), actions=len(plan.actions))
+    problem = size_problem(
+        subgoals=len(plan.subgoals),
+        targets=len(plan.targets),
+        actions=len(plan.actions),
+        functions=len(plan.functions),
+    )
     if problem:
         raise ConfigError(f"{where}: the plan has {problem}")
     if whole and found != data.get("id"):

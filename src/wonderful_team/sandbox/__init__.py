@@ -2,6 +2,6 @@
 
 from wonderful_team.sandbox.errors import SandboxError, SandboxUnavailableError
 from wonderful_team.sandbox.program import HostCall, ProgramRun, run_program
-from wonderful_team.sandbox.run import run_path
+from wonderful_team.sandbox.run import called, run_path
 
-__all__ = ["HostCall", "ProgramRun", "SandboxError", "SandboxUnavailableError", "run_path", "run_program"]
+__all__ = ["HostCall", "ProgramRun", "SandboxError", "SandboxUnavailableError", "called", "run_path", "run_program"]

@@ -9,10 +9,9 @@ from __future__ import annotations
 import math
 
 from wonderful_team.core.pictures import PathPoint
+from wonderful_team.core.values.function import MAX_COORDINATE_PX
 from wonderful_team.sandbox.errors import SandboxError
 
-MAX_COORDINATE_PX = 1e6
-"""Larger numbers are not pixels."""
 MAX_UP_M = 1.0
 """No path in the air rises or falls by more [m]; how far it may go is the world's to say."""
 MAX_ERROR_CHARACTERS = 1000

@@ -21,7 +21,8 @@ LEAST_OFF_PX, OFF_UP_M = 4.0, 0.01
 
 
 def answer_write_function(context: Context, question: WriteFunction) -> FunctionCode:
-    """The points as shares of the target's box, so that another box gives the same shape there.
+    """An earlier function that was asked for in the same words; else the points as shares of the target's box, so that another box
+    gives the same shape there.
 
     Raises:
         UnsupportedQuestion: The path is another's, or its picture shows nothing that is true, or no box was found.
@@ -29,6 +30,9 @@ def answer_write_function(context: Context, question: WriteFunction) -> Function
     path, trace = _path(context, question.subgoal, question.view, "WriteFunction")
     if not question.boxes:
         raise UnsupportedQuestion(context.name, "WriteFunction", f"no box of the {trace.thing} was given")
+    again = _same_again(question)
+    if again is not None:
+        return again
     name, box = next(iter(question.boxes.items()))
     shares = (path - np.array([box.x0, box.y0])) / np.array([box.width, box.height])
     rows = shares.tolist() if not trace.up_m else np.column_stack([shares, trace.up_m]).tolist()
@@ -39,6 +43,16 @@ def answer_write_function(context: Context, question: WriteFunction) -> Function
         f"    return [(x0 + a * (x1 - x0), y0 + b * (y1 - y0){up}) for a, b{up} in shares]\n"
     )
     return FunctionCode(reasoning=f"{len(path)} points, as shares of the box of {name}.", code=code)
+
+
+def _same_again(question: WriteFunction) -> FunctionCode | None:
+    """A call of the earlier function that had this purpose; None without one, and once a call of it was refused."""
+    for one in question.earlier if not question.error else ():
+        if one.purpose == question.subgoal.function and len(one.takes) == len(question.boxes):
+            given = ", ".join(f"{old!r}: boxes[{new!r}]" for old, new in zip(one.takes, question.boxes, strict=True))
+            code = f"def path(boxes):\n    return {one.name}({{{given}}})\n"
+            return FunctionCode(reasoning=f"{one.name} computes just that.", code=code)
+    return None
 
 
 def answer_review_path(context: Context, question: ReviewPath) -> PathReview:

@@ -5,11 +5,13 @@ from __future__ import annotations
 import asyncio
 from typing import Any
 
+import numpy as np
+
 from tests.sims.arms.needed import needs_arms
 from wonderful_team.agents.scene import SceneShown
-from wonderful_team.contracts import DraftPlan, ReviewPath, WriteFunction
-from wonderful_team.core.geometry import Box
-from wonderful_team.core.pictures import PathMark, PathPoint, rises_of
+from wonderful_team.contracts import DraftPlan, EarlierFunction, ReviewPath, WriteFunction
+from wonderful_team.core.geometry import Box, Frame
+from wonderful_team.core.pictures import PathMark, PathPoint, Picture, rises_of
 from wonderful_team.core.values import Request
 from wonderful_team.sandbox import run_path
 from wonderful_team.sims.arms import ArmWorld
@@ -19,6 +21,13 @@ from wonderful_team.simulated import PROFILES, SimulatedModel
 def reviewed(ask: Any, subgoal: Any, view: Any, path: tuple[PathPoint, ...]) -> str:
     mark = PathMark(tuple((point[0], point[1]) for point in path))
     return str(ask(ReviewPath(subgoal, view.marked(mark), rises_of(path))).problem)
+
+
+def again(ask: Any, subgoal: Any, view: Any, box: Box, purpose: str, error: str = "") -> str:
+    """The code that is written where a function of that purpose was accepted before."""
+    drawn = Picture("path_1", np.full((8, 8, 3), 255, np.uint8), Frame.whole("path_1", (8, 8)))
+    earlier = EarlierFunction("path_1", purpose, {"T9": "the bottle"}, "def path(boxes): ...", drawn)
+    return str(ask(WriteFunction(subgoal, view, {subgoal.targets[0]: box}, error, earlier=(earlier,))).code)
 
 
 @needs_arms
@@ -50,6 +59,12 @@ def test_a_written_path_is_accepted_and_one_that_rises_otherwise_is_refused() ->
         assert "0 of its points say how far up" in reviewed(ask, subgoal, view, flat)
         lower = tuple((point[0], point[1], 0.3 * up) for point, up in zip(path, rises_of(path), strict=True))
         assert "its points should lie 0.00, 0.07," in reviewed(ask, subgoal, view, lower)
+        assert (
+            again(ask, subgoal, view, box, subgoal.function)
+            == "def path(boxes):\n    return path_1({'T9': boxes['T1']})\n"
+        )
+        assert again(ask, subgoal, view, box, subgoal.function, "it lies beside it") == written.code
+        assert again(ask, subgoal, view, box, "a circle round it") == written.code
         beside = tuple((point[0] + 30, point[1], up) for point, up in zip(path, rises_of(path), strict=True))
         assert "px from where it should" in reviewed(ask, subgoal, view, beside)
     finally:

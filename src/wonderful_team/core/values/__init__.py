@@ -3,6 +3,7 @@
 from wonderful_team.core.values.clarification import AskUser, Clarification
 from wonderful_team.core.values.content import content_hash, file_hash
 from wonderful_team.core.values.detection import Detection, DetectorRun, mask_from_runs, mask_to_runs
+from wonderful_team.core.values.function import FunctionBox, HelperFunction
 from wonderful_team.core.values.ground_truth import GroundTruthView, TrueThing
 from wonderful_team.core.values.limits import NO_WORKSPACE, Fingers, KeepOut, Limits
 from wonderful_team.core.values.observation import Instruction, Observation, RobotState, Slot, SlotKind, View
@@ -19,7 +20,7 @@ from wonderful_team.core.values.plan import (
     Subgoal,
     Target,
 )
-from wonderful_team.core.values.plan_size import MAX_ACTIONS, MAX_SUBGOALS, MAX_TARGETS, size_problem
+from wonderful_team.core.values.plan_size import MAX_ACTIONS, MAX_FUNCTIONS, MAX_SUBGOALS, MAX_TARGETS, size_problem
 from wonderful_team.core.values.read import ReadPlan
 from wonderful_team.core.values.request import NOTEBOOK, Answer, Note, Part, Request, SentPicture, Usage, Words
 from wonderful_team.core.values.result import (
@@ -42,17 +43,20 @@ __all__ = [
     "Critique",
     "Detection",
     "DetectorRun",
+    "FunctionBox",
     "GateCheck",
     "GateReport",
     "HeightProfile",
     "GroundTruthView",
     "GroundedTarget",
     "GroundingEvent",
+    "HelperFunction",
     "Instruction",
     "Fingers",
     "KeepOut",
     "Limits",
     "MAX_ACTIONS",
+    "MAX_FUNCTIONS",
     "MAX_SUBGOALS",
     "MAX_TARGETS",
     "NO_WORKSPACE",

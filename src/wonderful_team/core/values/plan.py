@@ -16,6 +16,7 @@ from wonderful_team.core.jsonable import to_jsonable
 from wonderful_team.core.later import later
 from wonderful_team.core.pictures import Point
 from wonderful_team.core.values.content import content_hash
+from wonderful_team.core.values.function import HelperFunction
 from wonderful_team.core.values.limits import KeepOut
 from wonderful_team.core.values.observation import Instruction
 
@@ -168,6 +169,8 @@ class Plan:
         first_draft: Subgoals as first drafted, for the page's diff.
         message, stage: Why it did not come to be planned, and where it failed; "" and None otherwise.
         parent: Id of the plan it replaces after a replan.
+        functions: The helper functions that its trial had accepted when it was made, its own included: a trial that goes on from
+            it goes on with these.
     """
 
     instruction: Instruction
@@ -188,6 +191,7 @@ class Plan:
     stage: str | None = None
     choices: tuple[str, ...] = ()
     warnings: tuple[str, ...] = ()
+    functions: tuple[HelperFunction, ...] = later(())
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "grounded", MappingProxyType(dict(self.grounded)))

@@ -278,7 +278,7 @@ def test_a_study_ends_with_the_signals_number(ignoring: tuple[int, ...], own: Pa
     """A shell that runs a job in the background has it ignore Ctrl-C."""
     process = start(
         *("-m", "wonderful_team", "bench", "tabletop/rotate", "--model", f"{own}:Thinking", "--jobs", "1"),
-        *("--no-control", "all", "--seeds", "0:1", "--store", str(tmp_path / "s.db"), "--trial-max-seconds", "3"),
+        *("--no-control", "all", "--seeds", "0:1", "--store", str(tmp_path / "s.db"), "--trial-max-seconds", "20"),
         ignoring=ignoring,
     )
     until(process, "ASKED")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import pickle
 import sqlite3
+from contextlib import closing
 from pathlib import Path
 
 import numpy as np
@@ -71,11 +72,11 @@ def test_a_store_runs_no_code(planted, tmp_path, column, capsys):
     store = tmp_path / "study.db"
     argv = ["bench", "tabletop/rotate", "--seeds", "0", "--store", str(store), "--jobs", "1", "--no-control", "all"]
     assert run([*argv, "--max-seconds", "0.000001"]) in (5, 130)
-    with sqlite3.connect(store) as base:
+    with closing(sqlite3.connect(store)) as base, base:
         base.execute(f"UPDATE trials SET {column} = ?", (f"{file}:W",))  # noqa: S608  a column of the test's own
     run(argv)
     assert not shown.exists()
-    with sqlite3.connect(store) as base:
+    with closing(sqlite3.connect(store)) as base:
         rows = base.execute("SELECT outcome, reason FROM trials").fetchall()
     assert all(outcome in (None, "error") for outcome, _ in rows)
 

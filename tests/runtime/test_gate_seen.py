@@ -184,6 +184,29 @@ def test_nothing_is_carried_against_a_tower() -> None:
         assert admitted or failed(report) == {"under the way"}
 
 
+def test_a_world_that_lifts_tall_things_higher_carries_them_over_lower_ones() -> None:
+    camera = affine_top()
+    tall = replace(RED, height=0.1)
+    grounded = {**blocks(camera, T1=tall), "A1": area("A1", px(camera, 0.43, 0.3))}
+    step = PickPlaceStep("G1", "T1", At("A1"))
+    # Without a lift the tool travels at 0.2 m and the block hangs down to 0.1 m; lifted by 0.16 m, down to 0.16 m.
+    for between_m, lift_m, admitted in ((0.12, None, False), (0.12, 0.16, True), (0.17, 0.16, False)):
+        view = scene(camera, tall, Block(0.40, -0.05, 0.46, 0.05, between_m))
+        report = gate(planned(view, grounded, step), view, limits=replace(LIMITS, lift_m=lift_m))
+        assert report.admitted is admitted, report.reasons
+        assert admitted or failed(report) == {"under the way"}
+
+
+def test_a_lift_ends_at_the_top_of_the_workspace() -> None:
+    limits = replace(LIMITS, lift_m=0.16)
+    assert [limits.carried_z_m(np.array([0, 0, z]), np.zeros(3)) for z in (0.02, 0.1, 0.2)] == pytest.approx(
+        [0.2, 0.26, 0.3]
+    )
+    for wrong in (0.0, -0.1, np.inf, np.nan):
+        with pytest.raises(ValueError, match="lift: it must be"):
+            replace(LIMITS, lift_m=wrong)
+
+
 def test_a_push_comes_down_on_free_ground() -> None:
     camera = affine_top()
     view = scene(camera, RED, BLUE)

@@ -18,6 +18,8 @@ from collections.abc import Callable, Iterator
 from types import FrameType
 from typing import Any, NoReturn
 
+from wonderful_team.core.waking import answered, wakes_main_thread
+
 SIGNALS = tuple(getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name))
 TEARDOWN_S = 2.0
 """Longest wait for threads in native code when the interpreter ends [s]."""
@@ -78,7 +80,8 @@ def ends_on_signal(*, force: bool = False) -> Iterator[None]:
     for number in ours:
         signal.signal(number, _on_signal)
     try:
-        yield
+        with wakes_main_thread(ours, _stuck):
+            yield
     except Interrupted as error:
         if force:
             raise
@@ -114,6 +117,7 @@ def as_keyboard() -> Iterator[None]:
     before = {number: signal.getsignal(number) for number in SIGNALS}
 
     def as_interrupt(number: int, frame: FrameType | None) -> None:
+        answered()
         _state.came = number
         handler = signal.getsignal(signal.SIGINT)
         # A background job has Ctrl-C ignored, and yet it ends when it is asked to.
@@ -158,6 +162,7 @@ _UNHANDLED = (signal.SIG_DFL, signal.default_int_handler, _at_once)
 
 
 def _on_signal(number: int, frame: FrameType | None) -> None:
+    answered()
     if _state.came is not None and _state.force:
         os._exit(128 + number)
     _state.came = number
@@ -168,6 +173,15 @@ def _on_signal(number: int, frame: FrameType | None) -> None:
         return
     _state.pending = None
     raise _interruption(number)
+
+
+def _stuck(number: int, again: bool) -> None:
+    """The main thread is in native code that no signal wakes: a second signal ends the process all the same."""
+    if not _state.force:
+        return
+    if again or _state.came is not None:
+        os._exit(128 + number)
+    _say(f"{signal.Signals(number).name}: waiting for code that cannot be interrupted; once more ends at once\n")
 
 
 def _interruption(number: int) -> KeyboardInterrupt:

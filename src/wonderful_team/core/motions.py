@@ -21,10 +21,6 @@ class Carry:
     end_m: Array
     yaw_rad: float = 0.0
 
-    def height_m(self, clearance_m: float) -> float:
-        """Height at which it travels [m]: the world's clearance, or higher where an end lies higher."""
-        return float(max(clearance_m, self.start_m[2], self.end_m[2]))
-
 
 @dataclass(frozen=True, eq=False)
 class Slide:

@@ -9,7 +9,6 @@ from shapely import LineString, Polygon
 
 from wonderful_team.core.actions import FollowStep, MoveTo, PickPlace, Push, Trajectory
 from wonderful_team.core.geometry.arrays import Array
-from wonderful_team.core.motions import Carry
 from wonderful_team.core.values import GroundedTarget, Limits, PlannedAction, View
 from wonderful_team.motion.deprojector import TABLE_Z_M, Deprojector
 
@@ -72,7 +71,7 @@ def _carried(action: PickPlace, planned: PlannedAction, lift: Deprojector, limit
     seen = [lift.surface((float(x), float(y)), "way").position_m for x, y in way if lift.inside((float(x), float(y)))]
     highest = max((float(at[2]) for at in seen if at is not None), default=TABLE_Z_M)
     yield f"held at {_cm(float(action.pick_m[2]))}, put down on a surface at {_cm(float(action.place_m[2]))}"
-    carried_m = Carry(action.pick_m, action.place_m).height_m(limits.clearance_m)
+    carried_m = limits.carried_z_m(action.pick_m, action.place_m)
     yield f"the highest surface under its way is at {_cm(highest)}, and it is carried {_cm(carried_m)} over the table"
 
 

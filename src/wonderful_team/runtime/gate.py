@@ -261,7 +261,7 @@ def _axis_check(path: Array, axis: int, limits: Limits) -> GateCheck:
 
 
 def _carry_check(way: Carry, limits: Limits) -> GateCheck:
-    carry = way.height_m(limits.clearance_m)
+    carry = limits.carried_z_m(way.start_m, way.end_m)
     ends = max(way.start_m[2], way.end_m[2])
     room = float(carry - ends)
     return GateCheck(

@@ -36,14 +36,14 @@ def sweep_of(action: Action, limits: Limits, tool_m: Array | None) -> Sweep:
 
     Args:
         action: What will run.
-        limits: Gives the clearance at which things are carried.
+        limits: Give the height at which things are carried.
         tool_m: Where the tool stands before, shape (3,), or None when unknown.
     """
     motion = action.motion(tool_m)
     match motion:
         case Carry(start_m=start, end_m=end):
             lifted, over = start.copy(), end.copy()
-            lifted[2] = over[2] = motion.height_m(limits.clearance_m)
+            lifted[2] = over[2] = limits.carried_z_m(start, end)
             return Sweep(motion, np.array([start, lifted, over, end]), _high(tool_m, lifted), over)
         case Slide(start_m=start, end_m=end):
             over = np.array([*end[:2], max(limits.clearance_m, end[2])])

@@ -11,6 +11,7 @@ from wonderful_team.core.actions import Home, PickPlace
 from wonderful_team.core.protocols import Privileged, World, offers
 from wonderful_team.errors import ConfigError
 from wonderful_team.sims.tabletop import Scene, TabletopWorld, make_world, task
+from wonderful_team.sims.tabletop.suction import Suction
 
 
 @task("test/suction", instruction="put the letter into the container", horizon=9)
@@ -121,3 +122,24 @@ def test_a_nudge_shows_in_the_next_picture(world: TabletopWorld) -> None:
     assert _thing(world, "letter")["position_m"][0] == pytest.approx(where[0] + 0.03, abs=0.002)
     world.privileged.nudge("container", dy_m=-0.05)
     assert _thing(world, "container")["position_m"][1] == pytest.approx(0.25, abs=1e-6)
+
+
+def test_a_tall_thing_travels_as_high_as_the_world_says(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The gate checks what lies under its way for that height."""
+    goals: list[float] = []
+    carry = Suction._carry
+
+    def noting(tool: Suction, goal_m: np.ndarray, yaw_rad: float, speed_m_s: float) -> None:
+        goals.append(float(goal_m[2]))
+        carry(tool, goal_m, yaw_rad, speed_m_s)
+
+    monkeypatch.setattr(Suction, "_carry", noting)
+    made = make_world("novel_adj", seed=750006)
+    try:
+        tallest = max(made.privileged.truth()["things"].values(), key=lambda thing: thing["grasp_m"][2])
+        pick, place = np.array(tallest["grasp_m"]), np.array([0.6, 0.0, 0.0])
+        assert pick[2] > 0.09
+        assert made.execute(PickPlace(pick, place, 0.0)).measured["held"] is True
+        assert goals == pytest.approx([made.limits.carried_z_m(pick, place)] * 2, abs=0.002)
+    finally:
+        made.close()

@@ -11,6 +11,7 @@ import numpy as np
 
 from wonderful_team.core.actions import PickPlace
 from wonderful_team.core.geometry.arrays import Array
+from wonderful_team.sims.tabletop.cameras import TABLE_HIGH_M
 from wonderful_team.sims.tabletop.engine import mj
 from wonderful_team.sims.tabletop.model import TABLE_GROUP, THING_GROUP, TIMESTEP_S, BuiltModel
 from wonderful_team.sims.tabletop.moving import HOME_M, Tool, settle
@@ -22,6 +23,7 @@ SEAL_M = 0.006
 """How much the surface under the rim of the cup may rise or fall for the cup to hold [m]."""
 SEALED_SHARE = 0.5
 LIFT_M = 0.16
+"""How far things are lifted from where they are gripped, as far as the workspace reaches [m]."""
 CARRY_SPEED_M_S = 1.0
 TURN_SPEED_RAD_S = 4.0
 LOWER_SPEED_M_S = 0.3
@@ -63,8 +65,9 @@ class Suction(Tool):
             return Picked(None, under_pick, under_place, self._measured(False, contact_z, None, action, touched))
         self._attach(body)
         self.holding = True
-        self._carry(np.array([x, y, contact_z + LIFT_M]), 0.0, CARRY_SPEED_M_S)
-        self._carry(np.array([*place, contact_z + LIFT_M]), action.yaw_rad, CARRY_SPEED_M_S)
+        carried_z = min(contact_z + LIFT_M, TABLE_HIGH_M[2])
+        self._carry(np.array([x, y, carried_z]), 0.0, CARRY_SPEED_M_S)
+        self._carry(np.array([*place, carried_z]), action.yaw_rad, CARRY_SPEED_M_S)
         self._lower(body, contact_z, action.yaw_rad)
         released = np.array(self.tool_m)
         self._release(body)

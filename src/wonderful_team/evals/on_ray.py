@@ -8,7 +8,6 @@ from __future__ import annotations
 import contextlib
 import importlib.util
 import multiprocessing
-import multiprocessing.connection
 import os
 import tempfile
 import time
@@ -96,8 +95,8 @@ def run_on_ray(
         parcel = (shipment or Shipment()).pack(folder)
         said, most = Path(scratch) / "ray.txt", -(-monitor.missing // work.at_once)
         order = Order(address, jobs, most, work.at_once, calls_at_once, work.runner, parcel, folder, said)
-        with _talking(order) as (link, process):
-            cluster = _Cluster(work, store, monitor, link, process, order, dict((shipment or Shipment()).versions))
+        with _talking(order) as link:
+            cluster = _Cluster(work, store, monitor, link, order, dict((shipment or Shipment()).versions))
             cluster.run()
             return cluster.end()
 
@@ -124,8 +123,8 @@ def check_address(address: str) -> None:
 
 
 @contextmanager
-def _talking(order: Order) -> Iterator[tuple[Any, Any]]:
-    """The process that talks to Ray, and the link to it; ended in any case."""
+def _talking(order: Order) -> Iterator[Any]:
+    """The link to a process that talks to Ray; it is ended in any case."""
     context = multiprocessing.get_context("spawn")
     link, far = context.Pipe()
     process = context.Process(target=talk_to_ray, args=(order, far), name="ray", daemon=False)
@@ -133,15 +132,14 @@ def _talking(order: Order) -> Iterator[tuple[Any, Any]]:
         process.start()
     far.close()
     try:
-        yield link, process
+        yield link
     finally:
         with contextlib.suppress(OSError):
             link.send(Stop())
         process.join(END_S)
-        for end in (process.terminate, process.kill):
-            if process.is_alive():
-                end()
-                process.join(END_S)
+        if process.is_alive():
+            process.kill()
+            process.join()
         link.close()
 
 
@@ -154,12 +152,11 @@ class _Cluster:
         store: Store,
         monitor: StudyMonitor,
         link: Any,
-        process: Any,
         order: Order,
         versions: dict[str, str],
     ) -> None:
         self._work, self._store, self._watch = work, store, monitor
-        self._link, self._process, self._order, self._versions = link, process, order, versions
+        self._link, self._order, self._versions = link, order, versions
         self._owner = Owner.this_process()
         self._running: dict[int, Claim] = {}
         self._lost: dict[str, list[Claim]] = {}
@@ -221,15 +218,16 @@ class _Cluster:
 
     def _hear(self, within_s: float) -> None:
         """What the cluster says, if it says anything within so many seconds."""
-        ready = multiprocessing.connection.wait([self._link, self._process.sentinel], within_s)
-        while self._link in ready and self._link.poll():
-            try:
-                message = self._link.recv()
-            except (EOFError, OSError):
-                break
-            self._answer(message)
-        if self._process.sentinel in ready and not self._link.poll():
-            raise ClusterLostError(f"{self._where}: the connection to Ray ended: {self._last_words()}; {KEPT}")
+        if not self._link.poll(within_s):
+            return
+        try:
+            while self._link.poll():
+                self._answer(self._link.recv())
+        except (EOFError, OSError):
+            # What it said before is read to the end: nothing of it is lost.
+            raise ClusterLostError(
+                f"{self._where}: the connection to Ray ended: {self._last_words()}; {KEPT}"
+            ) from None
 
     def _answer(self, message: object) -> None:
         match message:

@@ -54,7 +54,7 @@ LOCAL_OBJECTS_BYTES = 200_000_000
 
 def talk_to_ray(order: Order, link: Any) -> None:
     """Entry of the process."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the keyboard is the other process's to answer
+    _leave_signals_to_parent()
     said = os.open(order.said, os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o600)
     for stream in (1, 2):
         os.dup2(said, stream)
@@ -64,8 +64,16 @@ def talk_to_ray(order: Order, link: Any) -> None:
     except Exception as error:  # noqa: BLE001  ray raises bare exceptions when versions differ or a node does not start
         link.send(Failed(f"--ray {order.address}: {_line(error)}", wrong_use=True))
         return
+    _leave_signals_to_parent()  # Ray has set handlers of its own
     asyncio.run(_Side(ray, order, link).run())
     ray.shutdown()
+
+
+def _leave_signals_to_parent() -> None:
+    """A terminal, or `timeout`, tells the whole group; this process ends when the other one says so, or is gone."""
+    for name in ("SIGINT", "SIGTERM", "SIGHUP"):
+        if hasattr(signal, name):
+            signal.signal(getattr(signal, name), signal.SIG_IGN)
 
 
 def _connect(ray: Any, order: Order) -> None:

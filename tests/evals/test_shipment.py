@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import asyncio
+import io
 import subprocess
 import sys
+import zipfile
 from pathlib import Path
 
 import pytest
@@ -104,7 +106,18 @@ def test_run_folders_come_back_whole_and_never_lie_outside(tmp_path: Path) -> No
     (run.parent / "latest").symlink_to("run")
     unzip(zipped(tmp_path / "there"), tmp_path / "here")
     assert [path.name for path in (tmp_path / "here").rglob("*") if path.is_file()] == ["page.html"]
+    modes = {path.stat().st_mode & 0o777 for path in (tmp_path / "here").rglob("*") if path.is_dir()}
+    assert modes == {0o700}
+    assert next((tmp_path / "here").rglob("page.html")).stat().st_mode & 0o777 == 0o600
     assert zipped(tmp_path / "nothing") == b""
+
+
+def test_what_is_unpacked_stays_in_its_folder(tmp_path: Path) -> None:
+    packed = io.BytesIO()
+    with zipfile.ZipFile(packed, "w") as archive:
+        archive.writestr("../../outside.txt", "x")
+    unzip(packed.getvalue(), tmp_path / "deep" / "here")
+    assert [path.relative_to(tmp_path) for path in tmp_path.rglob("*.txt")] == [Path("deep/here/outside.txt")]
 
 
 def test_a_study_names_what_travels(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, runs_folder: Path) -> None:

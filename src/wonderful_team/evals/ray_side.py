@@ -109,6 +109,7 @@ class _Side:
         self._doubted: set[str] = set()
         self._tasks: set[asyncio.Task[None]] = set()
         self._ended = asyncio.Event()
+        self._saying = threading.Lock()
         self._places: Any = None
         self._deaths = (
             ray.exceptions.RayActorError,
@@ -126,7 +127,7 @@ class _Side:
         self._say(Connected(sum(bool(node["Alive"]) for node in self._ray.nodes()), cpus, workers))
         if self._order.calls_at_once is not None:
             self._places = self._pinned(Places).remote(self._order.calls_at_once)
-        self._spawn(self._watch_head())
+        threading.Thread(target=self._watch_head, daemon=True).start()
         for _ in range(workers):
             self._start()
         await self._ended.wait()
@@ -161,7 +162,7 @@ class _Side:
         self._hand_out()
 
     def _say(self, message: object) -> None:
-        with contextlib.suppress(OSError):  # nobody hears it any more
+        with self._saying, contextlib.suppress(OSError):  # nobody hears it any more
             self._link.send(message)
 
     def _spawn(self, work: Any) -> None:
@@ -267,12 +268,13 @@ class _Side:
 
     # -- the head ------------------------------------------------------------------------------------------------------
 
-    async def _watch_head(self) -> None:
+    def _watch_head(self) -> None:
+        """In a thread of its own: without a head, calls of Ray block whoever makes them."""
         host, _, port = self._ray.get_runtime_context().gcs_address.rpartition(":")
         failed = 0
         while failed < PROBES_THAT_FAIL:
-            await asyncio.sleep(PROBE_S)
-            failed = 0 if await asyncio.to_thread(answers, host, int(port), PROBE_S) else failed + 1
+            time.sleep(PROBE_S)
+            failed = 0 if answers(host, int(port), PROBE_S) else failed + 1
         self._say(Failed(f"the head of the Ray cluster at {host}:{port} no longer answers"))
         os._exit(1)  # to take leave of a head that is gone takes Ray a minute
 

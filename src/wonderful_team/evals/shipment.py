@@ -15,6 +15,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 import wonderful_team
+from wonderful_team.core.filesystem import make_private_folder
 from wonderful_team.core.text import look_in_copies
 from wonderful_team.errors import ConfigError
 from wonderful_team.redaction import holds_secret
@@ -133,9 +134,13 @@ def unzip(packed: bytes, folder: Path) -> None:
     Raises:
         OSError: The folder cannot be written to.
     """
-    folder.mkdir(parents=True, exist_ok=True)
+    make_private_folder(folder)
     with zipfile.ZipFile(io.BytesIO(packed)) as archive:
-        archive.extractall(folder)
+        for name in archive.namelist():
+            file = Path(archive.extract(name, folder))
+            file.chmod(0o600)
+            for parent in file.relative_to(folder).parents[:-1]:
+                (folder / parent).chmod(0o700)
 
 
 def listed(paths: Iterable[Path]) -> tuple[Path, ...]:

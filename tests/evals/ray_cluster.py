@@ -20,6 +20,9 @@ START_S = 120.0
 NODE_KEY = "node-canary-7f3a91c2"
 """What the nodes hold in OPENAI_API_KEY."""
 
+TOKEN = {"RAY_AUTH_MODE": "token", "RAY_AUTH_TOKEN": "c0ffee" * 8}
+"""Nobody else on this machine may run code on the cluster; whoever connects has these in its environment."""
+
 
 def bare_python(folder: Path) -> Path:
     """A Python that has the packages of this one, and not the package that is tested."""
@@ -59,7 +62,7 @@ class Node:
         environment |= {"PYTHONPATH": str(imports), "OPENAI_API_KEY": NODE_KEY, "PYTHONUNBUFFERED": "1"}
         words = [str(python), "-m", "ray.scripts.scripts", "start", "--block", "--num-cpus", "1", *where]
         words += ["--temp-dir", str(self.folder), "--object-store-memory", "100000000", "--disable-usage-stats"]
-        environment["RAY_worker_niceness"] = "0"
+        environment |= {"RAY_worker_niceness": "0", **TOKEN}
         self._said = open(self.folder / "said.txt", "wb")  # noqa: SIM115  closed when the node ends
         self._process = subprocess.Popen(
             words, env=environment, cwd="/", stdout=self._said, stderr=subprocess.STDOUT, start_new_session=True
@@ -128,7 +131,7 @@ class Cluster:
         done = subprocess.run(
             [self._python, *words],
             cwd="/",
-            env={"PATH": os.environ["PATH"]},
+            env={"PATH": os.environ["PATH"], **TOKEN},
             capture_output=True,
             text=True,
             timeout=120,

@@ -15,7 +15,7 @@ from pathlib import Path
 import pytest
 
 from tests.evals import ray_runners, runners
-from tests.evals.ray_cluster import NODE_KEY, ROOT, Cluster, cluster
+from tests.evals.ray_cluster import NODE_KEY, ROOT, TOKEN, Cluster, cluster
 from tests.evals.runners import toy_plan
 from wonderful_team.core.caps import Caps
 from wonderful_team.errors import ClusterLostError, ConfigError
@@ -57,6 +57,12 @@ class Witness:
 def two_nodes(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Cluster]:
     with cluster(tmp_path_factory.mktemp("cluster"), 2) as made:
         yield made
+
+
+@pytest.fixture(autouse=True)
+def _token(monkeypatch: pytest.MonkeyPatch) -> None:
+    for name, value in TOKEN.items():
+        monkeypatch.setenv(name, value)
 
 
 def told(lines: list[str]) -> Callable[[str, StudyStatus | None], None]:

@@ -226,7 +226,7 @@ class _Cluster:
         except (EOFError, OSError):
             # What it said before is read to the end: nothing of it is lost.
             raise ClusterLostError(
-                f"{self._where}: the connection to Ray ended: {self._last_words()}; {KEPT}"
+                f"{self._where}: the connection to Ray ended: {self._last_words() or 'it said nothing'}; {KEPT}"
             ) from None
 
     def _answer(self, message: object) -> None:
@@ -252,13 +252,16 @@ class _Cluster:
             case Ended(most_calls):
                 self._most_calls = most_calls
             case Failed(text, wrong_use):
-                raise (ConfigError if wrong_use and not self._number else ClusterLostError)(
-                    text if not self._number else f"{text}; {KEPT}, also without --ray"
-                )
+                said = self._last_words() if not self._connected else ""
+                if wrong_use and not self._number:
+                    raise ConfigError(f"{text} ({said})" if said else text)
+                raise ClusterLostError(f"{text}; {KEPT}, also without --ray")
 
     def _check_bounds(self) -> None:
         if not self._connected and time.monotonic() - self._ready_s > CONNECT_S:
-            raise ConfigError(f"{self._where}: Ray did not connect within {CONNECT_S:g} s: {self._last_words()}")
+            raise ConfigError(
+                f"{self._where}: Ray did not connect within {CONNECT_S:g} s: {self._last_words() or 'it said nothing'}"
+            )
         if self._slots or not self._connected:
             return
         if time.monotonic() - self._ready_s > READY_S:
@@ -321,14 +324,13 @@ class _Cluster:
         self._watch.report(redact(text), None)
 
     def _last_words(self) -> str:
-        """The last line that Ray printed as an error, else its last one."""
+        """The last line that Ray printed of what went wrong; "" where there is none."""
         try:
             lines = self._order.said.read_text(encoding="utf-8", errors="replace").splitlines()
         except OSError:
             lines = []
-        told = [line.strip() for line in lines if line.strip()]
-        wrong = [line for line in told if "rror" in line or "ailed" in line]
-        return redact((wrong or told or ["it said nothing"])[-1][:500])
+        wrong = [line.strip() for line in lines if any(word in line for word in ("rror", "ailed", "nvalid"))]
+        return redact(wrong[-1][:500]) if wrong else ""
 
     def _compare(self, hello: Hello) -> None:
         """Tell what of a worker's machine is not as here; each once."""

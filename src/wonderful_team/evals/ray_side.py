@@ -10,6 +10,7 @@ import asyncio
 import contextlib
 import importlib
 import os
+import secrets
 import signal
 import socket
 import threading
@@ -82,6 +83,9 @@ def _connect(ray: Any, order: Order) -> None:
     os.environ.setdefault("RAY_ENABLE_UV_RUN_RUNTIME_ENV", "0")
     where: dict[str, Any] = {"address": order.address}
     if order.address == LOCAL:
+        if not any(name in os.environ for name in ("RAY_AUTH_MODE", "RAY_AUTH_TOKEN", "RAY_AUTH_TOKEN_PATH")):
+            # Ray would write a token into the home folder, which changes how clusters are started from then on.
+            os.environ |= {"RAY_AUTH_MODE": "token", "RAY_AUTH_TOKEN": secrets.token_hex(32)}
         # Ray lets its workers step back behind everything else on the machine; our own processes do not.
         os.environ.setdefault("RAY_worker_niceness", "0")
         workers = min(order.workers or os.cpu_count() or 1, order.most)

@@ -90,13 +90,14 @@ def run_on_ray(
     if importlib.util.find_spec("ray") is None:
         raise MissingExtraError("--ray", "ray")
     check_address(address)
+    shipment = shipment or Shipment()
     with tempfile.TemporaryDirectory(prefix="wt-ray-") as scratch:
         folder = Path(scratch) / "shipment"
-        parcel = (shipment or Shipment()).pack(folder)
+        parcel = shipment.pack(folder)
         said, most = Path(scratch) / "ray.txt", -(-monitor.missing // work.at_once)
         order = Order(address, jobs, most, work.at_once, calls_at_once, work.runner, parcel, folder, said)
         with _talking(order) as link:
-            cluster = _Cluster(work, store, monitor, link, order, dict((shipment or Shipment()).versions))
+            cluster = _Cluster(work, store, monitor, link, order, dict(shipment.versions))
             cluster.run()
             return cluster.end()
 

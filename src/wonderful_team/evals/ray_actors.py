@@ -163,7 +163,8 @@ class TrialWorker:
         """What came of a trial, and its run folder, if it keeps one; the row's page is then a name in there."""
         limiter = None if self._places is None else RayLimiter(self._places, self._name)
         limit_s = settings.caps.seconds
-        with tempfile.TemporaryDirectory(prefix="wt-", ignore_cleanup_errors=True) as name:
+        # In a folder that Ray removes, should this process be killed.
+        with tempfile.TemporaryDirectory(dir=os.getcwd(), ignore_cleanup_errors=True) as name:
             here = replace(settings, limiter=limiter, out=Path(name))
             trial = in_thread(run_safely, self._runner, spec, here, name="trial")
             try:

@@ -59,6 +59,7 @@ def talk_to_ray(order: Order, link: Any) -> None:
     said = os.open(order.said, os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o600)
     for stream in (1, 2):
         os.dup2(said, stream)
+    _set_up(order.address)
     ray = importlib.import_module("ray")
     try:
         _connect(ray, order)
@@ -77,17 +78,23 @@ def _leave_signals_to_parent() -> None:
             signal.signal(getattr(signal, name), signal.SIG_IGN)
 
 
-def _connect(ray: Any, order: Order) -> None:
+def _set_up(address: str) -> None:
+    """Ray reads its settings when it is imported."""
     # Ray's own uv hook and usage statistics are none of a study's business.
     os.environ.setdefault("RAY_USAGE_STATS_ENABLED", "0")
     os.environ.setdefault("RAY_ENABLE_UV_RUN_RUNTIME_ENV", "0")
+    if address != LOCAL:
+        return
+    # Ray lets its workers step back behind everything else on the machine; our own processes do not.
+    os.environ.setdefault("RAY_worker_niceness", "0")
+    if not any(name in os.environ for name in ("RAY_AUTH_MODE", "RAY_AUTH_TOKEN", "RAY_AUTH_TOKEN_PATH")):
+        # Ray would write a token into the home folder, which changes how clusters are started from then on.
+        os.environ |= {"RAY_AUTH_MODE": "token", "RAY_AUTH_TOKEN": secrets.token_hex(32)}
+
+
+def _connect(ray: Any, order: Order) -> None:
     where: dict[str, Any] = {"address": order.address}
     if order.address == LOCAL:
-        if not any(name in os.environ for name in ("RAY_AUTH_MODE", "RAY_AUTH_TOKEN", "RAY_AUTH_TOKEN_PATH")):
-            # Ray would write a token into the home folder, which changes how clusters are started from then on.
-            os.environ |= {"RAY_AUTH_MODE": "token", "RAY_AUTH_TOKEN": secrets.token_hex(32)}
-        # Ray lets its workers step back behind everything else on the machine; our own processes do not.
-        os.environ.setdefault("RAY_worker_niceness", "0")
         workers = min(order.workers or os.cpu_count() or 1, order.most)
         where |= {"num_cpus": workers, "include_dashboard": False, "object_store_memory": LOCAL_OBJECTS_BYTES}
     shipped = {"working_dir": str(order.folder), "env_vars": dict(THREADS)}

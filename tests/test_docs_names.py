@@ -21,9 +21,9 @@ CODE = [path for folder in ("src", "examples", "benchmarks", "tools") for path i
 PARTS = sorted(path.name for path in PACKAGE.iterdir() if path.is_dir() and (path / "__init__.py").is_file())
 NOT_OURS = {
     "--runslow", "--runinstall", "--runservers", "--rundetectors", "--revision", "--index-url", "--no-deps", "--dry-run", "--max-model-len", "--served-model-name", "--dtype",
-    "--mmproj", "--alias", "--port", "--build", "--target",
+    "--mmproj", "--alias", "--port", "--build", "--target", "--head", "--address",
 }  # fmt: skip
-"""Options of pytest, pip, uv, vLLM, llama.cpp and CMake that the documents name."""
+"""Options of pytest, pip, uv, vLLM, llama.cpp, Ray and CMake that the documents name."""
 OF_BENCHMARKS = {
     option for path in (ROOT / "benchmarks").glob("*.py") for option in re.findall(r"--[a-z][\w-]*", path.read_text())
 }

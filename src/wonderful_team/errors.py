@@ -151,6 +151,10 @@ class FileNotWrittenError(ConfigError):
         super().__init__(f"{str(path)!r} cannot be written: {said}{f'; {hint}' if hint else ''}")
 
 
+class ClusterLostError(WonderfulTeamError):
+    """The cluster that a study runs on is gone, or has no worker left that can run it; what ended is kept."""
+
+
 class UnknownNameError(ConfigError):
     """A name that is not registered; lists the known ones and the nearest."""
 

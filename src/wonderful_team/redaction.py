@@ -70,6 +70,11 @@ def redact_known(text: str) -> str:
     return _known().hide(text)
 
 
+def holds_secret(text: str) -> bool:
+    """Whether a text holds a known secret, or something that has the shape of a vendor's key."""
+    return redact_known(text) != text or any(pattern.search(text) for pattern, _ in _LOOKS)
+
+
 def known_secrets() -> object:
     """What is known to be secret now: the same object for as long as nothing is added to it or taken away."""
     return _known()

@@ -17,6 +17,7 @@ from wonderful_team.agents.replanner import REPLANNER
 from wonderful_team.agents.role import Role
 from wonderful_team.agents.supervisor import SUPERVISOR
 from wonderful_team.agents.verification import VERIFICATION
+from wonderful_team.core.text import user_path
 from wonderful_team.errors import ConfigError, UnknownNameError
 
 ROLES: Mapping[str, Role] = MappingProxyType(
@@ -65,7 +66,7 @@ class Prompts:
         texts = dict(cls.default().texts)
         if directory is None:
             return cls.default()
-        folder = Path(directory)
+        folder = user_path(directory)
         if not folder.is_dir():
             raise ConfigError(f"prompts: {str(folder)!r} is not a folder; it should hold files such as supervisor.md")
         for path in sorted(folder.iterdir()):

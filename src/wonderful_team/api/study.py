@@ -11,6 +11,7 @@ from typing import Any
 
 from wonderful_team import registry
 from wonderful_team.api.known_suites import check_levels, check_scenes, known_suites, methods_of, photo_counts
+from wonderful_team.api.shipping import shipment_of
 from wonderful_team.api.trial import check_isolation, check_names, code_of_names, run_trial
 from wonderful_team.core.caps import Caps
 from wonderful_team.core.renamed import renamed_arguments
@@ -22,8 +23,10 @@ from wonderful_team.evals.monitor import Report
 from wonderful_team.evals.perturb import read_tiers
 from wonderful_team.evals.plan import OFFLINE, WHOLE, StudyPlan, of_photos, read_shard, split_names
 from wonderful_team.evals.pointing_sets import set_suites
+from wonderful_team.evals.processes import started_by_spawn
+from wonderful_team.evals.shipment import Shipment
 from wonderful_team.evals.store import Store
-from wonderful_team.evals.study import StudyResult, run_study, started_by_spawn
+from wonderful_team.evals.study import StudyResult, run_study
 from wonderful_team.evals.suites import read_seeds, resolve
 from wonderful_team.evals.summary import Summary, summarise
 from wonderful_team.evals.trials import RECORDED, Condition, Recorded, RunSettings, TrialRow, TrialSpec
@@ -43,7 +46,7 @@ FREE = ("-", OFFLINE)
 _OF_MODELS = ("allow_unpriced", "local_only", "timeout", "encoding", "cache", "cache_file", "detector", "thorough")
 _SAME_AS_OPTIONS = (
     *("repeats", "replans", "reobserve", "isolate", "perturb", "concurrency", "record", "out", "prompts"),
-    *("jobs", "at_once", "ray", "retry_errors"),
+    *("jobs", "at_once", "ray", "ship", "retry_errors"),
     *_OF_MODELS,
 )
 """Options of `bench` that a study takes as they are."""
@@ -72,6 +75,8 @@ class Study:
         concurrency: Most model calls at once, over all workers.
         record: Which trials keep their run folder with record, pictures and page: full, failures (those that did not succeed) or
             none; what ended stands in the store all the same. `pages` with "all" is its old name.
+        ray: Address of a Ray cluster whose workers run the trials; "auto" or "local" (docs/benchmarking.md). jobs are then its workers.
+        ship: With ray: files and folders that your own code reads, beside those that the study names.
 
     Raises:
         ConfigError: A name or a value that is not valid; before anything runs.
@@ -107,6 +112,7 @@ class Study:
     jobs: int | None = None
     at_once: int = 1
     ray: str | None = None
+    ship: Sequence[str | Path] = ()
     retry_errors: bool = False
     command: str = ""
     thorough: bool = False
@@ -119,6 +125,8 @@ class Study:
         self.controls = _listed(self.controls)
         self.models = [self.models] if isinstance(self.models, str | Mapping) else list(self.models)
         self.record = new_name_of(self.record)
+        if self.ship and self.ray is None:
+            raise ConfigError("what is shipped goes to the workers of a cluster: name it with --ray ADDRESS")
         if isinstance(self.seeds, int):
             raise ConfigError(
                 f"seeds {self.seeds}: valid is a sequence, as in range(1000, 1020), or None for the suite's own"
@@ -207,6 +215,8 @@ class Study:
     def _asked(self) -> dict[str, Any]:
         """Options of the models and the team, as `Method` takes them."""
         asked = {name: getattr(self, name) for name in _OF_MODELS}
+        if self.ray is not None and self.cache_file is not None:
+            asked["cache_file"] = Path(self.cache_file).absolute()  # workers start in a folder that ends with the study
         return {"thinking": self.thinking or None, "price": self.price or None, **asked}
 
     def _how(self) -> str:
@@ -252,9 +262,15 @@ class Study:
             calls_at_once=self.concurrency,
             retry_errors=self.retry_errors,
             ray=self.ray,
+            shipment=None if self.ray is None else self._shipment(),
             needs_main=needs_main,
             report=report,
         )
+
+    def _shipment(self) -> Shipment:
+        prompts = None if self.prompts is None else Path(self.prompts)
+        max_tokens = self.trial_caps.tokens or self.caps.tokens
+        return shipment_of(self.plan, self._asked(), max_tokens, prompts, self.ship)
 
     def estimate(self, pilot: int = PILOT, paid_pilot: bool = False) -> Estimate:
         """What it would take, from what the store holds and a few pilot trials on development seeds.

@@ -141,11 +141,12 @@ def fingerprint(spec: TrialSpec, asked: Mapping[str, Any] | None = None) -> dict
     models = [chosen] if isinstance(chosen, str) else list(chosen.values())
     detector = method_options(asked or {}, spec.condition.method).get("detector") or ""
     own = [name for name in (spec.task, spec.condition.method, *models, detector) if is_file_name(name)]
-    return {**_versions(), **{name: _file_hash(name) for name in own}}
+    return {**package_versions(), **{name: _file_hash(name) for name in own}}
 
 
 @lru_cache
-def _versions() -> dict[str, str]:
+def package_versions() -> dict[str, str]:
+    """Of this package, as results name it."""
     found = {name: str(value) for name, value in versions().items() if value is not None}
     return {"wonderful-team": __version__, **{k: v for k, v in found.items() if "commit" in k}}
 

@@ -106,7 +106,18 @@ QUIET_S = 10.0
 @click.option("--jobs", type=click.IntRange(1), help="Worker processes. [default: one per core]")
 @click.option("--at-once", type=click.IntRange(1), default=1, show_default=True, help="Trials in flight per process.")
 @click.option("--shard", metavar="I/N", help="Only this part, in a store file of its own.")
-@click.option("--ray", metavar="ADDRESS", help='Run on a Ray cluster; "local" starts one here.')
+@click.option(
+    "--ray",
+    metavar="HOST:PORT|auto|local",
+    help="Run on a Ray cluster, on --jobs workers (default one per core of it); local starts one here.",
+)
+@click.option(
+    "--ship",
+    type=PATH,
+    multiple=True,
+    metavar="PATH",
+    help="With --ray: files and folders that your own code reads; what the command names is sent anyway.",
+)
 @click.option("--retry-errors", is_flag=True, help="Run trials again that ended as errors.")
 @click.option(
     "--record",
@@ -179,13 +190,13 @@ def tell_estimate(command: str, study: Study, options: dict[str, Any]) -> int:
 
 def run_study(study: Study, options: dict[str, Any]) -> tuple[StudyResult, int]:
     """Run what is missing of a study; how it ended, and the exit code."""
-    from wonderful_team.errors import FileNotWrittenError, WonderfulTeamError
+    from wonderful_team.errors import ClusterLostError, FileNotWrittenError, WonderfulTeamError
 
     _tell_notes(study)
     try:
         with as_keyboard():
             ended = study.run(report=Teller())
-    except FileNotWrittenError as error:
+    except (FileNotWrittenError, ClusterLostError) as error:
         # The trials that ended stand in the store: their figures are the result in hand.
         with contextlib.suppress(WonderfulTeamError, sqlite3.Error):
             say("\n".join(study.lines()), err=options["as_json"])

@@ -105,5 +105,28 @@ def ending_words(ending: str, reason: str | None) -> tuple[str, str]:
 
 
 def user_path(path: str | Path) -> Path:
-    """A path as a user writes it: ~ is a home folder where there is one of that name."""
-    return Path(os.path.expanduser(path))
+    """A path as a user writes it: ~ is a home folder where there is one of that name.
+
+    On another machine that works for the user, it is the copy that was sent along, where there is one.
+    """
+    if _copies is None:
+        return Path(os.path.expanduser(path))
+    folder, home = _copies
+    text = os.fspath(path)
+    found = Path(home + text[1:] if text == "~" or text.startswith("~/") else os.path.expanduser(text)).absolute()
+    copy = folder / found.relative_to(found.anchor)
+    return copy if copy.exists() else found
+
+
+_copies: tuple[Path, str] | None = None
+
+
+def look_in_copies(folder: Path, home: str) -> None:
+    """From now on this process finds a user's files in copies of them, which lie below `folder` as they do below the root.
+
+    Args:
+        folder: Absolute.
+        home: The user's home folder on the machine that they were copied from.
+    """
+    global _copies
+    _copies = folder, home

@@ -68,6 +68,10 @@ class StudyMonitor:
             time.monotonic() - self._began,
         )
 
+    def restart_clock(self) -> None:
+        """Count the rate from now on: what came before was setting up."""
+        self._began = time.monotonic()
+
     def look(self) -> bool:
         """Report at most once a second."""
         if time.monotonic() - self._told >= 1.0:

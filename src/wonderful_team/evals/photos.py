@@ -15,6 +15,7 @@ from pydantic import BaseModel, Field, ValidationError
 
 from wonderful_team.core.geometry import Box
 from wonderful_team.core.pictures import Point
+from wonderful_team.core.text import user_path
 from wonderful_team.errors import ConfigError, reading
 from wonderful_team.evals.trials import TrialRow
 
@@ -88,7 +89,7 @@ def read_photos(path: str) -> tuple[PhotoScene, ...]:
 
 
 def _read_photos(path: str) -> tuple[PhotoScene, ...]:
-    file = Path(path)
+    file = user_path(path)
     try:
         coco = _Coco.model_validate_json(file.read_bytes())
     except OSError as error:

@@ -26,6 +26,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from wonderful_team.core.geometry import Box
 from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.pictures import Point
+from wonderful_team.core.text import user_path
 from wonderful_team.errors import ConfigError, UnknownNameError, reading
 from wonderful_team.evals.photos import SET, read_photos
 from wonderful_team.evals.suites import Protocol, Suite
@@ -248,7 +249,7 @@ def scenes_of(task: str) -> tuple[PointingScene, ...]:
 @lru_cache
 def _read(form: str, path: str) -> tuple[PointingScene, ...]:
     with reading(f"set {path!r}", _FORMS[form]):
-        return FORMATS[form](Path(path))
+        return FORMATS[form](user_path(path))
 
 
 @dataclass(frozen=True)

@@ -7,11 +7,7 @@ import multiprocessing
 import multiprocessing.connection
 import os
 import socket
-import sys
 import time
-import types
-from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -23,13 +19,14 @@ from wonderful_team.core.text import counted
 from wonderful_team.errors import ConfigError
 from wonderful_team.evals.monitor import Report, StudyMonitor, StudyStatus
 from wonderful_team.evals.plan import StudyPlan
+from wonderful_team.evals.processes import one_thread_each, without_main
 from wonderful_team.evals.rate_limit import ProcessLimiter
+from wonderful_team.evals.shipment import Shipment
 from wonderful_team.evals.store import Store
 from wonderful_team.evals.trials import RunSettings, TrialRunner
 from wonderful_team.evals.workers import LATE, POLL_S, Work, work_until_done, worker_main
 
 STARTS_THAT_FAIL = 3
-_THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 
 
 @dataclass(frozen=True)
@@ -54,6 +51,7 @@ def run_study(
     calls_at_once: int | None = None,
     retry_errors: bool = False,
     ray: str | None = None,
+    shipment: Shipment | None = None,
     needs_main: bool = True,
     report: Report = lambda text, status: None,
 ) -> StudyResult:
@@ -69,7 +67,9 @@ def run_study(
         at_once: Trials in flight per process.
         calls_at_once: Most model calls in flight over all workers; None for each trial's own limit.
         retry_errors: Run trials again that ended as errors.
-        ray: Address of a Ray cluster ("local" starts one here): its workers run the trials instead.
+        ray: Address of a Ray cluster ("local" starts one here): its workers run the trials instead, one per core of the cluster
+            unless `jobs` says how many.
+        shipment: What these workers need beside the package.
         needs_main: Worker processes run the calling script again, because something that they need stands in it. Without
             it they start also from a script that guards nothing with `if __name__ == "__main__":`.
         report: Told how it goes.
@@ -78,7 +78,7 @@ def run_study(
         ConfigError: Wrong use, or workers that cannot start.
         KeyboardInterrupt: Passed on after the trials in flight ended, or were given back.
     """
-    jobs = jobs or os.cpu_count() or 1
+    workers, jobs = jobs, jobs or os.cpu_count() or 1
     if jobs < 1 or at_once < 1:
         raise ConfigError(f"jobs and trials at once must be at least 1, got {jobs} and {at_once}")
     settings, caps = settings or RunSettings(), caps or Caps()
@@ -98,7 +98,7 @@ def run_study(
         elif ray is not None:
             from wonderful_team.evals.on_ray import run_on_ray
 
-            run_on_ray(work, opened, monitor, ray, jobs, calls_at_once)
+            run_on_ray(work, opened, monitor, ray, workers, calls_at_once, shipment)
         elif jobs == 1 and calls_at_once is None:
             work_until_done(work, lambda: monitor.look() and False)
         else:
@@ -124,11 +124,11 @@ def _run_processes(work: Work, monitor: StudyMonitor, jobs: int, calls_at_once: 
 
     def start() -> Any:
         process = context.Process(target=worker_main, args=(work, stopping), daemon=False)
-        with contextlib.nullcontext() if needs_main else _without_main():
+        with contextlib.nullcontext() if needs_main else without_main():
             process.start()
         return process
 
-    with _one_thread_each():
+    with one_thread_each():
         processes = [start() for _ in range(jobs)]
         try:
             while any(process.exitcode != 0 for process in processes):
@@ -158,22 +158,6 @@ def _run_processes(work: Work, monitor: StudyMonitor, jobs: int, calls_at_once: 
             raise
 
 
-def started_by_spawn() -> bool:
-    """Whether this process is a worker that is just running its parent's script again."""
-    return bool(getattr(multiprocessing.current_process(), "_inheriting", False))
-
-
-@contextlib.contextmanager
-def _without_main() -> Iterator[None]:
-    """Start a process that does not run the calling script again: it is told of an empty one."""
-    script = sys.modules["__main__"]
-    sys.modules["__main__"] = types.ModuleType("__main__")
-    try:
-        yield
-    finally:
-        sys.modules["__main__"] = script
-
-
 def _end(processes: list[Any], monitor: StudyMonitor, *, patient: bool, why: str = "") -> None:
     """Let trials in flight end; a second interrupt ends them at once, and their claims are given back."""
     try:
@@ -187,18 +171,3 @@ def _end(processes: list[Any], monitor: StudyMonitor, *, patient: bool, why: str
                 process.kill()
                 process.join()
                 monitor.store.crashed(process.pid or 0, socket.gethostname(), why)
-
-
-@contextmanager
-def _one_thread_each() -> Iterator[None]:
-    """Processes share the cores: numeric libraries of a worker must not each take all of them."""
-    before = {name: os.environ.get(name) for name in _THREADS}
-    os.environ.update(dict.fromkeys(_THREADS, "1"))
-    try:
-        yield
-    finally:
-        for name, value in before.items():
-            if value is None:
-                os.environ.pop(name, None)
-            else:
-                os.environ[name] = value

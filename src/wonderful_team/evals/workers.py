@@ -129,6 +129,15 @@ async def _run(work: Work, store: Store, owner: Owner, claim: Claim) -> None:
         store.give_back(claim.trial, owner)
         raise
     give_back_free_memory()
+    book(work, store, owner, claim, result)
+
+
+def book(work: Work, store: Store, owner: Owner, claim: Claim, result: TrialRow) -> None:
+    """Write what came of a trial, unless what was left of the study's time or caps cut it.
+
+    Raises:
+        FileNotWrittenError: It cannot be written; says what is lost.
+    """
     if work.late and result.stage == "budget" and result.outcome != "success":
         store.give_back(claim.trial, owner, LATE, result)
         return

@@ -107,6 +107,8 @@ _ABLE = (
     ("pushing", {"push"}, {"move", "push", "pick_place"}),
     ("picking up", {"put", "rotate"}, {"move", "push", "pick_place"}),
     ("turning things", {"rotate"}, {"pick_place", "rotate_gripper"}),
+    ("following a path", {"trace", "shake"}, {"follow"}),
+    ("turning what is gripped", {"twist"}, {"rotate_gripper"}),
 )
 """What a robot has to be able to do for which kinds of aims, and the kinds of steps of which it needs one."""
 
@@ -210,7 +212,10 @@ def _wrong_use(item: ReadSubgoal) -> list[str]:
         f"{target.id} ({target.words}) is to be moved, but its use is {', '.join(target.use)}; is it swapped?"
         for aim in item.aims or ()
         for target, known in item.targets
-        if known is not None and known.same(aim.thing) and not (aim.to is not None and known.same(aim.to))
+        if aim.kind != "trace"
+        and known is not None
+        and known.same(aim.thing)
+        and not (aim.to is not None and known.same(aim.to))
         if target.use and not {*target.use} & {"pick", "grasp", "push_start"}
     ]
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from wonderful_team.offline.description import Description, Figure
 from wonderful_team.offline.language.clause_meaning import related_to
-from wonderful_team.offline.language.clause_parts import VERBS, Parts, Unclear
+from wonderful_team.offline.language.clause_parts import PLACES, VERBS, Parts, Unclear
 from wonderful_team.offline.language.meaning import Meaning
 from wonderful_team.offline.language.tokens import Token
 from wonderful_team.offline.language.vocabulary import FIGURES
@@ -15,6 +15,7 @@ from wonderful_team.offline.language.vocabulary import FIGURES
 HANDLED = ("DRAW", "WIPE", "SHAKE", "OPEN")
 """Kinds of verbs that are read here."""
 _TO = frozenset(("INTO", "ONTO", "TO", "ORIGIN", "BETWEEN"))
+_HEADS = frozenset("NOUN SHAPE LETTER SLOT ONE IT THEY TABLE EVERYTHING".split())
 _ENDS = frozenset(("SEP", "THEN"))
 _WORDS_FOR = {"long": "line", "swirled": "spiral"}
 """Figures whose words say other things of things: a line is a long thing, a spiral a pattern."""
@@ -38,11 +39,14 @@ _MOST_TIPS, _MOST_TIMES = 9, 9
 def handled(tokens: Sequence[Token]) -> list[Token]:
     """The tokens with figures and counts as one token each; wiping a thing to a place is pushing it there."""
     out: list[Token] = []
-    at, drawing = 0, False
+    at, drawing, placing = 0, False, False
     while at < len(tokens):
         token = tokens[at]
         drawing = (drawing or token.kind == "DRAW") and token.kind not in _ENDS
-        taken, figure = _figure(tokens, at) if drawing else (0, None)
+        placing = (placing or token.kind in PLACES) and token.kind != "DRAW"
+        # After "on", a shape is what is drawn on: "draw a star on the square".
+        taken, figure = _figure(tokens, at) if drawing and not placing else (0, None)
+        placing = placing and token.kind not in _HEADS
         if figure is not None:
             out.append(Token("FIGURE", figure, " ".join(item.text for item in tokens[at : at + taken])))
             at += taken

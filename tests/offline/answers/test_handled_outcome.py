@@ -29,7 +29,7 @@ def soiled(view: View) -> View:
     """The same table with dark specks on the bowl."""
     rgb = np.array(view.rgb)
     for k in range(40):
-        cv2.circle(rgb, (430 + 12 * (k % 8), 136 + 12 * (k // 8)), 3, (60, 45, 20), -1)
+        cv2.circle(rgb, (430 + 12 * (k % 8), 136 + 12 * (k // 8)), 4, (60, 45, 20), -1)
     return View("top", "top", 0.0, rgb)
 
 

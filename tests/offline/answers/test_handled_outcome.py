@@ -28,8 +28,8 @@ def marked(view: View, x: int) -> View:
 def soiled(view: View) -> View:
     """The same table with dark specks on the bowl."""
     rgb = np.array(view.rgb)
-    for k in range(40):
-        cv2.circle(rgb, (430 + 12 * (k % 8), 136 + 12 * (k // 8)), 4, (60, 45, 20), -1)
+    for k in range(9):
+        cv2.circle(rgb, (450 + 30 * (k % 3), 130 + 30 * (k // 3)), 8, (60, 45, 20), -1)
     return View("top", "top", 0.0, rgb)
 
 

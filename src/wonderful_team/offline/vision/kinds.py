@@ -136,7 +136,7 @@ def is_round(thing: Thing) -> bool:
 
 def part_on(thing: Thing, scene: Scene) -> Thing | None:
     """What stands up from the middle of a thing: its neck, cap, or handle, the highest one; None without depth or where nothing does."""
-    middle = thing.box.scaled(0.6)
+    middle = thing.box.scaled(0.8)
     parts = [part for part in scene.on(thing) if _higher(part, thing) and middle.contains(part.box.centre)]
     return max(parts, key=lambda part: part.height_m or 0.0, default=None)
 

@@ -9,7 +9,15 @@ import numpy as np
 
 from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.offline.vision.occlusion import part_overlaid
-from wonderful_team.offline.vision.outlines import components, filled, kernel, nearest_in, placed, window
+from wonderful_team.offline.vision.outlines import (
+    components,
+    filled,
+    kernel,
+    largest_contour,
+    nearest_in,
+    placed,
+    window,
+)
 from wonderful_team.offline.vision.pieces import joined_pieces
 from wonderful_team.offline.vision.table import Table
 from wonderful_team.offline.vision.things import lab_histogram
@@ -22,6 +30,9 @@ _JUMP_M = 0.010
 
 _STEP_M, _OTHER_LOOK = 0.005, 0.3
 """A plate stands at least so much higher than the rim round it [m], and is at most so much alike in colours (0 to 1)."""
+
+_CRESCENT, _MOSTLY = (0.5, 0.85), 0.5
+"""Shares of its hull that a thing fills of which another hides a part, and how much of that other one lies within its hull."""
 
 _HOLLOW, _TOUCHES = 1.5, 0.9
 """A ring's outline holds at least so many times its own area; two rings that are steps of a wall touch along this share."""
@@ -129,6 +140,7 @@ def _with_height(lab: Array, table: Table, least: float) -> list[Segment]:
         pieces = _split_by_height(lab[view], patch[view], table.height_m[view], least)
         pieces = [part for piece in pieces for part in _covered(lab[view], piece, table.height_m[view], least)]
         raised += [patch] if len(pieces) == 1 else [placed(piece, view, patch.shape) for piece in pieces]
+    raised = [_behind(piece, raised, table.height_m) for piece in raised]
     wide = cv2.dilate(table.raised.astype(np.uint8), kernel(5)) > 0
     papers: list[Array] = []
     wholes = [filled(thing) for thing in raised]
@@ -146,6 +158,24 @@ def _with_height(lab: Array, table: Table, least: float) -> list[Segment]:
         papers.append(patch | (grown & table.stands_out & ~table.raised))
     papers = _join_papers(lab, [part for paper in papers for part in part_overlaid(lab, paper, least)], raised)
     return [*(Segment(mask, False) for mask in raised), *(Segment(_under(paper, raised), True) for paper in papers)]
+
+
+def _behind(piece: Array, raised: list[Array], height_m: Array) -> Array:
+    """A raised thing with what a higher one on it hides of its rim, where both are seen aslant: the shoulder of a bottle behind its neck."""
+    contour = largest_contour(piece)
+    hull = np.zeros(piece.shape, np.uint8)
+    cv2.fillConvexPoly(hull, cv2.convexHull(contour), 1)
+    solid = float(piece.sum()) / max(float(hull.sum()), 1.0)
+    if not _CRESCENT[0] < solid < _CRESCENT[1]:
+        return piece
+    level, near = float(np.nanmedian(height_m[piece])), cv2.dilate(piece.astype(np.uint8), kernel(5)) > 0
+    for other in raised:
+        if other is piece or not (near & other).any() or (filled(piece) & other).sum() > _MOSTLY * other.sum():
+            continue
+        inside = other & (hull > 0)
+        if inside.sum() > _MOSTLY * other.sum() and float(np.nanmedian(height_m[other])) > level + _JUMP_M:
+            return cv2.morphologyEx((piece | inside).astype(np.uint8), cv2.MORPH_CLOSE, kernel(5)) > 0
+    return piece
 
 
 def _under(paper: Array, raised: list[Array]) -> Array:

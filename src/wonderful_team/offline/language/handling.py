@@ -17,8 +17,8 @@ HANDLED = ("DRAW", "WIPE", "SHAKE", "OPEN")
 _TO = frozenset(("INTO", "ONTO", "TO", "ORIGIN", "BETWEEN"))
 _HEADS = frozenset("NOUN SHAPE LETTER SLOT ONE IT THEY TABLE EVERYTHING".split())
 _ENDS = frozenset(("SEP", "THEN"))
-_WORDS_FOR = {"long": "line", "swirled": "spiral"}
-"""Figures whose words say other things of things: a line is a long thing, a spiral a pattern."""
+_ALSO = ("line", "spiral")
+"""Figures whose words otherwise say what a thing is like: long, swirled."""
 _LARGE, _SMALL = 1.2, 0.6
 """How much larger or smaller a figure is that is called large or small."""
 _SILENT = frozenset(("np", "place", "FIGURE", "TIMES", "AND", "COMMA", "AUX", "WANT", "GIVE", "TAKE", "there"))
@@ -108,21 +108,11 @@ def _is_count(tokens: Sequence[Token]) -> bool:
 
 
 def _name(token: Token) -> str:
-    """The figure that a word stands for, or ""."""
-    if token.kind == "FIGURE":
-        return str(token.value)
-    value = (
-        token.value[0]
-        if token.kind == "SHAPE" and isinstance(token.value, tuple) and not token.value[1]
-        else token.value
-    )
-    name = _WORDS_FOR.get(str(value), str(value))
-    return name if name in FIGURES and name in (token.text, *_canonical(token, name)) else ""
-
-
-def _canonical(token: Token, name: str) -> tuple[str, ...]:
-    """A shape's own name stands for it whatever word was used ("rhombus"); of a bar and a swirl only their own words do."""
-    return () if name in _WORDS_FOR.values() or token.kind != "SHAPE" else (name,)
+    """The figure that a word in the singular stands for, or ""."""
+    if token.kind == "FIGURE" or token.text in _ALSO:
+        return token.text
+    shape, many = token.value if token.kind == "SHAPE" and isinstance(token.value, tuple) else ("", False)
+    return str(shape) if shape in FIGURES and not many else ""
 
 
 def read_handled(parts: Parts, meaning: Meaning) -> bool:

@@ -23,7 +23,6 @@ def arm_steps(
     *,
     tight: bool = False,
     twist_deg: float = 0.0,
-    grips: int = 1,
     function: str | None = None,
 ) -> list[dict[str, Any]]:
     """Over the thing, down, close, up, turn, over the place, down, open, up, and out of the cameras' sight, as `StepList` takes them.
@@ -38,7 +37,6 @@ def arm_steps(
         step_kinds: What the robot runs; without `rotate_gripper` nothing is turned, without `home` it stays over the place.
         tight: Whether the gripper keeps squeezing.
         twist_deg: How far the thing is turned clockwise where it is, before it is lifted, as to screw it off.
-        grips: In how many turns it is twisted: between two of them the gripper lets go, turns back, and takes hold again.
         function: Whose path it follows in the air before it is put down, as to shake it.
     """
     thing = {"target": pick, "how": "at", "side": None}
@@ -49,9 +47,6 @@ def arm_steps(
     def rotated(angle_deg: float) -> list[dict[str, Any]]:
         return [{"kind": "rotate_gripper", "subgoal": subgoal, "rotate_deg": angle_deg}] if angle_deg else []
 
-    close = {"kind": "close", "subgoal": subgoal, "tight": tight}
-    again = [{"kind": "open", "subgoal": subgoal}, *rotated(-twist_deg / grips), close]
-    twists = [*rotated(twist_deg / grips), *(grips - 1) * [*again, *rotated(twist_deg / grips)]]
     path = [{"kind": "follow", "subgoal": subgoal, "function": function, "contact": "air"}] if function else []
     home = [{"kind": "home", "subgoal": subgoal}] if "home" in step_kinds else []
     return [
@@ -59,8 +54,8 @@ def arm_steps(
         move(thing, "clear"),
         move(thing, "above"),
         move(thing, "at"),
-        close,
-        *twists,
+        {"kind": "close", "subgoal": subgoal, "tight": tight},
+        *rotated(twist_deg),
         move(thing, "clear"),
         *path,
         *rotated(rotate_deg),

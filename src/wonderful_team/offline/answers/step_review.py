@@ -48,7 +48,6 @@ def _review(question: ReviewSteps) -> PlanReview:
     eyes = eyes_of_task(question.task)
     asked = {item.id: (item, _one_by_one(tasks_of(item, question.targets, eyes))) for item in question.subgoals}
     problems = _step_problems(question.steps, asked, eyes)
-    problems += _twist_problems(question.steps, asked)
     problems += _order_problems(question.steps, question.subgoals)
     problems += _drawn_problems(question.overview, question)
     fresh = [item for item in problems if not any(item[2] in line for line in question.checked)]
@@ -95,28 +94,9 @@ def _step_problems(steps: Sequence[Step], asked: dict[str, tuple[Subgoal, list[T
                 problems.append((number, "wrong_target", text))
         elif isinstance(step, RotateGripperStep):
             turns = [task.rotate_deg for task in tasks]
-            if any(task.aim is not None and task.aim.kind == "twist" for task in tasks):
-                continue  # in several turns: their sum is looked at
             if not any(_same_angle(step.rotate_deg, turn) for turn in turns):
                 text = f"'{subgoal.text}' asks for {turns[0]:g} degrees; why {step.rotate_deg:g} in step {number}?"
                 problems.append((number, "wrong_target", text))
-    return problems
-
-
-def _twist_problems(steps: Sequence[Step], asked: dict[str, tuple[Subgoal, list[Task]]]) -> list[Problem]:
-    """Turns of what is twisted add up to what is asked for; turns back, with open fingers, do not count."""
-    problems: list[Problem] = []
-    for name, (subgoal, tasks) in asked.items():
-        wanted = [task.rotate_deg for task in tasks if task.aim is not None and task.aim.kind == "twist"]
-        turns = [
-            (number, step.rotate_deg)
-            for number, step in enumerate(steps, start=1)
-            if isinstance(step, RotateGripperStep) and step.subgoal == name
-        ]
-        done = sum(turn for _, turn in turns if wanted and turn * wanted[0] > 0)
-        if wanted and turns and abs(done - wanted[0]) > SAME_ANGLE_DEG:
-            text = f"'{subgoal.text}' asks for {wanted[0]:g} degrees; why {done:g} in all by step {turns[-1][0]}?"
-            problems.append((turns[-1][0], "wrong_target", text))
     return problems
 
 

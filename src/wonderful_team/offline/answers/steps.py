@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import re
 from collections.abc import Sequence
 
@@ -14,9 +13,6 @@ from wonderful_team.offline.answers.roles import Task, tasks_of
 from wonderful_team.offline.eyes import Eyes, eyes_of_task
 from wonderful_team.offline.language import try_understand
 from wonderful_team.offline.vision import Thing
-
-AT_ONCE_DEG = 180.0
-"""A wrist that stands anyhow turns about so far at once [degrees]; what is turned farther is taken hold of anew."""
 
 
 def answer_write_steps(question: WriteSteps) -> StepList:
@@ -142,13 +138,6 @@ def _arm(task: Task, kinds: Sequence[str], eyes: Eyes) -> list[dict[str, object]
     parts = (task.subgoal, task.thing.id, place_of(task, eyes))
     kind = task.aim.kind if task.aim is not None else "put"
     if kind == "twist":
-        return arm_steps(
-            *parts,
-            0.0,
-            kinds,
-            tight=True,
-            twist_deg=task.rotate_deg,
-            grips=math.ceil(abs(task.rotate_deg) / AT_ONCE_DEG),
-        )
+        return arm_steps(*parts, 0.0, kinds, tight=True, twist_deg=task.rotate_deg)
     function = task.subgoal if kind == "shake" else None
     return arm_steps(*parts, task.rotate_deg, kinds, tight=kind == "shake", function=function)

@@ -16,7 +16,7 @@ from wonderful_team.offline.vision.kinds import part_on
 
 IN_THE_WAY_M = 0.015
 """What stands so high on a surface is in the way of a tool that is led over it [m]."""
-TURN_DEG, MORE_DEG, MOST_DEG = 300.0, 60.0, 360.0
+TURN_DEG, MORE_DEG, MOST_DEG = 270.0, 30.0, 360.0
 """How far a cap is turned where nothing says how far it has to be, how much farther than that (fingers slip), and at most [degrees]."""
 _HELD = re.compile(
     r"\b(?:gripper|robot|hand|fingers?|arm) holds?\b|\bheld\b|\bin the (?:gripper|hand|fingers)\b", re.IGNORECASE

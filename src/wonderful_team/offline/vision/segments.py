@@ -174,7 +174,7 @@ def _behind(piece: Array, raised: list[Array], height_m: Array) -> Array:
             continue
         inside = other & (hull > 0)
         if inside.sum() > _MOSTLY * other.sum() and float(np.nanmedian(height_m[other])) > level + _JUMP_M:
-            return cv2.morphologyEx((piece | inside).astype(np.uint8), cv2.MORPH_CLOSE, kernel(5)) > 0
+            return np.asarray(cv2.morphologyEx((piece | inside).astype(np.uint8), cv2.MORPH_CLOSE, kernel(5)) > 0)
     return piece
 
 

@@ -97,11 +97,9 @@ _SAID = {
         uncap the red bottle
     """,
     ("open", "", 0, "box"): """
-        open the box
-    """,
-    ("put", "", 0, "lid inside the box"): """
         take the lid off the box
         remove the lid from the box
+        open the box
     """,
 }
 """What sentences come to (kind of command, figure, its count, the thing), and the sentences, one a line."""

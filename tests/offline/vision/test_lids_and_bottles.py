@@ -95,3 +95,28 @@ def test_the_largest_free_area_has_room_for_the_largest_thing() -> None:
     spot = eyes.best(ROOMY)
     assert spot is not None
     assert all(np.hypot(spot.point[0] - x, spot.point[1] - 160) > 45 + 56 for x in (200, 480))
+
+
+def test_a_bottle_seen_aslant_keeps_the_shoulder_that_its_neck_hides() -> None:
+    drawn = Drawing().add(round_shape(AT, 46), plain(RED), height_m=0.068)
+    drawn.add(round_shape((AT[0] + 24, AT[1]), 25), plain(RED), height_m=0.11)
+    eyes = Eyes(drawn.picture(depth=True))
+    bottle = eyes.best(describe("the red bottle"))
+    assert bottle is not None
+    assert bottle.box.width == pytest.approx(92, abs=8)
+    neck = part_on(bottle.thing, eyes.scene)  # type: ignore[arg-type]
+    assert neck is not None
+    assert neck.centre[0] == pytest.approx(AT[0] + 24, abs=3)
+
+
+def test_a_block_in_the_notch_of_an_angle_is_no_part_of_it() -> None:
+    corners = np.array([(120, 80), (160, 80), (160, 200), (280, 200), (280, 240), (120, 240)], float)
+    drawn = (
+        Drawing()
+        .add(corners, plain(BLUE), height_m=0.03)
+        .add(box_shape((195, 165), 66, 66), plain(YELLOW), height_m=0.06)
+    )
+    things = see(drawn.picture(depth=True)).things
+    angle = max(things, key=lambda thing: thing.box.area)
+    assert len(things) == 2
+    assert not angle.holds((205.0, 150.0))

@@ -121,7 +121,7 @@ def read_handled(parts: Parts, meaning: Meaning) -> bool:
     verb = next((kind for kind in HANDLED if kind in parts.kinds), "")
     if (
         not verb
-        and "cap" in nouns
+        and nouns & {"cap", "lid"}
         and parts.kinds & {"REMOVE", "ROTATE", "TAKE"}
         and parts.kinds & {"off", "from", "REMOVE"}
     ):

@@ -63,7 +63,7 @@ _NOUNS = _listed(
     bottle flask jar vial canister thermos; cap stopper cork; lid
     """
 )
-TOOLS = {"draw": "pen pencil marker crayon chalk felttip", "wipe": "sponge cloth rag towel duster"}
+TOOLS = {"draw": "pen pencil marker crayon chalk", "wipe": "sponge cloth rag towel duster"}
 """Tools by what they do. No picture tells them apart: which one the fingers hold is stated among what is known of the robot."""
 _CONTAINERS = "container bowl dish plate pan tray box bin basket receptacle pallet holder"
 _FRUITS = (

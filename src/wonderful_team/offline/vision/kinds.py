@@ -155,6 +155,14 @@ def _is_part(thing: Thing, scene: Scene) -> bool:
     return host is not None and is_round(host) and not host.flat and _higher(thing, host)
 
 
+def _is_bottom(thing: Thing, scene: Scene) -> bool:
+    """Whether a thing is the inner part of a plate: level with what it lies on, which is flat and yet no paper."""
+    host = next((other for other in scene.things if other.number == thing.on), None)
+    if host is None or not host.flat or host.height_m is None or host.height_m < THIN_M:
+        return False
+    return thing.height_m is not None and thing.height_m < host.height_m + THIN_M
+
+
 def _is_lid(thing: Thing, scene: Scene) -> bool:
     """Whether a thing has a handle on its middle, and lies on another or is not round, as a bottle is."""
     return part_on(thing, scene) is not None and (thing.on is not None or not is_round(thing))
@@ -166,7 +174,7 @@ def is_kind_here(thing: Thing, noun: str, scene: Scene) -> bool:
         return _is_part(thing, scene) == (noun == "cap")
     if noun == "lid":
         return _is_lid(thing, scene)
-    if noun == "container" and thing.on is not None and _is_lid(thing, scene):
+    if noun == "container" and thing.on is not None and (_is_lid(thing, scene) or _is_bottom(thing, scene)):
         return False
     sizes = [other.area_px for other in (scene.things if noun == "container" else scene.objects)] or [thing.area_px]
     if noun == "container":

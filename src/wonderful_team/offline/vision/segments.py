@@ -31,8 +31,9 @@ _JUMP_M = 0.010
 _STEP_M, _OTHER_LOOK = 0.005, 0.3
 """A plate stands at least so much higher than the rim round it [m], and is at most so much alike in colours (0 to 1)."""
 
-_CRESCENT, _MOSTLY = (0.5, 0.85), 0.5
-"""Shares of its hull that a thing fills of which another hides a part, and how much of that other one lies within its hull."""
+_CRESCENT, _CIRCLE, _MOSTLY = (0.5, 0.85), 0.7, 0.5
+"""Shares of its hull that a round thing fills of which another hides a part, of the circle round it that its hull fills at least, and of
+that other one that lie within its hull."""
 
 _HOLLOW, _TOUCHES = 1.5, 0.9
 """A ring's outline holds at least so many times its own area; two rings that are steps of a wall touch along this share."""
@@ -166,7 +167,8 @@ def _behind(piece: Array, raised: list[Array], height_m: Array) -> Array:
     hull = np.zeros(piece.shape, np.uint8)
     cv2.fillConvexPoly(hull, cv2.convexHull(contour), 1)
     solid = float(piece.sum()) / max(float(hull.sum()), 1.0)
-    if not _CRESCENT[0] < solid < _CRESCENT[1]:
+    _, radius = cv2.minEnclosingCircle(contour)
+    if not _CRESCENT[0] < solid < _CRESCENT[1] or hull.sum() < _CIRCLE * np.pi * radius**2:
         return piece
     level, near = float(np.nanmedian(height_m[piece])), cv2.dilate(piece.astype(np.uint8), kernel(5)) > 0
     for other in raised:

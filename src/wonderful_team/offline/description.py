@@ -66,7 +66,7 @@ class Description:
     """A noun phrase, understood.
 
     Attributes:
-        noun: thing | object | block | container | fruit | area | letter | toy | ball. A shape word used as a noun ("the star") gives
+        noun: thing | object | block | container | fruit | area | letter | toy | ball | bottle | cap | lid | tool. A shape word used as a noun ("the star") gives
             "object" with that shape, the name of a fruit ("banana") "fruit" and `name`.
         name: The particular name when it says more than the noun ("banana", "G" for a letter), or "".
         colours: Canonical colours, all of which must show ("red and blue striped" has two).
@@ -110,5 +110,22 @@ class Description:
     way: Way | None = None
 
 
+@dataclass(frozen=True)
+class Figure:
+    """What a tool, or a thing in the air, is led along.
+
+    Attributes:
+        name: A figure that is drawn ("star", "line"), "area" for all of a surface, or "shake".
+        count: Tips of a star, or how often something is shaken; 0 where nothing is said and none are counted.
+        size: As a share of the usual size.
+    """
+
+    name: str
+    count: int = 0
+    size: float = 1.0
+
+
 FREE = Description(noun="area", name="free", text="free area")
 """Anywhere on free table."""
+ROOMY = Description(noun="area", name="free", superlative="largest", text="largest free area")
+"""Free table with room for the largest thing, and so for the fingers beside what is put there."""

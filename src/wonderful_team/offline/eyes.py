@@ -60,12 +60,14 @@ class Eyes:
         examples: What the pictures of single things show, by name.
         pictures: The instruction's pictures of a whole table (scenes, frames), by name: the main camera's.
         heights: A second view that tells how tall things are where the first has no depth; None without one.
+        facts: What is known of the robot and its place.
     """
 
     looked_at: Picture
     examples: Mapping[str, Example] = field(default_factory=dict)
     pictures: Mapping[str, Picture] = field(default_factory=dict)
     heights: Picture | None = None
+    facts: tuple[str, ...] = ()
 
     @cached_property
     def scene(self) -> Scene:
@@ -110,7 +112,10 @@ class Eyes:
         return find_place(place, self.scene, self.number, plan)
 
     def _spots_at(self, description: Description) -> list[Match]:
-        """Free spots towards a side or corner of the picture, best first."""
+        """Free spots towards a side or corner of the picture, or with room for the largest thing, best first."""
+        if description.superlative == "largest":
+            most = max((thing.radius_px for thing in self.scene.objects), default=None)
+            return free_spots(self.scene, radius_px=most) or free_spots(self.scene)
         wishes = description.name if " " in description.name else str(description.superlative)
 
         def away(match: Match) -> float:
@@ -194,7 +199,7 @@ def examples_of(slots: Iterable[ShownSlot]) -> dict[str, Example]:
 
 def eyes_of_task(task: ShownTask) -> Eyes:
     """Look at a task's main view; without depth, a second view tells how tall things are."""
-    return replace(eyes_of(task.main, task.slots), heights=next(iter(task.views[1:]), None))
+    return replace(eyes_of(task.main, task.slots), heights=next(iter(task.views[1:]), None), facts=task.facts)
 
 
 def one_of(description: Description) -> Description:

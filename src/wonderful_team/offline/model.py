@@ -34,7 +34,9 @@ class OfflineModel:
         """
         kind = type(request.question)
         if kind not in ANSWERS:
-            raise UnsupportedQuestion(self.name, request.contract, "classical vision writes no programs")
+            raise UnsupportedQuestion(
+                self.name, request.contract, "classical vision has no answer to questions of this kind"
+            )
         question = with_pictures(request.question, in_plain_light)
         try:
             value = ANSWERS[kind](question, request.sample) if kind in SAMPLED else ANSWERS[kind](question)

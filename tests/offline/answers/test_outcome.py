@@ -140,7 +140,7 @@ def test_a_path_that_stays_in_one_place_may_go_up_and_down() -> None:
     assert not ask(ReviewPath(shake, seen)).accepted
 
 
-def test_programs_are_not_written() -> None:
+def test_no_path_is_written_for_words_that_name_none() -> None:
     question = WriteFunction(GOALS[0], picture(BEFORE))
     with pytest.raises(UnsupportedQuestion, match="WriteFunction"):
         OfflineModel().answer(Request("x", "act", "supervisor", question, (), question.output()))

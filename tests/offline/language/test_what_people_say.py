@@ -113,7 +113,6 @@ def test_two_moves_that_are_a_swap_are_read_as_one() -> None:
     ("text", "said"),
     [
         ("Empty the red bowl into the box.", "I do not know: to empty"),
-        ("Open the box and put the red block in it.", "I do not know: to open"),
         ("Move the red block to the left and keep away from the bowl.", "what must be kept off"),
         ("Rotate the red block by 30 degrees and avoid the bowl.", "what must be kept off"),
     ],

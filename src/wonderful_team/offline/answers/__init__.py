@@ -8,6 +8,7 @@ from typing import Any
 from wonderful_team import contracts
 from wonderful_team.offline.answers import crops, grounding, listing, marks, programs
 from wonderful_team.offline.answers.drafting import answer_extract
+from wonderful_team.offline.answers.functions import answer_write_function
 from wonderful_team.offline.answers.moves import answer_draft, answer_revise
 from wonderful_team.offline.answers.outcome import answer_outcome, answer_replan
 from wonderful_team.offline.answers.paths import answer_review_path
@@ -56,6 +57,7 @@ ANSWERS: dict[type[contracts.Question], Callable[..., Any]] = {
     contracts.ReadTurn: answer_read_turn,
     contracts.WriteSteps: answer_write_steps,
     contracts.ReviewSteps: answer_review_steps,
+    contracts.WriteFunction: answer_write_function,
     contracts.ReviewPath: answer_review_path,
     contracts.Remember: answer_remember,
     contracts.JudgeOutcome: answer_outcome,

@@ -28,7 +28,7 @@ from wonderful_team.core.geometry import Box
 from wonderful_team.core.pictures import BoxMark, PathMark, Picture, Point, PointMark
 from wonderful_team.core.values import PointRole, Target
 from wonderful_team.offline.answers.areas import judge_area, judge_place, nearest_free
-from wonderful_team.offline.answers.finding import middle_of, push_goal
+from wonderful_team.offline.answers.finding import held_by, middle_of, push_goal
 from wonderful_team.offline.eyes import examples_of, eyes_of, is_free_area, shape_alone, target_description
 from wonderful_team.offline.vision import BoxFit, fit_box, see, strip_presence
 from wonderful_team.offline.vision.changes import gap_px
@@ -96,11 +96,12 @@ def _wrong_points(question: JudgeBox, fit: BoxFit) -> list[WrongPoint]:
     if fit.target is None:
         return []
     points = {mark.label: mark.point for mark in question.crop.marks if isinstance(mark, PointMark)}
+    held = held_by(fit.target, target_description(question.target), see(question.crop))
     why = f"it does not lie on the material of the {fit.target.look.words}"
     return [
         WrongPoint(use=use, why=why)
         for use in question.uses
-        if use in HOLDING and (point := points.get(use)) is not None and not fit.target.holds(point)
+        if use in HOLDING and (point := points.get(use)) is not None and not held.holds(point)
     ]
 
 
@@ -190,8 +191,9 @@ def answer_choose_point(question: ChoosePoint) -> PointChoice:
     if fit.target is None:
         return _nearest(points, box.centre, f"{fit.why}; nearest to the middle of the box")
     if question.role in HOLDING:
-        on = [number for number, point in enumerate(points, start=1) if fit.target.holds(point)]
-        return _nearest(points, fit.target.steady_point(), f"on the material of a {fit.target.look.words}", on)
+        held = held_by(fit.target, description, see(question.crop))
+        on = [number for number, point in enumerate(points, start=1) if held.holds(point)]
+        return _nearest(points, held.steady_point(), f"on the material of a {fit.target.look.words}", on)
     if question.role == "push_start":
         return _push_start(question, box, points)
     middle = middle_of(fit.target, description, see(question.crop))

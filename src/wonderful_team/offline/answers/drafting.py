@@ -76,6 +76,8 @@ def aim_text(aim: Aim) -> str:
     if aim.kind == "rotate":
         way = "counterclockwise" if aim.rotate_deg < 0 else "clockwise"
         return f"rotate {thing} by {abs(aim.rotate_deg):g} degrees {way}"
+    if aim.figure is not None or aim.kind == "twist":
+        return _handled_text(aim, thing)
     verb = "push" if aim.kind == "push" else "put"
     if aim.how == "origin":
         return f"{verb} {thing} " + (f"to where the {aim.to.words} was" if aim.to else "back to its original place")
@@ -91,6 +93,29 @@ def aim_text(aim: Aim) -> str:
     return f"{verb} {thing} {_SIDE_WORDS[aim.how]} the {aim.to.words}"
 
 
+def _handled_text(aim: Aim, thing: str) -> str:
+    """What is done to a thing where it is, in words that `understand` reads back."""
+    if aim.kind == "twist":
+        return f"unscrew {thing} by {abs(aim.rotate_deg):g} degrees"
+    figure = aim.figure
+    assert figure is not None  # all but a twist have one
+    if figure.name == "area":
+        return f"wipe {thing}"
+    if figure.name == "shake":
+        return f"shake {thing}" + (f" {figure.count} times" if figure.count else "")
+    size = "" if figure.size == 1 else "large " if figure.size > 1 else "small "
+    tips = f"{figure.count} pointed " if figure.count else ""
+    return f"draw a {size}{tips}{figure.name} on {thing}"
+
+
+def function_of(aim: Aim) -> str | None:
+    """What a helper function computes for an aim; None where none is needed."""
+    if aim.figure is None:
+        return None
+    over = "in the air over" if aim.kind == "shake" else "on"
+    return f"the path {over} the {aim.thing.words}, from its box: {aim_text(aim)}"
+
+
 def write_plan(aims: Sequence[Aim], slots: tuple[str, ...], with_targets: bool, reasoning: str) -> PlanDraft:
     """Subgoals and targets of aims, in order."""
     writer = _Writer(slots)
@@ -98,7 +123,7 @@ def write_plan(aims: Sequence[Aim], slots: tuple[str, ...], with_targets: bool, 
     for number, aim in enumerate(aims, start=1):
         targets, after = aim_targets(aim, writer), [f"G{position + 1}" for position in aim.after]
         parts = {"text": aim_text(aim), "after": after, "targets": targets if with_targets else []}
-        subgoals.append(SubgoalDraft.model_validate({"id": f"G{number}", "function": None, **parts}))
+        subgoals.append(SubgoalDraft.model_validate({"id": f"G{number}", "function": function_of(aim), **parts}))
     return PlanDraft(
         reasoning=reasoning,
         subgoals=subgoals,
@@ -114,6 +139,8 @@ def aim_targets(aim: Aim, writer: _Writer) -> list[str]:
         # The tool's start is computed behind the thing for each push, so a point on the thing is enough.
         ids = [writer.target(aim.thing.description, "pick")]
         return ids + [writer.target(spot, "place") for spot in way_places(aim)]
+    if aim.kind == "trace":
+        return [writer.target(aim.thing.description, "place")]
     start: PointRole = "push_start" if aim.kind == "push" else "pick"
     end: PointRole = "push_end" if aim.kind == "push" else "place"
     ids = [writer.target(aim.thing.description, start)]

@@ -14,6 +14,7 @@ from wonderful_team.offline.description import Description
 from wonderful_team.offline.eyes import Eyes, target_description
 from wonderful_team.offline.pushing.sweeping import pushes_of
 from wonderful_team.offline.vision import Match, Scene, Thing, free_spots
+from wonderful_team.offline.vision.kinds import part_on
 
 STANDOFF = 0.35
 """How far beside a thing a push starts, in shares of its half side."""
@@ -59,10 +60,16 @@ def act_at(found: Found, role: PointRole, eyes: Eyes, towards: Point | None = No
     if thing is None:
         return found.match.point
     if role in ("pick", "grasp"):
-        return thing.steady_point()
+        return held_by(thing, found.description, eyes.scene).steady_point()
     if role == "push_start":
         return _beside(found.box, towards)
     return middle_of(thing, found.description, eyes.scene)
+
+
+def held_by(thing: Thing, description: Description, scene: Scene) -> Thing:
+    """What of a thing fingers take hold of: the neck of a bottle, the handle of a lid; else the thing itself."""
+    part = part_on(thing, scene) if description.noun in ("bottle", "lid") else None
+    return thing if part is None else part
 
 
 def middle_of(thing: Thing, description: Description, scene: Scene) -> Point:

@@ -7,16 +7,24 @@ from collections.abc import Sequence
 from wonderful_team.contracts import DraftPlan, MoveDraft, PlanDraft, PlanRevision, RevisePlan, SubgoalDraft
 from wonderful_team.contracts.shown import ShownTask
 from wonderful_team.core.values import Target
-from wonderful_team.errors import WonderfulTeamError
+from wonderful_team.errors import UnsupportedQuestion, WonderfulTeamError
 from wonderful_team.offline.answers.drafting import draft
-from wonderful_team.offline.answers.reviewing import findings
+from wonderful_team.offline.answers.reviewing import findings, lacking
 from wonderful_team.offline.answers.steps import steps_of_subgoal
 from wonderful_team.offline.eyes import Eyes, eyes_of_task
+
+IN_PLACE = {"trace", "shake", "twist"}
+"""Kinds of aims that nothing but their own kind of step carries out: a robot without it is told so before anything is looked for."""
 
 
 def answer_draft(question: DraftPlan) -> PlanDraft:
     """Read the instruction, look at the picture, write the plan."""
-    plan, _ = draft(question.task, question.with_targets, question.advice)
+    plan, aims = draft(question.task, question.with_targets, question.advice)
+    lacks = next((text for aim in aims.aims for text in lacking({aim.kind} & IN_PLACE, question.step_kinds)), "")
+    if lacks and plan.subgoals:
+        raise UnsupportedQuestion(
+            "offline", "DraftPlan", f"{lacks} is not among what this robot does: {', '.join(question.step_kinds)}"
+        )
     return with_moves(plan, question.task, question.step_kinds) if question.with_targets else plan
 
 

@@ -9,6 +9,7 @@ from wonderful_team.core.geometry import Box, Frame
 from wonderful_team.core.pictures import BoxMark, Picture
 from wonderful_team.core.values import Target
 from wonderful_team.errors import NotUnderstoodError
+from wonderful_team.offline.answers.handled_outcome import judge_led, judge_shaken
 from wonderful_team.offline.answers.roles import Task, tasks_of
 from wonderful_team.offline.description import Description
 from wonderful_team.offline.eyes import Eyes, eyes_of, eyes_of_task
@@ -67,7 +68,13 @@ class _Judge:
             return "unclear", "the thing does not show in the picture before"
         if task.aim is not None and "inside" in task.aim.legs:
             return self._swept(task.aim, thing)
+        if task.aim is not None and task.aim.kind == "trace":
+            pictures = (self.question.task.main, self.question.after[0])
+            return judge_led(task.aim, *pictures, thing.box, self._measured(task.subgoal))
         now, name = self._now(thing), task.thing.words
+        if task.aim is not None and task.aim.kind == "shake" and now is not None:
+            stands = _at_origin(f"the {name} stands {{}} radii from where it was", now, thing)
+            return judge_shaken(name, stands, self._measured(task.subgoal))
         place = self._was(task.place, task.to_number)
         if now is None:
             return self._merged(name, thing, place if task.how in ("in", "on", "") else None)
@@ -109,9 +116,12 @@ class _Judge:
 
     def cause(self, subgoal: str, evidence: str) -> str:
         """What the robot reported of it, else what the picture shows."""
-        lines = [line for line in self.question.measured if line.startswith(f"{subgoal}:")]
-        bad = [line for line in lines if "not executed" in line or "fault" in line or "False" in line]
+        bad = [line for line in self._measured(subgoal) if "not executed" in line or "fault" in line or "False" in line]
         return bad[0] if bad else evidence
+
+    def _measured(self, subgoal: str) -> list[str]:
+        """What the robot reported of a subgoal."""
+        return [line for line in self.question.measured if line.startswith(f"{subgoal}:")]
 
     def _was(self, target: Target | None, number: int | None) -> Thing | None:
         """The thing that a target was, by its drawn box, else by its words."""

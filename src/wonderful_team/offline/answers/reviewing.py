@@ -6,7 +6,7 @@ looked up in the picture, so that different words for the same thing agree and t
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass
 
 from wonderful_team.contracts import CritiqueDraft, PlanReview, ReviewPlan, WalkedReview
@@ -96,10 +96,9 @@ def _cannot_be_done(read: Sequence[ReadSubgoal], step_kinds: Sequence[str]) -> l
     found = []
     for item in read:
         kinds = {aim.kind for aim in item.aims or ()}
-        for what, asked, needed in _ABLE:
-            if kinds & asked and not needed & {*step_kinds}:
-                text = f"Can this robot do '{item.subgoal.text}'? {what} is not among its steps."
-                found.append(Finding(item.subgoal.id, "physical_constraint", text))
+        for what in lacking(kinds, step_kinds):
+            text = f"Can this robot do '{item.subgoal.text}'? {what} is not among its steps."
+            found.append(Finding(item.subgoal.id, "physical_constraint", text))
     return found
 
 
@@ -107,8 +106,15 @@ _ABLE = (
     ("pushing", {"push"}, {"move", "push", "pick_place"}),
     ("picking up", {"put", "rotate"}, {"move", "push", "pick_place"}),
     ("turning things", {"rotate"}, {"pick_place", "rotate_gripper"}),
+    ("following a path", {"trace", "shake"}, {"follow"}),
+    ("turning what is gripped", {"twist"}, {"rotate_gripper"}),
 )
 """What a robot has to be able to do for which kinds of aims, and the kinds of steps of which it needs one."""
+
+
+def lacking(kinds: Collection[str], step_kinds: Sequence[str]) -> list[str]:
+    """What a robot with these kinds of steps cannot do of what these kinds of aims take."""
+    return [what for what, asked, needed in _ABLE if {*kinds} & asked and not needed & {*step_kinds}]
 
 
 def _differences(wanted: Aims, read: Sequence[ReadSubgoal]) -> list[Finding]:
@@ -210,7 +216,10 @@ def _wrong_use(item: ReadSubgoal) -> list[str]:
         f"{target.id} ({target.words}) is to be moved, but its use is {', '.join(target.use)}; is it swapped?"
         for aim in item.aims or ()
         for target, known in item.targets
-        if known is not None and known.same(aim.thing) and not (aim.to is not None and known.same(aim.to))
+        if aim.kind != "trace"
+        and known is not None
+        and known.same(aim.thing)
+        and not (aim.to is not None and known.same(aim.to))
         if target.use and not {*target.use} & {"pick", "grasp", "push_start"}
     ]
 

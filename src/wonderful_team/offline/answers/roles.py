@@ -58,13 +58,13 @@ def tasks_of(subgoal: Subgoal, targets: Sequence[Target], eyes: Eyes) -> list[Ta
 
 
 def _task(subgoal: Subgoal, aim: Aim, known: Sequence[tuple[Target, Named | None]]) -> Task:
-    thing = _player(aim.thing, known, TO_MOVE, None)
+    thing = _player(aim.thing, known, TO_RECEIVE if aim.kind == "trace" else TO_MOVE, None)
     ways = dict.fromkeys(target for target, who in known if who is not None and who.description.way is not None)
     if aim.kind == "push" and ways:
         *stops, end = ways
         return Task(subgoal.id, aim, thing, end, stops=tuple(stops))
     place = None
-    if aim.kind != "rotate" and (aim.how != "origin" or aim.to is not None):
+    if aim.kind not in ("rotate", "trace") and (aim.how != "origin" or aim.to is not None):
         if aim.how in ("side", "between") or aim.to is None:
             place = _spot(known, thing)
         else:

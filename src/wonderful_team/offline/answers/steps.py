@@ -11,6 +11,7 @@ from wonderful_team.core.values import Subgoal, Target
 from wonderful_team.errors import NotUnderstoodError, UnsupportedQuestion
 from wonderful_team.offline.answers.roles import Task, tasks_of
 from wonderful_team.offline.eyes import Eyes, eyes_of_task
+from wonderful_team.offline.language import try_understand
 from wonderful_team.offline.vision import Thing
 
 
@@ -19,7 +20,7 @@ def answer_write_steps(question: WriteSteps) -> StepList:
     eyes = eyes_of_task(question.task)
     steps: list[dict[str, object]] = []
     for subgoal in _ordered(question.subgoals):
-        if subgoal.id in question.functions and "follow" in question.step_kinds:
+        if subgoal.id in question.functions and "follow" in question.step_kinds and not _handles(subgoal):
             touches = re.search(r"\b(draw|write|wipe|trace|paint|scrub)", f"{subgoal.text} {subgoal.function}".lower())
             contact = "surface" if touches else "air"
             steps.append({"kind": "follow", "subgoal": subgoal.id, "function": subgoal.id, "contact": contact})
@@ -31,6 +32,12 @@ def answer_write_steps(question: WriteSteps) -> StepList:
         reasoning += " Written anew from the subgoals after the doubt."
     answer: StepList = step_list_type(question.step_kinds).model_validate({"reasoning": reasoning, "steps": steps})
     return answer
+
+
+def _handles(subgoal: Subgoal) -> bool:
+    """Whether the words of a subgoal say what its path is for."""
+    understood = try_understand(subgoal.text)
+    return understood is not None and any(command.figure is not None for command in understood.commands)
 
 
 def _ordered(subgoals: Sequence[Subgoal]) -> list[Subgoal]:
@@ -58,6 +65,13 @@ def steps_of_subgoal(
 def _steps_of(task: Task, subgoal: Subgoal, kinds: Sequence[str], eyes: Eyes) -> list[dict[str, object]]:
     if task.thing is None:
         raise NotUnderstoodError(f"subgoal {subgoal.id} names no target to move: {subgoal.text!r}")
+    if task.aim is not None and task.aim.figure is not None and "follow" not in kinds:
+        raise UnsupportedQuestion(
+            "offline", "WriteSteps", f"{subgoal.text!r} needs a robot that follows paths; offered: {', '.join(kinds)}"
+        )
+    if task.aim is not None and task.aim.kind == "trace":
+        home: list[dict[str, object]] = [{"kind": "home", "subgoal": subgoal.id}] if "home" in kinds else []
+        return [{"kind": "follow", "subgoal": subgoal.id, "function": subgoal.id, "contact": "surface"}, *home]
     pushed = task.aim is not None and task.aim.kind == "push"
     if (pushed or "pick_place" not in kinds) and "push" in kinds:
         return _push(task, eyes)
@@ -121,4 +135,9 @@ def _arm(task: Task, kinds: Sequence[str], eyes: Eyes) -> list[dict[str, object]
     assert task.thing is not None  # checked by the callers
     if task.rotate_deg and "rotate_gripper" not in kinds:
         raise UnsupportedQuestion("offline", "WriteSteps", "turning needs rotate_gripper steps")
-    return arm_steps(task.subgoal, task.thing.id, place_of(task, eyes), task.rotate_deg, kinds)
+    parts = (task.subgoal, task.thing.id, place_of(task, eyes))
+    kind = task.aim.kind if task.aim is not None else "put"
+    if kind == "twist":
+        return arm_steps(*parts, 0.0, kinds, tight=True, twist_deg=task.rotate_deg)
+    function = task.subgoal if kind == "shake" else None
+    return arm_steps(*parts, task.rotate_deg, kinds, tight=kind == "shake", function=function)

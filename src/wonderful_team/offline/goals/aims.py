@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Literal
 
-from wonderful_team.offline.description import Description
+from wonderful_team.offline.description import Description, Figure
 from wonderful_team.offline.eyes import Eyes, one_of, unique_words
 from wonderful_team.offline.language import render
 from wonderful_team.offline.vision import Thing
@@ -41,9 +41,10 @@ class Aim:
         off, limit: What a pushed thing must not touch, and a line that it must not pass.
         legs: Where straight pushes take it, one after the other: before | inside | away; () where one push does.
         others: Numbers of other things that would do as well.
+        figure: What a tool is led along over the thing (trace), or how the thing is moved in the air (shake).
     """
 
-    kind: Literal["put", "rotate", "push"]
+    kind: Literal["put", "rotate", "push", "trace", "shake", "twist"]
     thing: Named
     how: str = ""
     to: Named | None = None
@@ -56,9 +57,12 @@ class Aim:
     limit: Named | None = None
     legs: tuple[str, ...] = ()
     others: frozenset[int] = frozenset()
+    figure: Figure | None = None
 
     def same_goal(self, other: Aim) -> bool:
         """Whether both bring the thing to the same state."""
+        if {self.kind, other.kind} & {"trace", "shake", "twist"}:
+            return (self.kind, self.figure) == (other.kind, other.figure)
         if self.kind == "rotate" or other.kind == "rotate":
             return self.kind == other.kind and abs((self.rotate_deg - other.rotate_deg + 180) % 360 - 180) < 0.5
         if _family(self.how) != _family(other.how) or self.side != other.side:

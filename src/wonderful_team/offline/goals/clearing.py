@@ -7,10 +7,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from wonderful_team.offline.description import FREE
+from wonderful_team.offline.description import FREE, ROOMY
 from wonderful_team.offline.eyes import Eyes
 from wonderful_team.offline.goals.aims import Aim, Named, seen_named
 from wonderful_team.offline.vision import Thing
+from wonderful_team.offline.vision.kinds import part_on
 from wonderful_team.offline.vision.table import height_above_table
 
 LOWER_M = 0.002
@@ -18,6 +19,8 @@ LOWER_M = 0.002
 SAME_COLOURS = 0.6
 """Likeness of colours from which two patches belong to one thing (0 to 1)."""
 
+CARRIES = ("container", "area", "bottle", "lid", "cap")
+"""Kinds of things that what lies on them goes with."""
 DEEP_M, HOLLOW_M, HOLLOW_SHARE = 0.03, 0.012, 0.05
 """A container is at least so high; where it is open, at least this share of its middle lies so far below its top [m]."""
 
@@ -30,15 +33,26 @@ def _shows_through(upper: Thing, thing: Thing, eyes: Eyes) -> bool:
     return host is not None and float(host.look.histogram @ upper.look.histogram) > SAME_COLOURS
 
 
-def obstacles(aim: Aim, others: Sequence[Aim], eyes: Eyes) -> list[Aim]:
-    """Aims that bring away what lies on the thing to be moved; what another aim moves anyway is left to it.
+def is_of_one_piece(part: Thing, thing: Thing) -> bool:
+    """Whether what stands up from a thing has its colours: a neck, a handle."""
+    return float(part.look.histogram @ thing.look.histogram) > SAME_COLOURS
 
-    Only where the picture has depth or the thing is no container: what lies in a container travels with it.
+
+def obstacles(aim: Aim, others: Sequence[Aim], eyes: Eyes) -> list[Aim]:
+    """Aims that bring away what lies on the thing to be moved, or closes what it goes into; what another aim moves anyway is left to it.
+
+    Only where the picture has depth or the thing is no container: what lies in a container travels with it, as what is on a
+    bottle or lid does.
     """
-    thing = eyes.thing(aim.thing.number)
-    if thing is None or thing.flat or aim.thing.description.noun in ("container", "area"):
-        return []
     elsewhere = {other.thing.number for other in others}
+    shut = closed_by(eyes.thing(aim.to.number), eyes) if aim.how == "in" and aim.to is not None else None
+    if shut is not None:
+        own = shut.number in elsewhere or shut.number == aim.thing.number or part_on(shut, eyes.scene) is None
+        assert aim.to is not None  # it has just been looked at
+        return [] if own else [out_of_the_way(shut, eyes, f"it closes the {aim.to.words}", "lid")]
+    thing = eyes.thing(aim.thing.number)
+    if thing is None or thing.flat or aim.kind == "trace" or aim.thing.description.noun in CARRIES:
+        return []
     return [
         out_of_the_way(upper, eyes, f"it lies on the {aim.thing.words}")
         for upper in eyes.scene.on(thing)
@@ -65,9 +79,9 @@ def closed_by(holder: Thing | None, eyes: Eyes) -> Thing | None:
     return uppers[0] if hollow < HOLLOW_SHARE else None
 
 
-def out_of_the_way(thing: Thing, eyes: Eyes, why: str) -> Aim:
+def out_of_the_way(thing: Thing, eyes: Eyes, why: str, noun: str = "object") -> Aim:
     """Bring a thing onto free table."""
-    return Aim("put", seen_named(eyes, thing), "in", Named(FREE), why=why)
+    return Aim("put", seen_named(eyes, thing, noun), "in", Named(ROOMY if noun == "lid" else FREE), why=why)
 
 
 def cleared(aims: Sequence[Aim], eyes: Eyes) -> list[Aim]:

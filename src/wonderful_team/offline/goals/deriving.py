@@ -22,11 +22,13 @@ from wonderful_team.offline.eyes import (
 )
 from wonderful_team.offline.goals.aims import Aim, Aims, Named
 from wonderful_team.offline.goals.clearing import closed_by
+from wonderful_team.offline.goals.handling import handled_aims
 from wonderful_team.offline.goals.ranking import ranked_aims
 from wonderful_team.offline.goals.showing import shown_aims
 from wonderful_team.offline.goals.sweeps import swept_aims
 from wonderful_team.offline.language import Command, Destination, Understood, describe, render, worded
 from wonderful_team.offline.vision import Match, Thing
+from wonderful_team.offline.vision.kinds import part_on
 from wonderful_team.offline.vision.relations import OUTER, is_at, superlative_keys
 
 RIVAL = 0.6
@@ -98,8 +100,8 @@ def _of_command(command: Command, eyes: Eyes, result: Aims, strict: bool) -> lis
     place = eyes.best(one_of(goal.what)) if into and goal is not None and goal.what is not None else None
     pushed = command.kind == "push" and into
     things = _things(command.thing, eyes, result, strict, place.thing if place is not None else None, every=pushed)
-    if command.kind == "rotate":
-        return [Aim("rotate", thing, rotate_deg=command.rotate_deg) for thing in things]
+    if command.kind not in ("put", "push"):
+        return _in_place(command, things, eyes, result)
     assert goal is not None  # the grammar gives every put and push a goal
     if goal.how in ("matching", "ranked"):
         return _told_by_things(command, goal, things, eyes, result)
@@ -125,6 +127,13 @@ def _of_command(command: Command, eyes: Eyes, result: Aims, strict: bool) -> lis
                 continue
         aims.append(Aim(command.kind, thing, goal.how, to, other, goal.side))
     return aims
+
+
+def _in_place(command: Command, things: list[Named], eyes: Eyes, result: Aims) -> list[Aim]:
+    """What is done to things where they are."""
+    if command.kind == "rotate":
+        return [Aim("rotate", thing, rotate_deg=command.rotate_deg) for thing in things]
+    return handled_aims(command, things, eyes, result)
 
 
 def _told_by_things(command: Command, goal: Destination, things: list[Named], eyes: Eyes, result: Aims) -> list[Aim]:
@@ -155,7 +164,7 @@ def _places(
     held = eyes.thing(things[0].number) if len(things) == 1 and fits else None
     to = None if goal.what is None else _one(goal.what, eyes, result, strict, taken=taken, holds=held)
     shut = closed_by(eyes.thing(to.number), eyes) if goal.how == "in" and to is not None else None
-    if to is not None and shut is not None:
+    if to is not None and shut is not None and part_on(shut, eyes.scene) is None:
         said = f"the {to.words} is closed: it shows no opening, and the {seen_as(eyes, shut)} stands on what covers it"
         said += "; no way is known to open it"
         result.absent += [] if said in result.absent else [said]

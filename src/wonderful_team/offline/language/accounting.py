@@ -52,10 +52,16 @@ def passed_over(tokens: Sequence[Token], commands: Sequence[Command]) -> list[st
     for at, token in enumerate(tokens):
         after = tokens[at + 1].kind if at + 1 < len(tokens) else ""
         if (
-            (token.kind == "ANGLE" and "rotate" not in kinds)
+            (token.kind == "ANGLE" and not kinds & {"rotate", "open"})
+            or (token.kind == "TIMES" and "shake" not in kinds)
             or (token.kind == "BESIDE_IT" and not any(item.related for item in things))
             or (token.kind == "EXCEPT" and not any(item.excluded and item.quantity != "one" for item in things))
-            or (token.kind == "ORIGIN" and after not in _PLACES and "origin" not in places and "rotate" not in kinds)
+            or (
+                token.kind == "ORIGIN"
+                and after not in _PLACES
+                and "origin" not in places
+                and not kinds & {"rotate", "shake"}
+            )
         ):
             lost.append(token.text)
     return lost
@@ -70,7 +76,7 @@ def _is_meant(token: Token, things: Sequence[Description]) -> bool:
     kind, name = value[0], value[1]
     if name:
         return any(item.name == name for item in things)
-    return kind not in ("block", "letter", "ball") or any(item.noun == kind for item in things)
+    return kind not in ("block", "letter", "ball", "bottle") or any(item.noun == kind for item in things)
 
 
 def _has_aspect(things: Sequence[Description], commands: Sequence[Command]) -> bool:
@@ -87,7 +93,7 @@ def _has_aspect(things: Sequence[Description], commands: Sequence[Command]) -> b
 def _all_things(command: Command) -> Iterator[Description]:
     """Every description that a command holds."""
     ends = () if command.to is None else (command.to.what, command.to.other)
-    for item in (command.thing, *ends, command.off, command.limit):
+    for item in (command.thing, *ends, command.off, command.limit, command.tool):
         if item is not None:
             yield from _inside(item)
 

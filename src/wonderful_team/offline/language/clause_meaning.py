@@ -211,12 +211,12 @@ def _to_place(
     goal_at = next((k for k, (how, _) in enumerate(pairs) if how in _GOES), 0)
     how, what = pairs[goal_at]
     for other, reference in pairs[goal_at + 1 :]:
-        what = _with(what, other, reference)
+        what = related_to(what, other, reference)
     things = meaning.or_last(things)
     for other, reference in pairs[:goal_at]:
-        things[-1] = _with(things[-1], other, reference)
+        things[-1] = related_to(things[-1], other, reference)
     if source is not None:
-        things[-1] = _with(things[-1], "IN" if source.noun == "container" else "ON", source)
+        things[-1] = related_to(things[-1], "IN" if source.noun == "container" else "ON", source)
     for item in things:
         for thing in split_colours(item):
             meaning.put(thing, Destination(PLACES[how], what), kind)  # type: ignore[arg-type]
@@ -265,7 +265,8 @@ def _placed_pairs(parts: Parts) -> tuple[list[tuple[str, Description]], Descript
     return pairs, source
 
 
-def _with(thing: Description, word: str, reference: Description) -> Description:
+def related_to(thing: Description, word: str, reference: Description) -> Description:
+    """A thing told by how it stands to another; `word` is the kind of a token for a place."""
     related = Related(_RELATIONS[PLACES[word]], (reference,))  # type: ignore[arg-type]
     return worded(replace(thing, related=(*thing.related, related)))
 
@@ -311,7 +312,7 @@ def _away(things: list[Description], source: Description | None, meaning: Meanin
     """Onto free table; unless sure, a following "put it …" makes one move of both."""
     meaning.tentative, first = None, len(meaning.done)
     for thing in meaning.or_last(things):
-        moved = _with(thing, "IN" if source.noun == "container" else "ON", source) if source is not None else thing
+        moved = related_to(thing, "IN" if source.noun == "container" else "ON", source) if source is not None else thing
         meaning.put(moved, Destination("in", FREE), "put")
     meaning.tentative = None if sure else first
 

@@ -17,7 +17,24 @@ _GOALS = frozenset(("place", "side", "between", "where", "there", "origin", "off
 """Parts that say where to."""
 _SIDES = frozenset(("SIDE_POST", "CORNER"))
 _WITH = frozenset(("WITH", "FOR"))
-VERBS = frozenset(("PUT", "TAKE", "ROTATE", "STACK", "PUSH", "SORT", "SWAP", "RETURN", "REMOVE", "LEAVE"))
+VERBS = frozenset(
+    (
+        "PUT",
+        "TAKE",
+        "ROTATE",
+        "STACK",
+        "PUSH",
+        "SORT",
+        "SWAP",
+        "RETURN",
+        "REMOVE",
+        "LEAVE",
+        "DRAW",
+        "WIPE",
+        "SHAKE",
+        "OPEN",
+    )
+)
 PLACES = {"IN": "in", "INTO": "in", "TO": "in", "ON": "on", "ONTO": "on", "LEFT_OF": "left", "RIGHT_OF": "right",
            "ABOVE": "above", "BELOW": "below", "NEAR": "near", "BY": "near"}  # fmt: skip
 STARTS = frozenset(
@@ -32,7 +49,7 @@ _SOFT = frozenset("AUX THAT GIVE WANT OF IT WITH FOR AS AND COMMA THERE_IS ON_TA
 _NAMED = {"SAMEANGLE": "again", "ORIGIN": "origin", "THERE": "there", "WHERE": "where", "BETWEEN": "between", "OFF": "off",
           "FROM": "from", "EXCEPT": "except"}  # fmt: skip
 _KEPT = frozenset(
-    "CONTAIN FILL GIVE WANT AUX FACE OPPOSITE ACCORDING MEASURE ENOUGH AND COMMA ASPECT ITS SUPER PLACE_OF AROUND RESPECTIVELY".split()
+    "CONTAIN FILL GIVE WANT AUX FACE OPPOSITE ACCORDING MEASURE ENOUGH AND COMMA ASPECT ITS SUPER PLACE_OF AROUND RESPECTIVELY FIGURE TIMES".split()
 )
 _LONGEST = 14
 _MANY = ("them", "they")

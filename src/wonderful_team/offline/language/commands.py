@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
-from wonderful_team.offline.description import Description
+from wonderful_team.offline.description import Description, Figure
 
-CommandKind: TypeAlias = Literal["put", "rotate", "push", "arrange", "follow", "restore"]
+CommandKind: TypeAlias = Literal["put", "rotate", "push", "arrange", "follow", "restore", "trace", "shake", "open"]
 Where: TypeAlias = Literal[
     "in", "on", "left", "right", "above", "below", "near", "between", "origin", "matching", "side", "ranked"
 ]
@@ -40,12 +40,14 @@ class Command:
     """One thing to be done.
 
     Attributes:
-        rotate_deg: Clockwise seen from above; for rotate only.
+        rotate_deg: Clockwise seen from above; for rotate, and for open where it is said how far.
         conditional: Only where the destination exists ("if such an area exists").
         after_last: The words say that the command before it comes first ("then").
         pictures: Names of the instruction's pictures that show what to do: the goal for arrange, the frames for follow.
         off: What a pushed thing must not touch on its way nor at its end.
         limit: A line inside the destination that a pushed thing must not pass.
+        figure: What is led along, for trace and shake.
+        tool: What is named as leading along it.
     """
 
     kind: CommandKind
@@ -57,6 +59,8 @@ class Command:
     pictures: tuple[str, ...] = ()
     off: Description | None = None
     limit: Description | None = None
+    figure: Figure | None = None
+    tool: Description | None = None
 
 
 @dataclass(frozen=True)

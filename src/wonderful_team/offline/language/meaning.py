@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 from wonderful_team.errors import NotUnderstoodError
-from wonderful_team.offline.description import FREE, Description
+from wonderful_team.offline.description import FREE, Description, Figure
 from wonderful_team.offline.language.changes import PRONOUN, SAME
 from wonderful_team.offline.language.commands import Command, Destination
 from wonderful_team.offline.language.wording import singles, worded
@@ -42,6 +42,22 @@ class Meaning:
         """Turn a thing, clockwise positive."""
         self.last_thing, self.last_angle = thing, amount_deg
         self._add(Command("rotate", thing, rotate_deg=amount_deg))
+
+    def handle(
+        self,
+        kind: str,
+        thing: Description,
+        figure: Figure | None = None,
+        tool: Description | None = None,
+        rotate_deg: float = 0.0,
+    ) -> None:
+        """Do something to a thing where it is."""
+        self.last_thing, self.mentioned = thing, [thing]
+        self._add(Command(kind, thing, rotate_deg=rotate_deg, figure=figure, tool=tool))  # type: ignore[arg-type]
+
+    def shaken(self, thing: Description) -> bool:
+        """Whether a thing was shaken just now: putting it back is part of that."""
+        return bool(self.done) and self.done[-1].kind == "shake" and self.done[-1].thing == self.resolved_or_kept(thing)
 
     def turn_again(self, groups: Sequence[tuple[list[Description], float]]) -> float:
         """The angle that "that much" means: the last one said."""

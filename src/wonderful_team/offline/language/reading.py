@@ -19,6 +19,7 @@ from wonderful_team.offline.language.clause_parts import PLACES, VERBS, Unclear
 from wonderful_team.offline.language.commands import Command, Understood
 from wonderful_team.offline.language.conditions import open_conditions
 from wonderful_team.offline.language.grammar import parse
+from wonderful_team.offline.language.handling import handled
 from wonderful_team.offline.language.meaning import Meaning
 from wonderful_team.offline.language.ranking import read_ranking
 from wonderful_team.offline.language.references import with_noun, with_nouns
@@ -45,7 +46,7 @@ def understand(text: str) -> Understood:
     bounds = set_bounds(put_plainly(turned(without_reasons(text))), try_describe)
     asides = set_aside(in_order(bounds.text), try_describe)
     plain, conditional = open_conditions(asides.text)
-    tokens = _turns(_joined(tokenise(plain)))
+    tokens = handled(_turns(_joined(tokenise(plain))))
     commands = with_nouns(_commands(tokens, asides.text, text))
     if conditional or asides.others_without:
         commands = tuple(replace(command, conditional=True) for command in commands)

@@ -20,6 +20,7 @@ from wonderful_team.offline.language.clause_meaning import (
 )
 from wonderful_team.offline.language.clause_parts import PLACES, STARTS, VERBS, Unclear, parts_of
 from wonderful_team.offline.language.commands import Command, Destination
+from wonderful_team.offline.language.handling import read_handled
 from wonderful_team.offline.language.meaning import Meaning
 from wonderful_team.offline.language.templates import gathering_template
 from wonderful_team.offline.language.tokens import Token
@@ -104,6 +105,8 @@ def _read(clause: Sequence[Token], meaning: Meaning) -> None:
         return
     parts = parts_of(clause, meaning)
     kinds = parts.kinds
+    if read_handled(parts, meaning):
+        return
     if "SWAP" in kinds:
         read_swap(parts, meaning)
     elif (

@@ -25,7 +25,7 @@ FILLERS = frozenset(
     entire whole  own real alone picture image shown displayed pictured seen visible workspace scene desk
     surface tabletop here away down up overall around bright vivid suitable appropriate proper  individual
     desktop single mind actually then able nice happy glad shall perhaps maybe kind happily yes well quite midway halfway whichever
-    simple simply current presently pls plz thx ta cheers mate um uh er hmm oh basically really yet alright sure cool great asap somewhere""".split()
+    simple simply current presently pls plz thx ta cheers mate um uh er hmm oh basically really yet alright sure cool great asap somewhere thoroughly vigorously firmly neatly""".split()
 )
 """Words that are skipped: politeness, addressing the robot, and words that do not change what is asked."""
 
@@ -61,9 +61,12 @@ _SHAPES = _listed(
 _NOUNS = _listed(
     """
     object something item piece shape figure thing; block cube; fruit;
-    area region zone field patch spot space paper sheet mat pad section location; letter; toy; ball sphere
+    area region zone field patch spot space paper sheet mat pad section location; letter; toy; ball sphere;
+    bottle flask jar vial canister thermos; cap stopper cork; lid
     """
 )
+TOOLS = {"draw": "pen pencil marker crayon chalk", "wipe": "sponge cloth rag towel duster"}
+"""Tools by what they do. No picture tells them apart: which one the fingers hold is stated among what is known of the robot."""
 _CONTAINERS = "container bowl dish plate pan tray box bin basket receptacle pallet holder"
 _FRUITS = (
     "apple apricot avocado banana blackberry blueberry cherry coconut fig grape grapefruit kiwi lemon lime mandarin mango "
@@ -85,10 +88,14 @@ _VERBS: dict[str, str] = {
     "RETURN": "return restore undo reset",
     "REMOVE": "remove eject extract withdraw",
     "FACE": "point face",
-    "PUSH": "push slide slid shove nudge drag sweep swept brush wipe scoot",
+    "PUSH": "push slide slid shove nudge drag sweep swept brush scoot",
     "SORT": "sort distribute pair unite combine couple group allocate assign organise organize arrange",
     "GIVE": "give perform apply make do does execute undergo undergoes receive build create form construct erect assemble",
     "WANT": "want wish prefer",
+    "DRAW": "draw drawn trace sketch paint write scribble doodle",
+    "WIPE": "wipe clean scrub scour polish rub mop dust swab",
+    "SHAKE": "shake shaken jiggle wiggle waggle agitate",
+    "OPEN": "unscrew uncap uncork unseal",
     "LEAVE": "leave ignore skip keep",
 }
 """Ways of moving things, from the classes of verbs of putting, sending, removing and turning; their regular forms are made."""
@@ -97,7 +104,7 @@ _SMALL = _listed(
     """
     IN: in inside within; INTO: into; ON: on upon atop over; ONTO: onto; TO: to towards toward at against;
     NEAR: beside near alongside adjoining; BY: by through; ABOVE: above behind;
-    BELOW: below under beneath underneath; BETWEEN: between; OF: of; WITH: with having bearing; FROM: from; AS: as;
+    BELOW: below under beneath underneath; BETWEEN: between; OF: of; WITH: with having bearing using; FROM: from; AS: as;
     AND: and but; CONTAIN: contain hold holding holds enclose missing; FILL: fill cover;
     THEN: then afterwards afterward subsequently thereafter; THAT: that which until till; WHOSE: whose; FOR: for;
     THERE: there; IT: it them itself themselves; ITS: its their theirs; THEY: they;
@@ -108,9 +115,14 @@ _SMALL = _listed(
     REST: rest others other remaining; EXCEPT: except excluding excepting save besides;
     ACCORDING: accordingly according; FORMER: former; LATTER: latter; MEASURE: angle amount;
     OPPOSITE: backwards backward; OFF: off out; ENOUGH: enough wanted needed required desired due called;
-    WHERE: where
+    WHERE: where; TIMES: times; TIPS: tips tip tipped corners cornered spikes spiked
     """
 )
+FIGURES = {
+    "star": 5, "triangle": 3, "square": 4, "diamond": 4, "pentagon": 5, "hexagon": 6, "heptagon": 7, "octagon": 8, "rectangle": 0,
+    "circle": 0, "spiral": 0, "line": 0, "zigzag": 0,
+}  # fmt: skip
+"""Figures that can be drawn, and how many tips or corners each has where nothing is said; 0 where none are counted."""
 _ASPECTS = _listed(
     """
     colour color colours colors coloured colored;
@@ -150,7 +162,9 @@ _OTHERS: dict[str, Entry] = {
     "clockwise": ("TURN", 1.0), "rightwards": ("TURN", 1.0), "cw": ("TURN", 1.0), "counterclockwise": ("TURN", -1.0),
     "anticlockwise": ("TURN", -1.0), "ccw": ("TURN", -1.0), "free": ("FREE", "free"), "empty": ("FREE", "free"),
     "clear": ("FREE", "free"), "open": ("FREE", "free"), "vacant": ("FREE", "free"), "unoccupied": ("FREE", "free"),
-    "back": ("ORIGIN", "origin"), "both": ("ALL", 2),
+    "back": ("ORIGIN", "origin"), "both": ("ALL", 2), "twice": ("TIMES", 2.0), "thrice": ("TIMES", 3.0),
+    "to open": ("OPEN", "open"),
+    **{name: ("FIGURE", name) for name in ("heptagon", "octagon", "zigzag")},
 }  # fmt: skip
 
 
@@ -170,6 +184,9 @@ def _words() -> dict[str, Entry]:
         _noun(words, word, ("container", "" if word in ("container", "receptacle", "holder") else word))
     for word in _FRUITS.split():
         _noun(words, word, ("fruit", word))
+    for listing in TOOLS.values():
+        for word in listing.split():
+            _noun(words, word, ("tool", word))
     for table in (_VERBS, _SMALL):
         for kind, listing in table.items():
             words |= {word: (kind, kind.lower()) for word in listing.split()}
@@ -231,7 +248,8 @@ def kind_of(word: str) -> str:
 
 _LISTED = {"COLOUR": "colours", "PATTERN": "patterns", "MATERIAL": "materials", "SHAPE": "shapes", "NOUN": "nouns",
            "SUPER": "which of several", "ORDINAL": "which of several", "PUT": "put", "TAKE": "take", "ROTATE": "rotate", "STACK": "stack",
-           "SWAP": "swap", "RETURN": "put back", "REMOVE": "remove", "PUSH": "push", "SORT": "sort"}  # fmt: skip
+           "SWAP": "swap", "RETURN": "put back", "REMOVE": "remove", "PUSH": "push", "SORT": "sort", "DRAW": "draw", "WIPE": "wipe", "SHAKE": "shake", "OPEN": "open",
+           "FIGURE": "figures"}  # fmt: skip
 
 
 def known_words() -> dict[str, str]:

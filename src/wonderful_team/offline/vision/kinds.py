@@ -1,4 +1,4 @@
-"""Kinds of things by eye: containers, fruit by colour and outline, letters, balls, areas."""
+"""Kinds of things by eye: containers, fruit by colour and outline, letters, balls, areas, bottles and what is on them."""
 
 from __future__ import annotations
 
@@ -103,9 +103,10 @@ def fruit_score(thing: Thing) -> float:
     return float(coloured * whole * formed(look, _FRUITY) * calm)
 
 
-def container_score(thing: Thing) -> float:
-    """How much a thing looks like something to put things into: a round or angular outline, 0 to 1."""
-    return 0.25 if thing.flat else formed(thing.look, _HOLDS)
+def container_score(thing: Thing, *, thin: bool = False) -> float:
+    """How much a thing looks like something to put things into: a round or angular outline, 0 to 1; `thin`: it may be as flat as a plate."""
+    flat = thing.flat and not (thin and (thing.height_m or 0.0) >= THIN_M)
+    return 0.25 if flat else formed(thing.look, _HOLDS)
 
 
 ROOMY = 0.45
@@ -120,8 +121,61 @@ FITS_ROUND = 0.6
 """Fit of a circle from which something is round."""
 
 
+ROUND_ASPECT, STANDS_M, THIN_M = 1.6, 0.05, 0.003
+"""A bottle, seen from above and a little aslant, is at most so many times as long as wide, and at least so high; what is flat and
+yet higher than the last is a plate or tray and no paper [m]."""
+
+
+def is_round(thing: Thing) -> bool:
+    """Whether a thing's outer outline is round, as of what stands upright and is seen from above, a little aslant."""
+    outline = thing.look.outline
+    return outline.aspect < ROUND_ASPECT and outline.solidity > SOLID and max(
+        thing.look.shapes[name] for name in ("circle", "ring", "oval", "bowl")
+    ) > max(thing.look.shapes[name] for name in ("square", "rectangle", "frame"))  # fmt: skip
+
+
+def part_on(thing: Thing, scene: Scene) -> Thing | None:
+    """What stands up from the middle of a thing: its neck, cap, or handle, the highest one; None without depth or where nothing does."""
+    middle = thing.box.scaled(0.8)
+    parts = [part for part in scene.on(thing) if _higher(part, thing) and middle.contains(part.box.centre)]
+    return max(parts, key=lambda part: part.height_m or 0.0, default=None)
+
+
+def _higher(part: Thing, thing: Thing) -> bool:
+    return part.height_m is not None and thing.height_m is not None and part.height_m > thing.height_m + HIGHER_M
+
+
+HIGHER_M = 0.01
+"""What stands up from a thing is at least so much higher [m]."""
+
+
+def _is_part(thing: Thing, scene: Scene) -> bool:
+    """Whether a round thing stands on the middle of another round one: a neck or a cap."""
+    host = next((other for other in scene.things if other.number == thing.on), None)
+    return host is not None and is_round(host) and not host.flat and _higher(thing, host)
+
+
+def _is_bottom(thing: Thing, scene: Scene) -> bool:
+    """Whether a thing is the inner part of a plate: level with what it lies on, which is flat and yet no paper."""
+    host = next((other for other in scene.things if other.number == thing.on), None)
+    if host is None or not host.flat or host.height_m is None or host.height_m < THIN_M:
+        return False
+    return thing.height_m is not None and thing.height_m < host.height_m + THIN_M
+
+
+def _is_lid(thing: Thing, scene: Scene) -> bool:
+    """Whether a thing has a handle on its middle, and lies on another or is not round, as a bottle is."""
+    return part_on(thing, scene) is not None and (thing.on is not None or not is_round(thing))
+
+
 def is_kind_here(thing: Thing, noun: str, scene: Scene) -> bool:
     """Whether a thing is of a kind beside what else is there: next to a bowl, a block of a tenth of its size is no bowl."""
+    if noun in ("bottle", "cap"):
+        return _is_part(thing, scene) == (noun == "cap")
+    if noun == "lid":
+        return _is_lid(thing, scene)
+    if noun == "container" and thing.on is not None and (_is_lid(thing, scene) or _is_bottom(thing, scene)):
+        return False
     sizes = [other.area_px for other in (scene.things if noun == "container" else scene.objects)] or [thing.area_px]
     if noun == "container":
         return thing.area_px >= ROOMY * max(sizes)
@@ -130,6 +184,14 @@ def is_kind_here(thing: Thing, noun: str, scene: Scene) -> bool:
         or thing.look.shapes["circle"] < FITS_ROUND
         or thing.area_px <= BLOCKS * min(sizes)
     )
+
+
+def _stands_score(thing: Thing, noun: str) -> float:
+    """How well a bottle, a cap, a lid or a tool fits by its outline and height: by elimination, nothing of it says what it is for, 0 to 1."""
+    if noun == "tool" or thing.flat:
+        return 0.0  # no picture tells a pen from a stick
+    low = noun == "bottle" and (thing.height_m or STANDS_M) < STANDS_M
+    return float(noun == "lid" or is_round(thing)) * (0.3 if low else 1.0)
 
 
 def kind_score(thing: Thing, description: Description) -> float:
@@ -153,7 +215,9 @@ def kind_score(thing: Thing, description: Description) -> float:
         case "ball":
             return float(np.clip(look.shapes["circle"] / FITS_ROUND, 0, 1)) * formed(look, ("circle",))
         case "container":
-            return container_score(thing)
+            return container_score(thing, thin=description.name in ("plate", "dish", "tray"))
+        case "bottle" | "cap" | "lid" | "tool":
+            return _stands_score(thing, description.noun)
         case "block" if not (thing.flat or description.shape):
             bar = look.outline.aspect <= SLIM and look.outline.fill > SOLID
             return formed(look, ("square", "rectangle", "l-shape", *(("long",) if bar else ())))

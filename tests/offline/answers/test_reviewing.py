@@ -145,3 +145,11 @@ def test_a_subgoal_that_cannot_be_read_is_said_so_when_it_matters(text: str) -> 
     assert doubt.about == "G2"
     covered = replace(GOALS[1], text=text)
     assert review(TASK, (GOALS[0], covered)).approved
+
+
+def test_names_of_the_instructions_pictures_in_its_doubts_are_words_like_others() -> None:
+    """Braces that stand in a subgoal, such as {goal}, are no places for it to fill."""
+    other = replace(GOALS[1], text="Put the {goal} disc where {0} is, beside the purple triangle")
+    doubt = review(TASK, (GOALS[0], other)).doubt
+    assert doubt is not None
+    assert doubt.subgoal == other.id

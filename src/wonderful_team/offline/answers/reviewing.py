@@ -157,23 +157,26 @@ def _covers(item: ReadSubgoal, aim: Aim) -> bool:
 def _spare(item: ReadSubgoal, aim: Aim, wanted: Aims, open_aims: list[int]) -> Finding:
     """A subgoal that nothing asks for: the wrong thing or place when it resembles an open aim, else needless."""
     text = item.subgoal.text
-    likenesses: tuple[tuple[Callable[[Aim], bool], str], ...] = (
-        (lambda open_: open_.thing.same(aim.thing), f"Should it not be '{{}}' instead of '{text}'?"),
+    # Before and after the words for what is asked for; braces in any of these words are pictures of the instruction.
+    likenesses: tuple[tuple[Callable[[Aim], bool], str, str], ...] = (
+        (lambda open_: open_.thing.same(aim.thing), "Should it not be '", f"' instead of '{text}'?"),
         (
             lambda open_: open_.same_goal(aim),
-            f"Is {aim.thing.words!r} the right thing? The instruction and the picture ask for '{{}}'.",
+            f"Is {aim.thing.words!r} the right thing? The instruction and the picture ask for '",
+            "'.",
         ),
         (
             lambda open_: open_.to is not None and open_.to.same(aim.thing),
-            "Are thing and place swapped? Asked for is '{}'.",
+            "Are thing and place swapped? Asked for is '",
+            "'.",
         ),
-        (lambda open_: True, f"Nothing asks for '{text}'; asked for is '{{}}'."),
+        (lambda open_: True, f"Nothing asks for '{text}'; asked for is '", "'."),
     )
-    for resembles, asks in likenesses:
+    for resembles, before, after in likenesses:
         index = next((k for k in open_aims if resembles(wanted.aims[k])), None)
         if index is not None:
             open_aims.remove(index)
-            return Finding(item.subgoal.id, "wrong_target", asks.format(aim_text(wanted.aims[index])))
+            return Finding(item.subgoal.id, "wrong_target", f"{before}{aim_text(wanted.aims[index])}{after}")
     why = f"What is '{text}' for? The instruction does not ask for it."
     return Finding(item.subgoal.id, "needless_step", why)
 

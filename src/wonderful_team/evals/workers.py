@@ -84,8 +84,11 @@ def worker_main(work: Work, stopping: Any) -> None:
 
 
 def work_until_done(work: Work, stopping: Callable[[], bool]) -> None:
-    """Take trials and run them until none is left, a cap is reached, or one is told to stop."""
-    with Store(work.store) as store:
+    """Take trials and run them until none is left, a cap is reached, or one is told to stop.
+
+    The study has opened the store and checked all of it: looking through a million trials once more in every worker takes minutes.
+    """
+    with Store(work.store, must_exist=True, checked=True) as store:
         asyncio.run(_work(work, store, stopping))
 
 

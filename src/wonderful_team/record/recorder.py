@@ -51,7 +51,7 @@ class Recorder:
         self.folder = Path(folder)
         self._files = RunFiles(self.folder)
         self._store = PictureStore(self._files, self._named)
-        self.coded_pictures = self._store.coded
+        self.at_hand = self._store.at_hand
         self._lock = threading.RLock()
         self._clock, self._zero = clock, clock()
         self._asked: set[str] = set()

@@ -119,11 +119,12 @@ def _enlarged(cut: Array, size: tuple[int, int]) -> Array:
     if size[0] % width or size[1] % height:
         _hold_inplace(image, *(cv2.resize(part, size, interpolation=cv2.INTER_NEAREST_EXACT) for part in (low, high)))
         return image
-    rows, columns = np.nonzero(_most_of_colours(cv2.absdiff(high, low)))
-    if len(rows) > (1 - _EVEN_FROM) * height * width:
+    uneven = _most_of_colours(cv2.absdiff(high, low))
+    if cv2.countNonZero(uneven) > (1 - _EVEN_FROM) * height * width:
         _keep_bands_inplace(image, cut, low, high)
         return image
     # A pixel that equals all its neighbours stays as it is, all over.
+    rows, columns = np.nonzero(uneven)
     even = np.asarray(cv2.resize(cut, size, interpolation=cv2.INTER_NEAREST_EXACT))
     at_once = max(1, _BAND_PX // ((size[0] // width) * (size[1] // height)))
     for first in range(0, len(rows), at_once):

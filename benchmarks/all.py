@@ -103,6 +103,42 @@ def trial_s(model: str, quick: bool) -> str:
     return f"{(time.process_time() - before) / len(jobs):.2f} s ({solved}/{len(jobs)} solved)"
 
 
+def kept_trial_s(quick: bool) -> str:
+    """The same as `bench` runs it by default: a record is written of trials that do not succeed."""
+    from benchmarks.perfect import VIMA_TASKS
+    from wonderful_team.api.trial import run_trial
+    from wonderful_team.evals.trials import Condition, RunSettings, TrialSpec
+
+    condition = Condition("team", "simulated:perfect")
+    specs = [
+        TrialSpec(f"tabletop/{task}", seed, condition)
+        for task in VIMA_TASKS
+        for seed in range(900000, 900001 if quick else 900004)
+    ]
+    with tempfile.TemporaryDirectory() as out:
+        settings = RunSettings(record="failures", out=Path(out))
+        run_trial(specs[0], settings)
+        before = time.process_time()
+        solved = sum(run_trial(spec, settings).outcome == "success" for spec in specs)
+        return f"{(time.process_time() - before) / len(specs):.2f} s ({solved}/{len(specs)} solved)"
+
+
+def opening_s(quick: bool) -> str:
+    """CPU of opening a study's store by the study, which checks all of it, and by each of its workers."""
+    from benchmarks.store_growth import made_up
+    from wonderful_team.evals.store import Store
+
+    size = 20_000 if quick else 100_000
+    with tempfile.TemporaryDirectory() as folder:
+        path = made_up(size, Path(folder))
+        marks = [time.process_time()]
+        for checked in (False, True):
+            Store(path, checked=checked).close()
+            marks.append(time.process_time())
+    study, worker = (1e6 / size * (after - before) for before, after in zip(marks, marks[1:], strict=False))
+    return f"{study:.1f} s / {worker:.1f} s for a million, from {size:,}"
+
+
 def oracle_ms(quick: bool) -> str:
     """CPU of an oracle's episode: set up, physics, scoring; nothing is drawn."""
     from benchmarks.perfect import VIMA_TASKS, Job, by_oracle
@@ -188,6 +224,8 @@ ROWS = (
     ),
     Row("oracle episode, CPU", "50 ms", oracle_ms),
     Row("simulated:perfect trial, CPU", "0.18 s", lambda quick: trial_s("simulated:perfect", quick)),
+    Row("simulated:perfect trial, records of failures, CPU", "-", kept_trial_s),
+    Row("opening a store, by the study / by each worker", "-", opening_s),
     Row("offline, 20 red blocks into the bowl, CPU", "4 s", lambda quick: blocks_s(20, quick)),
     Row("offline, 50 red blocks into the bowl, CPU", "12 s", lambda quick: blocks_s(50, quick)),
     Row("one more request in a record", "constant", record_ms),

@@ -52,9 +52,8 @@ def main() -> None:
 
 def measure(size: int, folder: Path) -> tuple[str, ...]:
     """One size: a line of the table."""
-    seeds = tuple(range(1000, 1000 + size // (TASKS * len(METHODS))))
-    suite = Suite("made up", tuple(f"tabletop/made_up_{k}" for k in range(TASKS)), OPEN_LOOP)
-    plan = StudyPlan((suite,), METHODS, ("simulated:perfect",), seeds)
+    plan = _plan(size)
+    (suite,) = plan.suites
     path, name, caps = folder / f"{size}.db", plan.name, Caps(calls=10**12, usd=1e9)
     with Store(path) as store:
         enter = _cpu(lambda: store.want(name, plan.trials(), plan.request()))
@@ -78,6 +77,21 @@ def measure(size: int, folder: Path) -> tuple[str, ...]:
     peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
     times = (_words(seconds) for seconds in (enter, claimed, progress, opened, read, tables))
     return (f"{size:,}", *times, f"{peak:.0f} MB", f"{path.stat().st_size / 1e6:.0f} MB")
+
+
+def made_up(size: int, folder: Path) -> Path:
+    """A store of so many trials, all but two hundred of them ended."""
+    plan, path = _plan(size), folder / f"{size}.db"
+    with Store(path) as store:
+        store.want(plan.name, plan.trials(), plan.request())
+        _end_all_but(200, store, size)
+    return path
+
+
+def _plan(size: int) -> StudyPlan:
+    seeds = tuple(range(1000, 1000 + size // (TASKS * len(METHODS))))
+    suite = Suite("made up", tuple(f"tabletop/made_up_{k}" for k in range(TASKS)), OPEN_LOOP)
+    return StudyPlan((suite,), METHODS, ("simulated:perfect",), seeds)
 
 
 def _end_all_but(left: int, store: Store, size: int) -> None:

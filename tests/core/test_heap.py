@@ -23,3 +23,40 @@ def test_without_glibc_nothing_happens(monkeypatch):
         assert heap.give_back_free_memory() is False
     finally:
         heap._malloc_trim.cache_clear()
+
+
+def test_memory_is_given_back_once_a_process_has_grown(monkeypatch):
+    held, given = [100], []
+    monkeypatch.setattr(heap, "_held_bytes", lambda: held[0])
+
+    def give_back():
+        given.append(held[0])
+        held[0] -= 20
+        return True
+
+    monkeypatch.setattr(heap, "give_back_free_memory", give_back)
+    growth = heap.Growth(50)
+    assert growth.give_back(), "what was there before counts as grown"
+    for now in (85, 110, 129):
+        held[0] = now
+        assert not growth.give_back()
+    held[0] = 130
+    assert growth.give_back()
+    held[0] = 159
+    assert not growth.give_back()
+    assert given == [100, 130]
+
+
+def test_where_the_system_does_not_say_memory_is_given_back_each_time(monkeypatch):
+    given = []
+    monkeypatch.setattr(heap, "_held_bytes", lambda: None)
+    monkeypatch.setattr(heap, "give_back_free_memory", lambda: bool(given.append(1)) or True)
+    growth = heap.Growth()
+    assert growth.give_back()
+    assert growth.give_back()
+    assert len(given) == 2
+
+
+def test_what_is_held_is_a_number_of_bytes_where_it_is_known():
+    held = heap._held_bytes()
+    assert held is None or held > 1_000_000

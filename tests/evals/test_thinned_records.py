@@ -4,17 +4,21 @@ from __future__ import annotations
 
 import json
 import shlex
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 import wonderful_team as wt
+from wonderful_team.api.trial import run_trial
 from wonderful_team.cli.app import run
-from wonderful_team.errors import ConfigError
+from wonderful_team.core.caps import Caps
+from wonderful_team.errors import ConfigError, FileNotWrittenError
 from wonderful_team.evals.again import command_again
 from wonderful_team.evals.store import Store
-from wonderful_team.evals.trials import Condition, TrialSpec
+from wonderful_team.evals.trials import Condition, RunSettings, TrialSpec
+from wonderful_team.record import run_files
 
 MODELS = "simulated:perfect,simulated:perfect:missed=1"
 """One that solves the scene, one that finds nothing in it."""
@@ -106,3 +110,29 @@ def test_the_old_name_works_and_a_wrong_word_is_refused(tmp_path: Path, capsys: 
     words = ["bench", "toy/pointing", "--seeds", "1000", "--method", "point", "--jobs", "1", "--pages", "all"]
     assert run([*words, "--store", str(tmp_path / "s.db")]) == 0
     assert "--pages is called --record now" in capsys.readouterr().err
+
+
+def test_of_a_trial_that_succeeds_no_picture_and_no_page_is_written(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    written: list[str] = []
+    real = run_files.RunFiles.write
+    monkeypatch.setattr(
+        run_files.RunFiles, "write", lambda self, name, content: (written.append(name), real(self, name, content))[1]
+    )
+    settings = RunSettings(record="failures", out=tmp_path)
+    spec = TrialSpec("tabletop/rotate", 1000, Condition("team", "simulated:perfect"))
+    assert run_trial(spec, settings).outcome == "success"
+    assert written == []
+    # With a limit on time a trial is written as it goes: at its end there may be no time left.
+    limited = run_trial(spec, replace(settings, caps=Caps(seconds=500.0)))
+    assert (limited.outcome, limited.page) == ("success", "")
+    assert "record.json" in written
+    assert not [path for path in tmp_path.rglob("*") if path.is_file()]
+
+
+def test_a_trial_whose_records_have_no_place_ends_before_it_asks_anything(tmp_path: Path) -> None:
+    (tmp_path / "runs").write_text("a file", encoding="utf-8")
+    spec = TrialSpec("tabletop/rotate", 1000, Condition("team", "simulated:perfect"))
+    with pytest.raises(FileNotWrittenError, match="runs"):
+        run_trial(spec, RunSettings(record="failures", out=tmp_path / "runs"))

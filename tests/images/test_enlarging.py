@@ -34,3 +34,17 @@ def test_bands_change_no_pixel(
     cut = np.random.default_rng(height).integers(0, 256, (height, width, 3), np.uint8)
     size = (round(width * zoom), round(height * zoom))
     assert np.array_equal(resample._enlarged(cut, size), plainly(cut, size))
+
+
+@pytest.mark.parametrize("zoom", [2, 3, 7])
+@pytest.mark.parametrize("even", [0.0, 0.4, 0.6, 0.97, 1.0])
+def test_pixels_that_equal_their_neighbours_are_left_out_of_the_work_and_nothing_changes(
+    even: float, zoom: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(resample, "_BAND_PX", 500)
+    cut = np.random.default_rng(zoom).integers(0, 256, (40, 50, 3), np.uint8)
+    cut[: round(even * 40)] = (200, 10, 90)
+    kept = cut.copy()
+    size = (50 * zoom, 40 * zoom)
+    assert np.array_equal(resample._enlarged(cut, size), plainly(cut, size))
+    assert np.array_equal(cut, kept)

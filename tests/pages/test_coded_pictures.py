@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import wonderful_team as wt
+from wonderful_team.images import OWN_FORMATS, open_picture
 from wonderful_team.pages import PAGE_NAME, pictures, write_page
 from wonderful_team.record import picture_store
 from wonderful_team.record.picture_store import PictureStore
@@ -40,5 +41,41 @@ def test_no_more_is_kept_than_a_page_may_hold(tmp_path: Path, monkeypatch: pytes
     store = PictureStore(RunFiles(tmp_path), lambda key, file: None)
     for seed in range(12):
         store.keep_view(noise(seed), "start")
-    kept = sum(map(len, store.coded.values()))
+    kept = sum(map(len, store.at_hand.coded.values()))
     assert 100_000 <= kept < 250_000
+
+
+def test_pixels_at_hand_are_bounded_and_those_of_the_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(picture_store, "PIXELS_BYTES", 3 * 240 * 320 * 3)
+    files: list[str] = []
+    store = PictureStore(RunFiles(tmp_path), lambda key, file: files.append(file))
+    views = [noise(seed) for seed in range(12)]
+    for view in views:
+        store.keep_view(view, "start")
+    held = {file: store.at_hand.pixels.get(file) for file in files}
+    assert [file for file, rgb in held.items() if rgb is not None] == files[-3:]
+    for file, view in zip(files, views, strict=True):
+        with open_picture(tmp_path / file, OWN_FORMATS) as image:
+            assert np.array_equal(image.convert("RGB"), view.rgb)
+        assert held[file] is None or np.array_equal(held[file], view.rgb)
+
+
+def test_no_picture_that_is_at_hand_is_decoded_for_the_page(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Two pictures of one scene differ in a few places: to find them their pixels are compared."""
+    decoded: list[str] = []
+    real = pictures.Album._pixels
+
+    def pixels(album: pictures.Album, shown: pictures.Shown, *part: pictures.Patch) -> np.ndarray:
+        if album._at_hand.pixels.get(shown.file) is None:
+            decoded.append(shown.file)
+        return real(album, shown, *part)
+
+    monkeypatch.setattr(pictures.Album, "_pixels", pixels)
+    scene = noise(1).rgb.copy()
+    scene[60:120, 60:120] = (200, 30, 30)
+    made = wt.Team(model="offline", out=tmp_path).plan(scene, "put the red block on the left")
+    page = (made.folder / PAGE_NAME).read_bytes()
+    assert decoded == []
+    write_page(made.folder)
+    assert decoded
+    assert (made.folder / PAGE_NAME).read_bytes() == page

@@ -19,7 +19,7 @@ def write_page_or_warn(recorder: Recorder) -> Path | None:
     """Write the page. A run may have cost money and moved a robot: a defect of the page must not lose its result."""
     folder = recorder.folder
     try:
-        return deadline.to_end("drawing the page", write_page, folder, recorder.coded_pictures)
+        return deadline.to_end("drawing the page", write_page, folder, recorder.at_hand)
     except FileNotWrittenError as error:
         recorder.note_unwritten(error)
     except Exception as error:  # noqa: BLE001  told as a warning; `wonderful-team show` writes the page anew

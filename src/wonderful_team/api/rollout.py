@@ -13,13 +13,14 @@ from wonderful_team import registry
 from wonderful_team.api.method import Method
 from wonderful_team.api.recording import tell, write_page_or_warn, write_rerun_or_note
 from wonderful_team.api.results import PlanResult, TrialResult
-from wonderful_team.api.team import _failing, _recording
+from wonderful_team.api.team import _failing, _recording, _recording_unless_success
 from wonderful_team.core.deadline import limited
 from wonderful_team.core.protocols import Policy, Privileged, Subscriber, World, privileged
 from wonderful_team.core.renamed import renamed_arguments
 from wonderful_team.core.values import Instruction, KeepOut, Plan, ReadPlan
 from wonderful_team.errors import ConfigError
 from wonderful_team.record import read_run_plan
+from wonderful_team.record.late import LateRecorder
 from wonderful_team.record.recorder import Recorder
 from wonderful_team.record.rerun_recording import RERUN_NAME, RerunRecording, check_rerun
 from wonderful_team.record.run_folders import find_run
@@ -121,7 +122,44 @@ def rollout(
         raise ConfigError(
             f"a {type(method).__name__} is no method; valid: a wt.Team, a wt.Method, or an object with decide(situation)"
         )
-    read = _read(plan)
+    return rollout_in_world(
+        method,
+        world,
+        read=_read(plan),
+        replans=replans,
+        reobserve=reobserve,
+        approval=approval,
+        seed=seed,
+        scene=scene,
+        scored=scored,
+        out=out,
+        subscribers=subscribers,
+        rerun=rerun,
+    )
+
+
+def rollout_in_world(
+    method: Method | Policy,
+    world: World,
+    *,
+    read: ReadPlan | None = None,
+    replans: int = 0,
+    reobserve: int = 0,
+    approval: Approval | Approver | None = None,
+    seed: int | None = None,
+    scene: str = "",
+    scored: bool = True,
+    out: str | Path | None = None,
+    subscribers: Sequence[Subscriber] = (),
+    rerun: str | Path | bool = False,
+    unless_success: bool = False,
+) -> TrialResult:
+    """`rollout` once its world and plan are at hand.
+
+    With `unless_success` only a trial that does not succeed gets a run folder. There is then no page before motion to approve, and no
+    recording for Rerun.
+    """
+    longest_s = method.max_seconds if isinstance(method, Method) else None
     if isinstance(method, Method):
         method = method.in_world(world)
     named = method if isinstance(method, Method) else None
@@ -144,7 +182,11 @@ def rollout(
     recording = None if rerun is False else RerunRecording()
     subscribers = subscribers if recording is None else (*subscribers, recording)
     place, command = (out or named.out, named.command) if named else (out, None)
-    with limited(longest_s), _recording(guarded.instruction.plain_text, place, command) as recorder:
+    words = guarded.instruction.plain_text
+    making: contextlib.AbstractContextManager[Recorder | LateRecorder] = (
+        _recording_unless_success(words, place, command) if unless_success else _recording(words, place, command)
+    )
+    with limited(longest_s), making as recorder:
         everyone = (recorder, *subscribers, *(named.subscribers if named else ()))
         for text in named.warnings if named else ():
             tell(everyone, "warning", "setup", text)
@@ -167,7 +209,7 @@ def rollout(
                     "setup": setup,
                     "words": named.words() if named else {},
                 },
-                page=lambda: write_page_or_warn(recorder),
+                page=lambda: write_page_or_warn(recorder) if isinstance(recorder, Recorder) else None,
                 strict=named.strict if named else False,
             )
     happened = {item.name: getattr(trial, item.name) for item in fields(trial)}
@@ -175,12 +217,14 @@ def rollout(
 
 
 @contextlib.contextmanager
-def _kept(recording: RerunRecording | None, recorder: Recorder, rerun: str | Path | bool) -> Iterator[None]:
+def _kept(
+    recording: RerunRecording | None, recorder: Recorder | LateRecorder, rerun: str | Path | bool
+) -> Iterator[None]:
     """A recording for Rerun is written however the run ends."""
     try:
         yield
     finally:
-        if recording is not None:
+        if recording is not None and isinstance(recorder, Recorder):
             path = recorder.folder / RERUN_NAME if isinstance(rerun, bool) else Path(rerun)
             write_rerun_or_note(recording, recorder, path)
 

@@ -36,6 +36,7 @@ from wonderful_team.errors import ConfigError, UnknownNameError, WonderfulTeamEr
 from wonderful_team.planning import TeamPolicy as Planner
 from wonderful_team.planning import Until
 from wonderful_team.planning.ground_only import find
+from wonderful_team.record.late import LateRecorder
 from wonderful_team.record.recorder import Recorder
 from wonderful_team.record.run_folders import find_run, new_run_folder
 from wonderful_team.record.setup import setup_entry
@@ -261,22 +262,36 @@ def _recording(text: str, out: str | Path | None, command: str | None) -> Iterat
         yield recorder
 
 
-def _close(recorder: Recorder) -> None:
+@contextlib.contextmanager
+def _recording_unless_success(text: str, out: str | Path | None, command: str | None) -> Iterator[LateRecorder]:
+    """The same for a run of which nothing is kept where it succeeds: its folder is then never made."""
+    with ends_on_signal(), contextlib.ExitStack() as closing:
+        with held():
+            recorder = LateRecorder(lambda clock: Recorder(new_run_folder(text, out), command=command, clock=clock))
+            closing.callback(_close, recorder)
+        yield recorder
+
+
+def _close(recorder: Recorder | LateRecorder) -> None:
     """The record and the page, whole: a signal that comes meanwhile is raised afterwards."""
     with held():
         recorder.close()
-        write_page_or_warn(recorder)
-        give_back_free_memory()
+        written = recorder.recorder if isinstance(recorder, LateRecorder) else recorder
+        if written is not None:
+            write_page_or_warn(written)
+            give_back_free_memory()
 
 
 @contextlib.contextmanager
-def _failing(recorder: Recorder, everyone: Sequence[Subscriber]) -> Iterator[None]:
+def _failing(recorder: Recorder | LateRecorder, everyone: Sequence[Subscriber]) -> Iterator[None]:
     """An error that ends a run is told, and knows the run's folder."""
     try:
         yield
     except WonderfulTeamError as error:
         if not recorder.ended:
             tell_failure(everyone, error)
+        if isinstance(recorder, LateRecorder):
+            recorder.write()
         error.folder = recorder.folder
         raise
 

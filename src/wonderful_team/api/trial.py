@@ -19,11 +19,12 @@ from wonderful_team import registry
 from wonderful_team.api.judgements import Judgements
 from wonderful_team.api.method import Method
 from wonderful_team.api.photo_trial import run_photo
-from wonderful_team.api.rollout import rollout
+from wonderful_team.api.rollout import rollout_in_world
 from wonderful_team.api.set_trial import run_set
 from wonderful_team.api.toy_trial import run_toy
 from wonderful_team.api.trial_setup import UsageCounter, fingerprint, method_options, prepared
 from wonderful_team.core.deadline import limited
+from wonderful_team.core.filesystem import make_private_folder
 from wonderful_team.core.jsonable import to_jsonable
 from wonderful_team.core.protocols import Policy, SubgoalTruth, World, offers, privileged
 from wonderful_team.core.values import Instruction, Observation, Trial, Usage, View
@@ -159,7 +160,10 @@ def _run(
         return trial, ""
     # A folder of its own: trials that run at the same time must not share the pointer to the newest run.
     out = (settings.out or Path("runs")) / TRIALS / hashlib.sha256(spec.key.encode()).hexdigest()[:12]
-    recorded = rollout(
+    # Known before anything is spent: a place that cannot be written to.
+    make_private_folder(out)
+    failures = settings.record == "failures"
+    recorded = rollout_in_world(
         method,
         world,
         replans=condition.replans,
@@ -168,11 +172,13 @@ def _run(
         scene=spec.scene,
         out=out,
         subscribers=(count, judgements),
+        # With a limit on time there would be none left at its end to write what happened.
+        unless_success=failures and settings.caps.seconds is None,
     )
-    if settings.record == "failures" and recorded.outcome == "success":
+    if failures and recorded.outcome == "success":
         shutil.rmtree(out, ignore_errors=True)
         return recorded, ""
-    return recorded, str(recorded.page)
+    return recorded, "" if recorded.page is None else str(recorded.page)
 
 
 def models_of(condition: Condition, world: World) -> Any:

@@ -20,7 +20,7 @@ from pathlib import Path
 from typing import Any
 
 from wonderful_team.core.deadline import GRACE_S
-from wonderful_team.core.heap import give_back_free_memory
+from wonderful_team.core.heap import Growth
 from wonderful_team.core.interrupts import in_thread
 from wonderful_team.errors import WonderfulTeamError
 from wonderful_team.evals.shipment import Parcel, zipped
@@ -30,6 +30,8 @@ from wonderful_team.redaction import redact_streams
 
 DECIDING = ("numpy", "mujoco", "opencv-python-headless", "scikit-image", "shapely")
 """Packages on whose version the last bit of a result depends."""
+_GROWTH = Growth()
+"""Of this worker, over its trials."""
 
 
 class Places:
@@ -178,5 +180,5 @@ class TrialWorker:
                     limiter.release_all()
             page = str(Path(row.page).relative_to(name)) if row.page else ""
             folder = zipped(Path(name)) if settings.out is not None else b""
-        give_back_free_memory()
+        _GROWTH.give_back()
         return replace(row, page=page), folder

@@ -18,6 +18,8 @@ RESULT = (
     *("provenance", "by_role", "page", "instruction", "versions", "facts"),
 )
 JSON = ("provenance", "by_role", "versions", "facts")
+_COUNTS = ("seed", "repeat", "replans", "looks")
+_NUMBER = ("integer", "real")
 _NUMBERS = ("calls", "tokens", "pictures", "usd", "seconds", "rounds")
 _HELD = ("held_calls", "held_tokens", "held_usd")
 _ALLOWED = ("allowed_calls", "allowed_tokens", "allowed_usd")
@@ -78,13 +80,12 @@ def check_values(base: sqlite3.Connection, whose: str) -> None:
         ConfigError: One is not; names where it stands.
     """
     for (table,) in base.execute("SELECT name FROM sqlite_master WHERE type='table'").fetchall():
-        for column in base.execute(f"PRAGMA table_info('{table}')").fetchall():
-            name = column["name"]
-            number = name in _NUMBERS or column["type"] in ("INTEGER", "REAL")
-            valid = ("integer", "real") if number else ("text",)
-            marks = ", ".join("?" * len(valid))
-            wrong = f"typeof({name}) NOT IN ({marks}, 'null')"
-            found = base.execute(f"SELECT typeof({name}) FROM {table} WHERE {wrong} LIMIT 1", valid).fetchone()
+        wrong = {name: _is_other(name, valid) for name, valid in _types(base, table).items()}
+        # One look at each row, whatever the number of its columns: which one it is, is asked only where one is wrong.
+        if base.execute(f"SELECT 1 FROM {table} WHERE {' OR '.join(wrong.values())} LIMIT 1").fetchone() is None:
+            continue
+        for name, valid in _types(base, table).items():
+            found = base.execute(f"SELECT typeof({name}) FROM {table} WHERE {wrong[name]} LIMIT 1").fetchone()
             if found is not None:
                 raise ConfigError(
                     f"{whose}: {name} of {table} holds a value of type {found[0]}; valid: {' or '.join(valid)}"
@@ -92,3 +93,32 @@ def check_values(base: sqlite3.Connection, whose: str) -> None:
     empty = " OR ".join(f"{name} IS NULL" for name in ("outcome", "calls", "tokens", "pictures", "seconds", "rounds"))
     if base.execute(f"SELECT 1 FROM trials WHERE state = 'done' AND ({empty}) LIMIT 1").fetchone() is not None:
         raise ConfigError(f"{whose}: a trial that ended lacks its outcome or what it took")
+
+
+def check_spec(row: sqlite3.Row, whose: str) -> None:
+    """The same for what one row says of its trial, before that is run: the file may have been changed since all of it was checked.
+
+    Raises:
+        ConfigError: A value is of another type; names it.
+    """
+    for name in SPEC:
+        valid = int | float if name in _COUNTS else str
+        if not isinstance(row[name], valid):
+            raise ConfigError(
+                f"{whose}: {name} of trial {row['id']} holds a value of type {type(row[name]).__name__}; "
+                f"valid: {'a number' if name in _COUNTS else 'text'}"
+            )
+
+
+def _types(base: sqlite3.Connection, table: str) -> dict[str, tuple[str, ...]]:
+    """What SQLite calls the values that each column of a table may hold, beside none at all."""
+    columns = base.execute(f"PRAGMA table_info('{table}')").fetchall()
+    return {column["name"]: _NUMBER if _holds_numbers(column) else ("text",) for column in columns}
+
+
+def _holds_numbers(column: sqlite3.Row) -> bool:
+    return column["name"] in _NUMBERS or column["type"] in ("INTEGER", "REAL")
+
+
+def _is_other(name: str, valid: tuple[str, ...]) -> str:
+    return f"typeof({name}) NOT IN ({', '.join(map(repr, (*valid, 'null')))})"

@@ -22,7 +22,16 @@ from wonderful_team.core.filesystem import make_private_folder, network_file_sys
 from wonderful_team.errors import ConfigError, FileNotWrittenError, reading
 from wonderful_team.evals.leases import LEASE_S, Owner, Surroundings
 from wonderful_team.evals.names import NO_MODEL
-from wonderful_team.evals.schema import CONDITION, JSON, RESULT, SCHEMA_VERSION, SPEC, check_values, make_tables
+from wonderful_team.evals.schema import (
+    CONDITION,
+    JSON,
+    RESULT,
+    SCHEMA_VERSION,
+    SPEC,
+    check_spec,
+    check_values,
+    make_tables,
+)
 from wonderful_team.evals.spending import UNITS, Allowance, Likely, Spending, WaitForCost, allow
 from wonderful_team.evals.stored_rows import Claim, costs_of, result_of, spec_of, spec_values
 from wonderful_team.evals.totals import OUTCOMES
@@ -44,13 +53,21 @@ class Store:
     Args:
         path: The file; made if missing, unless `must_exist`.
         must_exist: Refuse a path where no file is.
+        checked: Every value of the file was checked just before, by the process that this one works for.
         here: The machine's clocks and processes; tests give others.
 
     Raises:
         ConfigError: It cannot be opened, is no store of ours, or has another schema version.
     """
 
-    def __init__(self, path: str | Path, *, must_exist: bool = False, here: Surroundings | None = None) -> None:
+    def __init__(
+        self,
+        path: str | Path,
+        *,
+        must_exist: bool = False,
+        checked: bool = False,
+        here: Surroundings | None = None,
+    ) -> None:
         self.path = Path(path)
         self._here = here or Surroundings()
         self.warnings: list[str] = []
@@ -64,6 +81,8 @@ class Store:
             self._base.row_factory = sqlite3.Row
             try:
                 self._open()
+                if not checked:
+                    check_values(self._base, f"store {str(self.path)!r}")
             except BaseException:
                 self._base.close()
                 raise
@@ -88,7 +107,6 @@ class Store:
             raise ConfigError(
                 f"store {str(self.path)!r}: schema version {version}; this release reads {SCHEMA_VERSION}"
             )
-        check_values(self._base, f"store {str(self.path)!r}")
 
     @contextmanager
     def _writing(self, *, durable: bool = True) -> Iterator[sqlite3.Connection]:
@@ -158,6 +176,7 @@ class Store:
             row = self._next(base, study)
             if row is None:
                 return None
+            check_spec(row, f"store {str(self.path)!r}")
             try:
                 allowance = self._allowance(study, row, caps)
             except WaitForCost:

@@ -17,7 +17,7 @@ from typing import Any
 
 from wonderful_team.core.caps import Caps
 from wonderful_team.core.deadline import GRACE_S
-from wonderful_team.core.heap import give_back_free_memory
+from wonderful_team.core.heap import Growth
 from wonderful_team.core.interrupts import in_thread
 from wonderful_team.errors import FileNotWrittenError, WonderfulTeamError
 from wonderful_team.evals.leases import RENEW_EVERY_S, Owner
@@ -30,6 +30,8 @@ from wonderful_team.redaction import redacted_streams
 KEPT = "what ended before is kept; the same command goes on"
 LATE = "cut by the limit on time"
 """Why an attempt was discarded that the command had no time left for."""
+_GROWTH = Growth()
+"""Of this worker, over its trials."""
 POLL_S = 0.2
 """How long a worker waits before it looks again for a trial that another process holds [s]."""
 
@@ -84,8 +86,11 @@ def worker_main(work: Work, stopping: Any) -> None:
 
 
 def work_until_done(work: Work, stopping: Callable[[], bool]) -> None:
-    """Take trials and run them until none is left, a cap is reached, or one is told to stop."""
-    with Store(work.store) as store:
+    """Take trials and run them until none is left, a cap is reached, or one is told to stop.
+
+    The study has opened the store and checked all of it: looking through a million trials once more in every worker takes minutes.
+    """
+    with Store(work.store, must_exist=True, checked=True) as store:
         asyncio.run(_work(work, store, stopping))
 
 
@@ -128,7 +133,7 @@ async def _run(work: Work, store: Store, owner: Owner, claim: Claim) -> None:
         # Interrupted: nothing of it counts, and somebody else may take it at once.
         store.give_back(claim.trial, owner)
         raise
-    give_back_free_memory()
+    _GROWTH.give_back()
     book(work, store, owner, claim, result)
 
 

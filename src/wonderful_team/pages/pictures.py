@@ -5,11 +5,10 @@ from __future__ import annotations
 import base64
 import io
 from collections import Counter
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from types import MappingProxyType
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -20,7 +19,7 @@ from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.text import PLACEHOLDER, recorded_names
 from wonderful_team.images import OWN_FORMATS, open_picture, to_jpeg
 from wonderful_team.pages.variants import Bases, Patch
-from wonderful_team.record.picture_store import AS_IT_IS_BYTES, PAGE_BYTES, PAGE_QUALITY
+from wonderful_team.record.picture_store import AS_IT_IS_BYTES, PAGE_BYTES, PAGE_QUALITY, AtHand
 
 MOST_BYTES = PAGE_BYTES
 """Beyond, pictures get coarser, not fewer."""
@@ -57,13 +56,13 @@ class Album:
     Args:
         folder: The run folder.
         files: From hash to file, as the record says.
-        coded: PNG files that were turned into JPEG already, as `_quickly` does it, by file.
+        at_hand: Pixels of PNG files, and such files turned into JPEG already, as `_quickly` does it.
     """
 
-    def __init__(self, folder: Path, files: dict[str, str], coded: Mapping[str, bytes] = MappingProxyType({})) -> None:
+    def __init__(self, folder: Path, files: dict[str, str], at_hand: AtHand | None = None) -> None:
         self._folder = folder
         self._files = files
-        self._coded = coded
+        self._at_hand = at_hand or AtHand()
         self._shown: dict[str, Shown | None] = {}
         self._opened: dict[int, Array] = {}
 
@@ -138,6 +137,8 @@ class Album:
     def _pixels(self, shown: Shown, patch: Patch | None = None) -> Array:
         rgb = self._opened.get(shown.number)
         if rgb is None:
+            rgb = self._at_hand.pixels.get(shown.file)
+        if rgb is None:
             with open_picture(self._folder / shown.file, OWN_FORMATS) as opened:
                 rgb = np.asarray(opened.convert("RGB"))
             while self._opened and sum(one.nbytes for one in self._opened.values()) + rgb.nbytes > _OPENED_BYTES:
@@ -164,8 +165,8 @@ class Album:
         kind = "jpeg" if shown.file.endswith(".jpg") else "png"
         if patch is None and (kind == "jpeg" or path.stat().st_size <= AS_IT_IS_BYTES):
             return kind, path.read_bytes()
-        if patch is None and shown.file in self._coded:
-            return "jpeg", self._coded[shown.file]
+        if patch is None and shown.file in self._at_hand.coded:
+            return "jpeg", self._at_hand.coded[shown.file]
         return "jpeg", to_jpeg(self._pixels(shown, patch), PAGE_QUALITY)
 
     def _coarser(self, most_px: int, quality: int, part: _Part) -> tuple[str, bytes]:

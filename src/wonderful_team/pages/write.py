@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
-from types import MappingProxyType
 from typing import Any
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined, pass_context
@@ -18,6 +16,7 @@ from wonderful_team.errors import reading
 from wonderful_team.pages import cost, planted, requests, sections
 from wonderful_team.pages.pictures import Album, pictured
 from wonderful_team.pages.words import clock_time, money, pretty, pretty_name, seconds
+from wonderful_team.record.picture_store import AtHand
 from wonderful_team.record.record_schema import read_record
 from wonderful_team.redaction import redact
 
@@ -27,12 +26,12 @@ _PICTURES = "<!-- pictures -->"
 """Stands for them while the page is made; words on a page are escaped, so none of them reads so."""
 
 
-def write_page(folder: Path, coded: Mapping[str, bytes] = MappingProxyType({})) -> Path:
+def write_page(folder: Path, at_hand: AtHand | None = None) -> Path:
     """Write `page.html` from the folder's record and pictures.
 
     Args:
         folder: The run folder.
-        coded: Pictures that need not be read, as `Album` takes them.
+        at_hand: What need not be read of its pictures.
 
     Returns:
         The page's path.
@@ -43,7 +42,7 @@ def write_page(folder: Path, coded: Mapping[str, bytes] = MappingProxyType({})) 
     folder = Path(folder)
     record = read_record(folder)
     with reading(f"{folder}: the record"):
-        html, pictures = _html(folder, record, coded)
+        html, pictures = _html(folder, record, at_hand)
     # Pictures are not searched for keys: their letters may look like anything, and are most of the page.
     whole = redact(visible(html, layout=True)).replace(_PICTURES, pictures, 1)
     path = folder / PAGE_NAME
@@ -51,9 +50,9 @@ def write_page(folder: Path, coded: Mapping[str, bytes] = MappingProxyType({})) 
     return path
 
 
-def _html(folder: Path, record: dict[str, Any], coded: Mapping[str, bytes]) -> tuple[str, str]:
+def _html(folder: Path, record: dict[str, Any], at_hand: AtHand | None) -> tuple[str, str]:
     """The page, and the pictures that belong in the place of `_PICTURES`."""
-    album = Album(folder, record["files"], coded)
+    album = Album(folder, record["files"], at_hand)
     content = _content(record, album)
     style = Markup((_HERE / "page.css").read_text(encoding="utf-8"))
     # The body comes first: it decides which pictures the page has to hold.

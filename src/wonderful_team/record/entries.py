@@ -15,12 +15,14 @@ from wonderful_team.core.values import (
     HeightProfile,
     Instruction,
     Observation,
+    Plan,
     PlannedAction,
     Request,
     SentPicture,
     StepReport,
     SubgoalRun,
     Target,
+    Trial,
     Usage,
 )
 from wonderful_team.errors import WonderfulTeamError
@@ -106,6 +108,25 @@ def error_entry(error: WonderfulTeamError) -> dict[str, Any]:
         if hasattr(error, name):
             shown[name] = to_jsonable(getattr(error, name))
     return shown
+
+
+def outcome_entry(name: str, ended: Any, refusal: Mapping[str, Any] | None) -> Mapping[str, Any]:
+    """How a run ended.
+
+    Args:
+        name: What its last event was called.
+        ended: Its plan, its trial, or the error that ended it.
+        refusal: The outcome of a plan that the gate refused: it is refused, however well it was made.
+    """
+    match ended:
+        case Plan():
+            return refusal or {"outcome": ended.status, "stage": ended.stage, "reason": ended.message}
+        case Trial():
+            told = {"outcome": ended.ending, "stage": ended.stage, "reason": ended.reason}
+            return {**told, "seed": ended.seed, "method": ended.method, "model": ended.model}
+        case WonderfulTeamError():
+            return {"outcome": name, "stage": ended.stage, "reason": str(ended)}
+    return {"outcome": name, "stage": None, "reason": ""}
 
 
 def usage_entry(usage: Usage) -> dict[str, Any]:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Mapping
-from datetime import UTC, datetime
+from datetime import UTC, datetime, timedelta
 from pathlib import Path
 from typing import Any
 
@@ -134,7 +134,7 @@ def _compact(value: Any) -> str:
     return json.dumps(value, ensure_ascii=False)
 
 
-def empty_record(command: str | None) -> dict[str, Any]:
+def empty_record(command: str | None, started: str) -> dict[str, Any]:
     """A record in which nothing has happened yet."""
     happened = ("observations", "stages", "plans", "decisions", "gates", "executions", "subgoals", "verdicts")
     return {
@@ -152,10 +152,10 @@ def empty_record(command: str | None) -> dict[str, Any]:
             "warnings": [],
             "requests": [],
         },
-        "clock": {"started": now(), "requests": {}, "stages": [], "gates": [], "executions": []},
+        "clock": {"started": started, "requests": {}, "stages": [], "gates": [], "executions": []},
     }
 
 
-def now() -> str:
-    """The time of day, to the second."""
-    return datetime.now(UTC).isoformat(timespec="seconds")
+def time_of_day(ago_s: float = 0.0) -> str:
+    """The time of day so many seconds ago, to the second."""
+    return (datetime.now(UTC) - timedelta(seconds=ago_s)).isoformat(timespec="seconds")

@@ -12,6 +12,7 @@ import numpy as np
 from wonderful_team.core.deadline import for_record
 from wonderful_team.core.filesystem import make_private_folder
 from wonderful_team.core.geometry.arrays import Array
+from wonderful_team.core.kept import Kept
 from wonderful_team.core.pictures import Picture
 from wonderful_team.core.values import Observation, SentPicture, View
 from wonderful_team.images import Ticks, to_jpeg
@@ -26,8 +27,31 @@ PAGE_BYTES = 3_600_000
 AS_IT_IS_BYTES = 12_000
 """Smaller files stand on a page as they are, larger PNG files as JPEG."""
 PAGE_QUALITY = 88
+PIXELS_BYTES = 48_000_000
+"""So much of the pixels of large pictures stays at hand for the page."""
 DRAWING = "drawing pictures for the record"
 """What the run's limit on time names."""
+
+
+class AtHand:
+    """What is at hand of a run's PNG files, by file, so that its page need not read them again; none of it has to be.
+
+    Attributes:
+        coded: As a page shows them (JPEG); as many as one page may hold.
+        pixels: Of the last ones, shape (H, W, 3), uint8.
+    """
+
+    def __init__(self) -> None:
+        self.coded: dict[str, bytes] = {}
+        self.pixels: Kept[str, Array] = Kept(PIXELS_BYTES, lambda rgb: rgb.nbytes)
+        self._coded_bytes = 0
+
+    def keep(self, file: str, rgb: Array) -> None:
+        """Code a picture while its pixels are there, and keep both while there is room."""
+        if self._coded_bytes < PAGE_BYTES:
+            self.coded[file] = coded = to_jpeg(rgb, PAGE_QUALITY)
+            self._coded_bytes += len(coded)
+            self.pixels.keep(file, rgb)
 
 
 class PictureStore:
@@ -38,8 +62,7 @@ class PictureStore:
         named: Told of every picture's key and file, relative to the run folder, once.
 
     Attributes:
-        coded: PNG files as a page shows them (JPEG), by file: made here, where their pixels are at hand, so that the page
-            of the run need not read them again; as many as one page may hold.
+        at_hand: What the page of the run can use.
     """
 
     def __init__(self, files: RunFiles, named: Callable[[str, str], None]) -> None:
@@ -48,8 +71,7 @@ class PictureStore:
         self._sent: set[str] = set()
         self._views = 0
         self._depths: dict[str, str] = {}
-        self.coded: dict[str, bytes] = {}
-        self._coded_bytes = 0
+        self.at_hand = AtHand()
         make_private_folder(files.folder / FOLDER)
 
     def keep_file(self, sent: SentPicture, name: str) -> str:
@@ -99,9 +121,8 @@ class PictureStore:
 
     def _write(self, key: str, name: str, file: bytes, rgb: Array | None) -> None:
         self._files.write(f"{FOLDER}/{name}", file)
-        if rgb is not None and len(file) > AS_IT_IS_BYTES and self._coded_bytes < PAGE_BYTES:
-            self.coded[f"{FOLDER}/{name}"] = coded = to_jpeg(rgb, PAGE_QUALITY)
-            self._coded_bytes += len(coded)
+        if rgb is not None and len(file) > AS_IT_IS_BYTES:
+            self.at_hand.keep(f"{FOLDER}/{name}", rgb)
         self._known.add(key)
         self._named(key, f"{FOLDER}/{name}")
 

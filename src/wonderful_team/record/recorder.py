@@ -24,7 +24,7 @@ from wonderful_team.images.keep_out import outlines
 from wonderful_team.images.png import fast_png
 from wonderful_team.record import entries
 from wonderful_team.record.detections import detector_entry
-from wonderful_team.record.growing import LINES_NAME, GrowingRecord, as_lines, empty_record, now
+from wonderful_team.record.growing import LINES_NAME, GrowingRecord, as_lines, empty_record, time_of_day
 from wonderful_team.record.picture_store import DRAWING, PictureStore
 from wonderful_team.record.plan_file import plan_to_json
 from wonderful_team.record.plan_picture import plan_picture
@@ -42,22 +42,25 @@ class Recorder:
     Args:
         folder: Where to write; made when missing.
         command: The command that reproduces the run, for the page.
+        clock: What time it is as `time.monotonic` counts; earlier for a run that is written down afterwards.
     """
 
-    def __init__(self, folder: Path, *, command: str | None = None) -> None:
+    def __init__(
+        self, folder: Path, *, command: str | None = None, clock: Callable[[], float] = time.monotonic
+    ) -> None:
         self.folder = Path(folder)
         self._files = RunFiles(self.folder)
         self._store = PictureStore(self._files, self._named)
-        self.coded_pictures = self._store.coded
+        self.at_hand = self._store.at_hand
         self._lock = threading.RLock()
-        self._zero = time.monotonic()
+        self._clock, self._zero = clock, clock()
         self._asked: set[str] = set()
         self._undrawn: dict[str, Request] = {}
         self._observations: dict[str, Observation] = {}
         self._seen: Observation | None = None
         self._limits: Limits | None = None
         self._pictures: dict[str, str] = {}
-        self._growing = GrowingRecord(empty_record(command))
+        self._growing = GrowingRecord(empty_record(command, self._time_of_day()))
         self._record = self._growing.held
         self._planner = self._record["planner"]
         self._handlers: dict[str, Callable[[Event], None]] = {
@@ -330,25 +333,15 @@ class Recorder:
 
     def _on_done(self, event: Event) -> None:
         self._growing.set("finished", "state")
-        self._growing.set(now(), "clock", "ended")
+        self._growing.set(self._time_of_day(), "clock", "ended")
         self._growing.set(round(self._elapsed_s(), 4), "clock", "seconds")
-        outcome: dict[str, Any]
-        match event.content:
-            case Plan() as plan:
-                self._on_plan(Event("plan", plan.id, plan))
-                # A plan that the gate refuses is refused, however well it was made.
-                made = {"outcome": plan.status, "stage": plan.stage, "reason": plan.message}
-                outcome = self._refusal() or made
-            case Trial() as trial:
-                outcome = {"outcome": trial.ending, "stage": trial.stage, "reason": trial.reason}
-                outcome |= {"seed": trial.seed, "method": trial.method, "model": trial.model}
-                # The score comes after the trial and stays out of the planner's part.
-                usage = {role: entries.usage_entry(one) for role, one in trial.usage_by_role.items()}
-                self._growing.set(usage, "clock", "usage_by_role")
-            case WonderfulTeamError() as error:
-                outcome = {"outcome": event.name, "stage": error.stage, "reason": str(error)}
-            case _:
-                outcome = {"outcome": event.name, "stage": None, "reason": ""}
+        if isinstance(event.content, Plan):
+            self._on_plan(Event("plan", event.content.id, event.content))
+        elif isinstance(event.content, Trial):
+            # The score comes after the trial and stays out of the planner's part.
+            usage = {role: entries.usage_entry(one) for role, one in event.content.usage_by_role.items()}
+            self._growing.set(usage, "clock", "usage_by_role")
+        outcome = entries.outcome_entry(event.name, event.content, self._refusal())
         self._growing.set(outcome, "outcome")
         self._log("done", "  ".join(ending_words(str(outcome["outcome"]), str(outcome["reason"]))).strip())
 
@@ -374,7 +367,10 @@ class Recorder:
     # -- files -------------------------------------------------------------------------------------------------------
 
     def _elapsed_s(self) -> float:
-        return time.monotonic() - self._zero
+        return self._clock() - self._zero
+
+    def _time_of_day(self) -> str:
+        return time_of_day(time.monotonic() - self._clock())
 
     def _named(self, key: str, file: str) -> None:
         self._growing.set(file, "files", key)

@@ -17,6 +17,7 @@ from PIL import Image
 from wonderful_team.core.later import is_later
 from wonderful_team.core.values import View
 from wonderful_team.images import OWN_FORMATS, open_picture
+from wonderful_team.images.png import fast_png
 
 WRITTEN = {"Critique": "Doubt"}
 """Classes that files call by the name of an earlier release."""
@@ -167,9 +168,7 @@ def _hints(kind: Any) -> dict[str, Any]:
 
 
 def _png_text(rgb: Any) -> str:
-    buffer = io.BytesIO()
-    Image.fromarray(rgb).save(buffer, format="PNG")
-    return base64.b64encode(buffer.getvalue()).decode("ascii")
+    return base64.b64encode(fast_png(rgb)).decode("ascii")
 
 
 def _require(fits: bool, value: Any, place: str, wanted: str) -> Any:

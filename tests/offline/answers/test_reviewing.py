@@ -147,9 +147,12 @@ def test_a_subgoal_that_cannot_be_read_is_said_so_when_it_matters(text: str) -> 
     assert review(TASK, (GOALS[0], covered)).approved
 
 
-def test_names_of_the_instructions_pictures_in_its_doubts_are_words_like_others() -> None:
-    """Braces that stand in a subgoal, such as {goal}, are no places for it to fill."""
-    other = replace(GOALS[1], text="Put the {goal} disc where {0} is, beside the purple triangle")
-    doubt = review(TASK, (GOALS[0], other)).doubt
+def test_pictures_that_a_wrong_subgoal_names_are_words_of_the_doubt_like_others() -> None:
+    """Braces in what it says are no places for it to fill."""
+    slots = (slot("a", "star", "green"), slot("b", "square", "blue"), slot("c", "disc", "yellow"))
+    words = "Put the {a} into the {b}."
+    shown, plan = task(words, SCENE, *slots), draft(words, SCENE, *slots)
+    swapped = (Subgoal("G1", "Put the {a} next to the {c}", targets=("T1", "T2")),)
+    doubt = review(shown, swapped, plan.to_targets()).doubt
     assert doubt is not None
-    assert doubt.subgoal == other.id
+    assert "{c}" in doubt.question

@@ -77,3 +77,42 @@ def test_nothing_is_drawn_unless_something_looks(monkeypatch: pytest.MonkeyPatch
     world.observe()
     assert opened == [1]
     world.close()
+
+
+@pytest.mark.parametrize("renderer", [None, "rays"])
+def test_colours_alone_are_those_of_a_picture_with_depth(renderer: str | None) -> None:
+    world = make_world("visual_manipulation@clutter=2@lighting=2", 2, renderer=renderer)
+    table = world._table
+    drawing, state = table.renderer(), table._state
+    for camera in ("top", "front"):
+        for alone in (False, True):
+            whole = drawing.draw(state, camera, alone=alone).rgb
+            assert np.array_equal(drawing.colours(state, camera, alone=alone), whole)
+        # All that stands there finds room in a picture.
+        assert {table.built.body_id(name) for name in table.things} <= set(np.unique(drawing.bodies(state, camera)))
+    world.close()
+
+
+def test_pictures_of_an_instruction_and_what_they_show_open_one_renderer(monkeypatch: pytest.MonkeyPatch) -> None:
+    from wonderful_team.sims.tabletop import showing
+
+    opened, closed = [], []
+    real = showing.open_renderer
+
+    def opening(*asked: object) -> object:
+        made = real(*asked)
+        opened.append(made)
+        giving_back = made[0].close
+        monkeypatch.setattr(made[0], "close", lambda: (closed.append(made), giving_back()))
+        return made
+
+    monkeypatch.setattr(showing, "open_renderer", opening)
+    world = make_world("visual_manipulation@lighting=2", 2)
+    first = {name: slot.views["top"].rgb for name, slot in world.instruction.slots.items()}
+    assert world._table.slot_masks(next(iter(first)), "top")
+    assert world._table.slot_masks(next(iter(first)), "front")
+    assert len(opened) == 1
+    assert closed == []
+    world.close()
+    world.close()
+    assert len(closed) == 1

@@ -57,6 +57,9 @@ class RayRenderer:
         depth = np.where(geoms >= 0, distance, np.nan)
         return Drawn(np.clip(np.rint(rgb), 0, 255).astype(np.uint8), depth.astype(np.float32))
 
+    def colours(self, state: Any, camera: str, *, alone: bool = False) -> Array:
+        return self.draw(state, camera, alone=alone).rgb
+
     def bodies(self, state: Any, camera: str) -> Array:
         groups = (THING_GROUP, TABLE_GROUP, FLOOR_GROUP)
         geoms = self._cast(state, self._built.lenses[camera], groups)[0]

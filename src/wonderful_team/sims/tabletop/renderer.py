@@ -30,6 +30,10 @@ class Renderer(Protocol):
         """Draw the table, or with `alone` the things only, on white."""
         ...
 
+    def colours(self, state: Any, camera: str, *, alone: bool = False) -> Array:
+        """The colours of what `draw` draws, shape (H, W, 3), uint8, for whoever reads no depth."""
+        ...
+
     def bodies(self, state: Any, camera: str) -> Array:
         """Id of the body that each pixel shows, 0 for the table and floor, shape (H, W)."""
         ...

@@ -65,25 +65,17 @@ class Studio:
         self._state = mj.MjData(self._built.model)
         self._start = _start_poses(built, start_qpos)
         self._wanted = wanted
+        self._renderer: Renderer | None = None
 
     def slots(self, pictures: Mapping[str, Shown], table_renderer: Renderer) -> dict[str, Slot]:
         """Every picture, from both cameras."""
-        renderer = open_renderer(self._built, self._wanted)[0] if self._own else table_renderer
-        try:
-            return {name: self._slot(name, shown, renderer) for name, shown in pictures.items()}
-        finally:
-            if self._own:
-                renderer.close()
+        renderer = self._draws_with(table_renderer)
+        return {name: self._slot(name, shown, renderer) for name, shown in pictures.items()}
 
     def masks(self, shown: Shown, camera: str, table_renderer: Renderer) -> dict[str, Array]:
         """Which pixels of a picture show each thing in it, props too, shape (H, W) bool by name."""
-        renderer = open_renderer(self._built, self._wanted)[0] if self._own else table_renderer
-        try:
-            self._set_up(shown)
-            ids = renderer.bodies(self._state, camera)
-        finally:
-            if self._own:
-                renderer.close()
+        self._set_up(shown)
+        ids = self._draws_with(table_renderer).bodies(self._state, camera)
         return {stand.thing: ids == self._built.body_id(stand.thing) for stand in shown.stands}
 
     def stands(self, shown: Shown) -> list[tuple[Thing, Pose]]:
@@ -95,12 +87,26 @@ class Studio:
             found.append((thing, self._pose(thing, stand, shown.kind == "object", number)))
         return found
 
+    def close(self) -> None:
+        """Give its renderer back; safe to call twice."""
+        if self._renderer is not None:
+            self._renderer.close()
+            self._renderer = None
+
+    def _draws_with(self, table_renderer: Renderer) -> Renderer:
+        """What draws its model: opened once, for the pictures and for the masks that may be asked for later."""
+        if not self._own:
+            return table_renderer
+        if self._renderer is None:
+            self._renderer = open_renderer(self._built, self._wanted)[0]
+        return self._renderer
+
     def _slot(self, name: str, shown: Shown, renderer: Renderer) -> Slot:
         self._set_up(shown)
         views = {}
         for camera in CAMERA_NAMES:
-            drawn = renderer.draw(self._state, camera, alone=shown.kind == "object")
-            views[camera] = View(f"slot:{name}:{camera}", camera, 0.0, drawn.rgb)
+            rgb = renderer.colours(self._state, camera, alone=shown.kind == "object")
+            views[camera] = View(f"slot:{name}:{camera}", camera, 0.0, rgb)
         return Slot(name, shown.kind, views, shown.index)
 
     def _set_up(self, shown: Shown) -> None:

@@ -134,3 +134,10 @@ class Table(SimulatedTable):
     def instruction(self) -> Instruction:
         """Words with their slots filled, and a picture for every picture slot; drawn once."""
         return self._instruction
+
+    def close(self) -> None:
+        super().close()
+        # Without pictures of the instruction there is no studio.
+        studio = self.__dict__.get("_studio")
+        if studio is not None:
+            studio.close()

@@ -110,12 +110,14 @@ class SoFar(_Part):
 
 
 class Asked(_Part):
-    """What the method was told of attempts and looks when it was asked what to do."""
+    """What the method was told of attempts and looks when it was asked what to do, or after a subgoal whether to go on."""
 
     attempt: int
     replans_left: int
     looks_left: int
     so_far: SoFar
+    check: bool = False
+    doubts: list[str] = []
 
 
 class ClarifiedEntry(_Part):

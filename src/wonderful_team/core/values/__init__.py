@@ -23,6 +23,7 @@ from wonderful_team.core.values.plan_size import MAX_ACTIONS, MAX_SUBGOALS, MAX_
 from wonderful_team.core.values.read import ReadPlan
 from wonderful_team.core.values.request import Answer, Note, Part, Request, SentPicture, Usage, Words
 from wonderful_team.core.values.result import (
+    GOING_HOME,
     GateCheck,
     GateReport,
     HeightProfile,
@@ -34,6 +35,7 @@ from wonderful_team.core.values.result import (
 )
 
 __all__ = [
+    "GOING_HOME",
     "Alike",
     "Answer",
     "AskUser",

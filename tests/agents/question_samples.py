@@ -185,7 +185,7 @@ SAMPLES: tuple[Question, ...] = (
     Remember("put it there", "checker", "is the box right?", "it is on the lamp", ("which mug",)),
     JudgeSubgoal(
         TASK,
-        "G1",
+        SUBGOALS[0],
         SUBGOALS,
         (TARGET, AREA),
         ("[G1] pick T7",),

@@ -81,7 +81,7 @@ def _render_judge_subgoal(question: JudgeSubgoal) -> list[Part]:
         *task_parts(question.task, "The scene before this subgoal"),
         *subgoal_parts(question.subgoals),
         *target_parts(question.targets, "Targets, as they were found when the plan was made"),
-        *words(f"To be judged now: {subgoal_words(question.own)}"),
+        *words(f"To be judged now: {subgoal_words(question.subgoal)}"),
         *listed("Steps that were carried out for it, in order", question.steps, "none"),
         *listed("What the robot reported", question.measured, "nothing"),
         *listed("What a comparison of the pictures shows that the plan does not expect", question.doubts, "nothing"),

@@ -40,7 +40,7 @@ class JudgeSubgoal(Question):
 
     Attributes:
         task: The instruction; its views are those from before this subgoal, what it and the later ones use boxed and labelled.
-        subgoal: Id of the one that ran last.
+        subgoal: The one that ran last.
         subgoals: The whole plan.
         steps: Those of this subgoal.
         after: The views now, with the same boxes; the first is the main one.
@@ -49,7 +49,7 @@ class JudgeSubgoal(Question):
     """
 
     task: ShownTask
-    subgoal: str
+    subgoal: Subgoal
     subgoals: tuple[Subgoal, ...]
     targets: tuple[Target, ...]
     steps: tuple[str, ...]
@@ -61,15 +61,10 @@ class JudgeSubgoal(Question):
         return SubgoalOutcome
 
     @property
-    def own(self) -> Subgoal:
-        """The subgoal that ran last."""
-        return next(subgoal for subgoal in self.subgoals if subgoal.id == self.subgoal)
-
-    @property
     def later(self) -> tuple[Subgoal, ...]:
         """Those that are still to run."""
         names = [subgoal.id for subgoal in self.subgoals]
-        return self.subgoals[names.index(self.subgoal) + 1 :]
+        return self.subgoals[names.index(self.subgoal.id) + 1 :] if self.subgoal.id in names else ()
 
     def validate(self, answer: Any) -> tuple[Any, tuple[str, ...]]:
         if answer.rest_holds == bool(answer.what_changed.strip()):

@@ -70,12 +70,13 @@ def _question(scene: SceneShown, plan: Plan, run: SubgoalRun, doubts: tuple[str,
     before = replace(scene, observation=run.before)
     names = [subgoal.id for subgoal in plan.subgoals]
     first = names.index(run.subgoal) if run.subgoal in names else 0
+    own = plan.subgoals[first]
     used = {name for subgoal in plan.subgoals[first:] for name in subgoal.targets}
     boxed = {name: item for name, item in plan.grounded.items() if name in used}
     after = show_views(run.after, " after")
     return JudgeSubgoal(
         replace(before.task, views=(mark_targets(before.views[0], scene.view, boxed), *before.views[1:])),
-        run.subgoal,
+        own,
         plan.subgoals,
         plan.targets,
         tuple(step_words(step) for step in plan.steps if step.subgoal == run.subgoal),

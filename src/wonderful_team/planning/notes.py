@@ -70,7 +70,7 @@ def _judged(_: JudgeOutcome, answer: Any) -> str:
 
 
 def _checked(question: JudgeSubgoal, answer: Any) -> str:
-    return f"{question.subgoal} was stopped at: {answer.stop}" if answer.stop else ""
+    return f"{question.subgoal.id}: the plan was stopped: {answer.stop}" if answer.stop else ""
 
 
 def _advised(_: Replan, answer: Any) -> str:

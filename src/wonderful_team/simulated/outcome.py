@@ -68,14 +68,14 @@ def answer_subgoal(context: Context, question: JudgeSubgoal) -> SubgoalOutcome:
     left = moves_of(context.truth.oracle(), context.truth, context.instruction)
     solved = context.truth.score().success is True
     moved = _moved(before, question)
-    open_ones = {} if solved else _open((question.own, *question.later), moved, left)
+    open_ones = {} if solved else _open((question.subgoal, *question.later), moved, left)
     lost = not solved and not left
-    cause = LOST if lost else open_ones.get(question.subgoal) if question.subgoal in moved else None
+    cause = LOST if lost else open_ones.get(question.subgoal.id) if question.subgoal.id in moved else None
     things, was = context.truth.things(), before.sight.things
-    used = {moved[subgoal.id] for subgoal in question.later if subgoal.id in moved} - {moved.get(question.subgoal)}
+    used = {moved[subgoal.id] for subgoal in question.later if subgoal.id in moved} - {moved.get(question.subgoal.id)}
     gone = sorted(name for name in used if name in was and _away(was[name], things[name]))
     # What the plan does not move any more, of a plan of which everything is known.
-    known = all(subgoal.id in moved for subgoal in (question.own, *question.later))
+    known = all(subgoal.id in moved for subgoal in (question.subgoal, *question.later))
     undone = sorted({move.thing for move in left} - set(moved.values())) if known else []
     changed = "; ".join(
         [*(f"the {things[name].words} has moved" for name in gone)]

@@ -54,7 +54,7 @@ def answer_subgoal(question: JudgeSubgoal) -> SubgoalOutcome:
     """What became of one subgoal, and whether what the later ones use lies where it lay, from the pictures."""
     before = eyes_of_task(question.task)
     judge = _Judge(question, before, eyes_of(question.after[0], question.task.slots))
-    own = question.own
+    own = question.subgoal
     parts = [judge.task(task) for task in tasks_of(own, question.targets, before)]
     order = ("not_done", "undone", "unclear", "done")
     status, evidence = min(parts, key=lambda part: order.index(part[0]))
@@ -106,7 +106,7 @@ class _Judge:
 
     def strayed(self, question: JudgeSubgoal) -> Iterator[str]:
         """The things that later subgoals use and this one does not, and that do not lie where they lay."""
-        names = {name for subgoal in question.later for name in subgoal.targets} - set(question.own.targets)
+        names = {name for subgoal in question.later for name in subgoal.targets} - set(question.subgoal.targets)
         for target in question.targets:
             was = self._was(target, None) if target.id in names and target.kind == "object" else None
             if was is None:

@@ -188,10 +188,11 @@ class SubgoalEntry(_Part):
 
 
 class VerdictsEntry(_Part):
-    """The judge's word on every subgoal."""
+    """The judge's word on every subgoal; `check` is one on the subgoal that ran last, while others were still to run."""
 
     after_subgoals: int
     verdicts: list[dict[str, Any]]
+    check: bool = False
 
 
 class CrashEntry(_Part):

@@ -7,11 +7,23 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 import pytest
 
-from tests.runtime.runtime_fakes import Listener, MovesPolicy, SquaresWorld, make_plan
-from wonderful_team.core.actions import ARM, Action, CloseStep, Gripper, Home, HomeStep, OpenStep, Vocabulary
+from tests.runtime.runtime_fakes import Listener, MovesPolicy, SquaresWorld, make_plan, planned
+from wonderful_team.core.actions import (
+    ARM,
+    Action,
+    At,
+    CloseStep,
+    Gripper,
+    Home,
+    HomeStep,
+    OpenStep,
+    PickPlaceStep,
+    Vocabulary,
+)
 from wonderful_team.core.protocols import Act, Checked, Done, Situation
-from wonderful_team.core.values import Observation, PlannedAction, RobotState, StepReport, Verdict
+from wonderful_team.core.values import Observation, PlannedAction, RobotState, StepReport, SubgoalRun, Verdict
 from wonderful_team.runtime import rollout
+from wonderful_team.runtime.expected import Expectations
 
 RED, BLUE = (60.0, 60.0), (160.0, 90.0)
 UP, DOWN, FAR = (200.0, 30.0), (60.0, 100.0), (220.0, 100.0)
@@ -199,3 +211,25 @@ def test_a_stopped_arm_leaves_the_picture_with_an_empty_hand(home: bool, holding
     assert [action.kind for action in world.done] == ran
     assert {run.subgoal for run in trial.runs} == {"G1"}
     assert sum(len(run.reports) for run in trial.runs) == len(ran)
+
+
+def test_a_thing_that_is_carried_twice_is_taken_from_where_it_was_put() -> None:
+    world = SquaresWorld()
+    start = world.observe()
+    first, second = planned(1, RED, UP), planned(2, UP, DOWN)
+    second = replace(
+        second,
+        step=PickPlaceStep("G2", "T1", At("T4")),
+        sources=(replace(second.sources[0], target="T1"), second.sources[1]),
+    )
+    third = planned(3, BLUE, FAR)
+    plan = make_plan(start, [(RED, UP), (UP, DOWN), (BLUE, FAR)])
+    expected = Expectations((first, second, third), plan, start, False)
+    before, later = start, [first, second, third]
+    for planned_action in (first, second):
+        later = later[1:]
+        assert planned_action.action is not None
+        report = world.execute(planned_action.action)  # type: ignore[arg-type]
+        run = SubgoalRun(planned_action.step.subgoal, before, world.observe(), (report,))
+        assert expected.doubts(run, later, False) == ()
+        before = run.after

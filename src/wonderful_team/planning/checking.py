@@ -16,6 +16,7 @@ from wonderful_team.agents.scene import SceneShown, show_views
 from wonderful_team.contracts import JudgeSubgoal, SubgoalOutcome
 from wonderful_team.core.actions import Gripper, Home, PickPlace
 from wonderful_team.core.protocols import Checked, Situation
+from wonderful_team.core.steps import carried_by
 from wonderful_team.core.values import Plan, StepReport, SubgoalRun, Verdict
 from wonderful_team.planning.judging import judge_outcome, measured_lines
 from wonderful_team.planning.session import AgentSession
@@ -71,7 +72,9 @@ def _question(scene: SceneShown, plan: Plan, run: SubgoalRun, doubts: tuple[str,
     names = [subgoal.id for subgoal in plan.subgoals]
     first = names.index(run.subgoal) if run.subgoal in names else 0
     own = plan.subgoals[first]
-    used = {name for subgoal in plan.subgoals[first:] for name in subgoal.targets}
+    # A thing that an earlier subgoal carried does not lie in its box any more.
+    moved = {carried_by([step for step in plan.steps if step.subgoal == name]) for name in names[:first]}
+    used = {name for subgoal in plan.subgoals[first:] for name in subgoal.targets} - moved
     boxed = {name: item for name, item in plan.grounded.items() if name in used}
     after = show_views(run.after, " after")
     return JudgeSubgoal(

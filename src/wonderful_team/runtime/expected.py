@@ -6,15 +6,16 @@ thing was taken and put there must be a change, and where later subgoals act, or
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Container, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from wonderful_team.core.actions import CloseStep, FollowStep, OpenStep, PickPlaceStep, PushStep, places_of
+from wonderful_team.core.actions import FollowStep, PushStep, places_of
 from wonderful_team.core.geometry import Box
 from wonderful_team.core.pictures import Point
-from wonderful_team.core.values import GroundedTarget, Observation, Plan, PlannedAction, SubgoalRun, View
+from wonderful_team.core.steps import carried_by
+from wonderful_team.core.values import Observation, Plan, PlannedAction, SubgoalRun, View
 from wonderful_team.images import CHANGED, region_change
 from wonderful_team.runtime.staleness import point_window, points_px
 
@@ -39,11 +40,13 @@ class Meant:
     Attributes:
         touched: Everything that it may change.
         took, put: Where it took a thing from and where it put it; None where it carried nothing, or put it back where it was.
+        carried: Id of that thing.
     """
 
     touched: tuple[Box, ...]
     took: Spot | None = None
     put: Spot | None = None
+    carried: str | None = None
 
 
 class Expectations:
@@ -57,10 +60,10 @@ class Expectations:
 
     def __init__(self, actions: Sequence[PlannedAction], plan: Plan, start: Observation, in_view: bool) -> None:
         self._plan, self._start = plan, start
-        self._meant = {name: _meant(own, plan, start.main) for name, own in _by_subgoal(actions).items()}
+        self._meant = _all_meant(actions, plan, start.main)
         self._base: Observation | None = None if in_view else start
         self._since: list[Meant] = []
-        self._earlier: list[Spot] = []
+        self._earlier: dict[str, Spot] = {}
 
     def doubts(self, run: SubgoalRun, later: Sequence[PlannedAction], in_view: bool) -> tuple[str, ...]:
         """What is not as the plan expects after this subgoal, one line each; () where nothing is.
@@ -79,7 +82,7 @@ class Expectations:
         self._base, self._since = run.after, []
         if base is not None and base.main.size_px == run.after.main.size_px:
             found += self._seen(base.main, run.after.main, since, later)
-        self._earlier += [one.put for one in since if one.put is not None]
+        self._earlier |= {one.carried: one.put for one in since if one.carried is not None and one.put is not None}
         return tuple(found)
 
     def _seen(self, before: View, after: View, since: Sequence[Meant], later: Sequence[PlannedAction]) -> Iterator[str]:
@@ -89,7 +92,9 @@ class Expectations:
                 yield f"{one.took.what}: the picture there is as before, though it was to be taken from there"
             if one.put is not None and not _changed(before, after, one.put.box):
                 yield f"{one.put.what}: the picture there is as before, though something was to be put there"
-        for spot in (*self._earlier, *_used(later, self._plan, self._start.main)):
+        again = {one.carried for one in since}
+        put = [spot for name, spot in self._earlier.items() if name not in again]
+        for spot in (*put, *_used(later, self._plan, self._start.main, self._earlier)):
             if any(_changed(before, after, part) for part in _without(spot.box, touched)):
                 yield f"{spot.what}: the picture there has changed, though nothing was to touch it"
 
@@ -129,18 +134,35 @@ def _beside(box: Box, other: Box) -> list[Box]:
     return [Box(*sides) for sides in cut if sides[0] < sides[2] and sides[1] < sides[3]]
 
 
-def _meant(own: Sequence[PlannedAction], plan: Plan, view: View) -> Meant:
+def _all_meant(actions: Sequence[PlannedAction], plan: Plan, view: View) -> Mapping[str, Meant]:
+    """What every subgoal is meant to change; what was carried before is taken from where it was put."""
+    lies: dict[str, Box] = {}
+    found = {}
+    for name, own in _by_subgoal(actions).items():
+        carried = carried_by([planned.step for planned in own])
+        found[name] = _meant(own, plan, view, carried, lies)
+        thing = None if carried is None else plan.grounded.get(carried)
+        places = [point for planned in own for _, point in _places(planned, view)]
+        if carried is not None and thing is not None and thing.box is not None and places:
+            lies[carried] = point_window(places[-1], thing.box, view)
+    return found
+
+
+def _meant(own: Sequence[PlannedAction], plan: Plan, view: View, carried: str | None, lies: Mapping[str, Box]) -> Meant:
+    thing = None if carried is None else plan.grounded.get(carried)
     places = [place for planned in own for place in _places(planned, view)]
-    thing = _carried(own, plan)
     held = None if thing is None else thing.box
-    touched = _round(own, [_box_at(name, point, plan, view, held) for name, point in places])
-    if thing is None or held is None or not places:
-        return Meant(touched)
-    name = f"{thing.target.id} ({thing.target.words})"
-    took = Spot(name, held)
+    boxes = [_box_at(name, point, plan, view, held) for name, point in places]
+    if thing is None or held is None or carried is None or not places:
+        return Meant(_round(own, boxes))
+    stood = lies.get(carried, held)
+    touched = _round(own, [*boxes, stood])
+    name = f"{carried} ({thing.target.words})"
+    took = Spot(name, stood)
     put = Spot(f"where {name} was to be put", point_window(places[-1][1], held, view))
     # What is turned or shaken and put back leaves the picture as it was.
-    return Meant(touched, took, put) if put.box.intersection(held) is None else Meant(touched)
+    apart = put.box.intersection(stood) is None
+    return Meant(touched, took if apart else None, put if apart else None, carried)
 
 
 def _round(own: Sequence[PlannedAction], boxes: Sequence[Box]) -> tuple[Box, ...]:
@@ -161,23 +183,6 @@ def _places(planned: PlannedAction, view: View) -> list[tuple[str | None, Point]
     return [(names[role].target if role in names else only, point) for role, point in found]
 
 
-def _carried(own: Sequence[PlannedAction], plan: Plan) -> GroundedTarget | None:
-    """What a subgoal carries: what it picks, or what it goes to before the fingers close."""
-    name, at = None, None
-    closed = False
-    for planned in own:
-        step = planned.step
-        if isinstance(step, PickPlaceStep):
-            name = step.pick
-        elif isinstance(step, CloseStep):
-            name, closed = at, True
-        elif isinstance(step, OpenStep) and closed:
-            break
-        elif not closed:
-            at = next((place.target for _, place in places_of(step)), at)
-    return None if name is None else plan.grounded.get(name)
-
-
 def _box_at(name: str | None, point: Point, plan: Plan, view: View, carried: Box | None) -> Box:
     """The box of a thing at a point; elsewhere a window as large as what is carried there."""
     target = None if name is None else plan.grounded.get(name)
@@ -186,12 +191,12 @@ def _box_at(name: str | None, point: Point, plan: Plan, view: View, carried: Box
     return point_window(point, carried, view)
 
 
-def _used(later: Sequence[PlannedAction], plan: Plan, view: View) -> list[Spot]:
-    """The things that the actions still to run rely on."""
+def _used(later: Sequence[PlannedAction], plan: Plan, view: View, moved: Container[str]) -> list[Spot]:
+    """The things that the actions still to run rely on, but for those that lie elsewhere by now."""
     names = dict.fromkeys(place.target for planned in later for _, place in places_of(planned.step))
     found = []
     for name in names:
-        item = plan.grounded.get(name)
+        item = None if name in moved else plan.grounded.get(name)
         if item is not None and item.box is not None and item.target.kind == "object" and item.view_id == view.id:
             found.append(Spot(f"{name} ({item.target.words})", item.box))
     return found

@@ -67,10 +67,16 @@ def answer_subgoal(context: Context, question: JudgeSubgoal) -> SubgoalOutcome:
         )
     left = moves_of(context.truth.oracle(), context.truth, context.instruction)
     solved = context.truth.score().success is True
-    moved = _moved(before, question)
-    open_ones = {} if solved else _open((question.subgoal, *question.later), moved, left)
-    lost = not solved and not left
-    cause = LOST if lost else open_ones.get(question.subgoal.id) if question.subgoal.id in moved else None
+    moved = _moved(before, question, first=True)
+    if solved:
+        cause = None
+    elif not left:
+        cause = LOST
+    elif question.subgoal.id in moved:
+        cause = _open((question.subgoal, *question.later), moved, left).get(question.subgoal.id)
+    else:
+        # Which thing it moved does not show: as many moves as subgoals are left when it is done.
+        cause = "more moves are left than the plan has" if len(left) > len(question.later) else None
     things, was = context.truth.things(), before.sight.things
     used = {moved[subgoal.id] for subgoal in question.later if subgoal.id in moved} - {moved.get(question.subgoal.id)}
     gone = sorted(name for name in used if name in was and _away(was[name], things[name]))
@@ -100,16 +106,20 @@ def _verdict(subgoal: Subgoal, status: str, evidence: str) -> VerdictDraft:
     return VerdictDraft.model_validate({"subgoal": subgoal.id, "status": status, "cause": cause, "evidence": evidence})
 
 
-def _moved(before: Seen, question: JudgeOutcome | JudgeSubgoal) -> Mapping[str, str]:
-    """Which thing each subgoal moves: the one in the box of its first target, as it is marked."""
+def _moved(before: Seen, question: JudgeOutcome | JudgeSubgoal, first: bool = False) -> Mapping[str, str]:
+    """Which thing each subgoal moves: the one in the box of its first target, as it is marked.
+
+    `first`: none where that target has no box, which was moved before; else the first that has one.
+    """
     boxes = {
         mark.label.split()[0]: mark.box for mark in question.task.main.marks if isinstance(mark, BoxMark) and mark.label
     }
     targets = {target.id: target for target in question.targets}
     found = {}
     for subgoal in question.subgoals:
-        for name in subgoal.targets:
-            if name in boxes and name in targets and _is_thing(targets[name]):
+        things = [name for name in subgoal.targets if name in targets and _is_thing(targets[name])]
+        for name in things[:1] if first else things:
+            if name in boxes:
                 thing = _thing_in(before, boxes[name])
                 if thing is not None:
                     found[subgoal.id] = thing

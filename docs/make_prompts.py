@@ -101,6 +101,7 @@ def runs(out: Path) -> Iterator[Source]:
         yield Source(out / name / "latest", f"`{command}`")
     yield from _rivals(out)
     yield _again(out)
+    yield _wrong_bowl(out)
     yield _circle(out)
     yield _twisted(out)
 
@@ -138,6 +139,39 @@ def _again(out: Path) -> Source:
         world.close()
     assert trial.folder is not None
     return Source(trial.folder, "`team` on the demo's scene; its first verdict is spoiled, so that it plans again")
+
+
+class _Meddled:
+    """A table at which somebody takes the block out of its bowl after the first action and puts it into the other one."""
+
+    def __init__(self, inner: Any) -> None:
+        self.inner, self._left = inner, True
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self.inner, name)
+
+    def execute(self, action: Any) -> Any:
+        report = self.inner.execute(action)
+        if self._left:
+            self._left = False
+            bowl = self.inner.privileged.things()["green bowl"].position_m
+            self.inner._table.put("red block", bowl + (0.0, 0.0, 0.02), 0.0)
+        return report
+
+
+def _wrong_bowl(out: Path) -> Source:
+    """A plan that is stopped after its first subgoal."""
+    world = wt.make_world(TABLE, seed=3)
+    try:
+        trial = wt.rollout(
+            wt.Team(method="team", out=out / "wrong-bowl"), _Meddled(world), replans=1, seed=3, scene=f"{TABLE}#3"
+        )
+    finally:
+        world.close()
+    assert trial.folder is not None
+    return Source(
+        trial.folder, "`team` on the demo's scene; somebody puts the block into the other bowl after the first subgoal"
+    )
 
 
 def _not_reached(outcome: Any, request: Request) -> Any:

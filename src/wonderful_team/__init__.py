@@ -22,7 +22,18 @@ if TYPE_CHECKING:
     from wonderful_team.api.team import Team, load_run
     from wonderful_team.core.actions import ARM, PICK_PLACE, At, Beside, PickPlace, PickPlaceStep, Vocabulary
     from wonderful_team.core.geometry import AffineCamera, Box, PinholeCamera, PlanarCamera, Pose
-    from wonderful_team.core.protocols import Act, Detector, Done, GaveUp, Model, Policy, Score, Situation, World
+    from wonderful_team.core.protocols import (
+        Act,
+        Checked,
+        Detector,
+        Done,
+        GaveUp,
+        Model,
+        Policy,
+        Score,
+        Situation,
+        World,
+    )
     from wonderful_team.core.values import (
         Answer,
         Detection,
@@ -54,6 +65,7 @@ _HOMES: dict[str, str] = {
     "At": "core.actions",
     "Beside": "core.actions",
     "Box": "core.geometry",
+    "Checked": "core.protocols",
     "Detection": "core.values",
     "Detector": "core.protocols",
     "Done": "core.protocols",
@@ -114,6 +126,7 @@ __all__ = [
     "At",
     "Beside",
     "Box",
+    "Checked",
     "Detection",
     "Detector",
     "Done",

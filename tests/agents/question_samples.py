@@ -23,6 +23,7 @@ from wonderful_team.contracts import (
     JudgeFromBoxes,
     JudgeOutcome,
     JudgeRevision,
+    JudgeSubgoal,
     ListedObject,
     ListObjects,
     ListSubtasks,
@@ -201,6 +202,16 @@ SAMPLES: tuple[Question, ...] = (
         (picture("side view with path"),),
     ),
     Remember("put it there", "checker", "is the box right?", "it is on the lamp", ("which mug",)),
+    JudgeSubgoal(
+        TASK,
+        SUBGOALS[0],
+        SUBGOALS,
+        (TARGET, AREA),
+        ("[G1] pick T7",),
+        (picture("top now"), picture("front now")),
+        ("ok",),
+        ("T8 (lamp): the picture there has changed",),
+    ),
     JudgeOutcome(
         TASK, SUBGOALS, (TARGET, AREA), ("[G1] pick T7",), (picture("top now"), picture("front now")), ("ok",)
     ),

@@ -112,6 +112,14 @@ RIGHT: dict[str, dict[str, Any]] = {
     "WriteFunction": {"reasoning": "", "code": "def path(boxes):\n    return path_4({'T3': boxes['T7']})"},
     "ReviewPath": {"reasoning": "", "accepted": False, "problem": "It crosses the lamp."},
     "Remember": {"keep": True, "key": "lamp", "summary": "The mug stands on the lamp."},
+    "JudgeSubgoal": {
+        "reasoning": "",
+        "status": "not_done",
+        "evidence": "it lies beside it",
+        "cause": "it slipped",
+        "rest_holds": False,
+        "what_changed": "the lamp was moved",
+    },
     "JudgeOutcome": {
         "reasoning": "",
         "verdicts": [

@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Literal
+
+import pytest
 
 import wonderful_team as wt
 from wonderful_team.api.judgements import Judgements
-from wonderful_team.core.protocols import Event
-from wonderful_team.core.values import Verdict
+from wonderful_team.core.protocols import CHECK, Event, privileged
+from wonderful_team.core.values import StepReport, SubgoalRun, Verdict
 from wonderful_team.evals.report.judgements import HEAD, lines
 from wonderful_team.evals.report.tables import fact_tables, to_markdown
 from wonderful_team.evals.summary import Summary
-from wonderful_team.evals.trials import JUDGED, Condition, Row, TrialRow, TrialSpec
+from wonderful_team.evals.trials import JUDGED, JUDGED_SUBGOAL, Condition, Row, TrialRow, TrialSpec
 
 TASK = "tabletop/visual_manipulation"
 
@@ -49,6 +52,52 @@ def test_a_study_that_replans_counts_them_and_one_that_does_not_has_none(tmp_pat
         (result,) = summary.cell(summary.compared[0]).results
         assert (result.facts.get(JUDGED[True, True]) == 1.0) is judged
         assert ("What methods said became of their actions" in to_markdown(summary)) is judged
+
+
+def carried(world: wt.World, action: wt.PickPlace, *, runs: bool, reports: bool = True) -> SubgoalRun:
+    """A subgoal that carries a thing, or is only said to."""
+    seen = world.observe()
+    if runs:
+        world.execute(action)
+    return SubgoalRun("G1", seen, world.observe(), (StepReport(action, True),) if reports else ())
+
+
+@pytest.mark.parametrize(
+    ("runs", "reports", "status", "key"),
+    [
+        (True, True, "done", (True, True)),
+        (False, True, "done", (True, False)),
+        (False, True, "not_done", (False, False)),
+        (True, True, "not_done", (False, True)),
+        (True, False, "done", (True, None)),
+    ],
+)
+def test_a_single_subgoal_is_held_against_where_its_thing_lies(
+    runs: bool, reports: bool, status: Literal["done", "not_done"], key: tuple[bool, bool | None]
+) -> None:
+    world = wt.make_world(TASK, seed=3)
+    judgements = Judgements(world)
+    truth = privileged(world)
+    assert truth is not None
+    judgements.on_event(Event("observe", "before", world.observe()))
+    run = carried(world, truth.oracle()[0], runs=runs, reports=reports)
+    judgements.on_event(Event("observe", "after G1", run.after))
+    judgements.on_event(Event("subgoal", "G1", run))
+    judgements.on_event(Event("verdicts", CHECK, (Verdict("G1", status),)))
+    world.close()
+    assert judgements.facts == {name: float(name == JUDGED_SUBGOAL[key]) for name in JUDGED_SUBGOAL.values()}
+
+
+def test_single_subgoals_have_a_line_of_their_own_and_what_is_not_known_counts_in_no_rate() -> None:
+    team = Condition("team", "m", replans=3)
+    facts = {JUDGED_SUBGOAL[True, True]: 3.0, JUDGED_SUBGOAL[False, False]: 1.0, JUDGED_SUBGOAL[True, None]: 2.0}
+    row = Row(TrialSpec(TASK, 1000, team), TrialRow("success", facts={JUDGED[True, True]: 1.0, **facts}))
+    whole, single = lines(Summary((row,), (), (team,), ()))
+    assert dict(zip(HEAD, whole, strict=True))["judgements"] == "1"
+    told = dict(zip(HEAD, single, strict=True))
+    assert told["method · model"].endswith("after a subgoal")
+    assert [told[name] for name in HEAD[1:7]] == ["6", "3", "0", "1", "0", "2"]
+    assert told["of what was not done, seen"].startswith("100.0 % (1/1;")
 
 
 def test_the_table_is_a_confusion_matrix_with_intervals() -> None:

@@ -92,6 +92,14 @@ def stub_script() -> dict[str, Any]:
             "key": request.question.role,
             "summary": request.question.answered[:600],
         },
+        "JudgeSubgoal": lambda _: {
+            "reasoning": "",
+            "status": "done",
+            "evidence": "",
+            "cause": None,
+            "rest_holds": True,
+            "what_changed": "",
+        },
         "JudgeOutcome": lambda request: {
             "reasoning": "",
             "verdicts": [

@@ -19,6 +19,7 @@ from wonderful_team.contracts import (
     JudgeBox,
     JudgeOutcome,
     JudgeRevision,
+    JudgeSubgoal,
     LocatePoints,
     MoveBox,
     Presence,
@@ -233,6 +234,25 @@ def test_what_became_of_a_plan_is_told_from_before_and_after() -> None:
         assert {item.status for item in unseen.verdicts} == {"unclear"}
         old = table.ask(JudgeOutcome(before, subgoals, targets, (), task.views))
         assert {item.status for item in old.verdicts} == {"unclear"}
+
+
+def test_what_became_of_one_subgoal_is_told_while_others_are_still_to_run() -> None:
+    with set_table("pick_in_order_then_restore", 500) as table:
+        task, subgoals, targets = table.scene.task, _subgoals(table), tuple(table.targets())
+        marks = tuple(
+            BoxMark(table.shown_box(target.words), "target", target.id) for target in targets if target.kind == "object"
+        )
+        before = replace(task, views=(task.main.marked(*marks), *task.views[1:]))
+        table.look()
+        same = show_views(table.scene.observation)
+        assert table.ask(JudgeSubgoal(before, subgoals[0], subgoals, targets, (), same)).status == "not_done"
+        table.world.execute(table.truth.oracle()[0])
+        table.look()
+        after = show_views(table.scene.observation)
+        answer = table.ask(JudgeSubgoal(before, subgoals[0], subgoals, targets, (), after))
+        assert (answer.status, answer.rest_holds, answer.stop) == ("done", True, "")
+        unseen = table.ask(JudgeSubgoal(before, subgoals[0], subgoals, targets, (), after), blind(table))
+        assert (unseen.status, unseen.stop) == ("unclear", "")
 
 
 def test_nothing_is_remembered_and_paths_of_others_are_not_written(table: Set) -> None:

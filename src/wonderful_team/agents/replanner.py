@@ -6,14 +6,22 @@ Source of the role: Wang, Shen & Stadie 2024, arXiv:2407.19094; the words are ou
 from __future__ import annotations
 
 from wonderful_team.agents.common import ANSWER, DATA, INSTRUCTION, PICTURES, system_words
-from wonderful_team.agents.rendering import listed, subgoal_parts, target_parts, task_parts, view_parts, words
+from wonderful_team.agents.rendering import (
+    listed,
+    subgoal_parts,
+    subgoal_words,
+    target_parts,
+    task_parts,
+    view_parts,
+    words,
+)
 from wonderful_team.agents.role import Ask, role
-from wonderful_team.contracts import JudgeOutcome, Replan
+from wonderful_team.contracts import JudgeOutcome, JudgeSubgoal, Replan
 from wonderful_team.core.values import Part, Verdict
 
 SYSTEM = system_words(
     """
-You are the Replanner of a team that plans for a robot. After the robot has moved you compare what was wanted with what
+You are the Replanner of a team that plans for a robot. When the robot has moved you compare what was wanted with what
 the pictures show, say what became of each subgoal, and advise the Supervisor when another attempt is needed.
 
 You see pictures of the scene, the plan, what was done and what the robot measured. Believe the pictures first: that a
@@ -23,6 +31,23 @@ step was executed does not mean that it worked. You do not write the new plan.
     DATA + "\n" + INSTRUCTION,
     ANSWER,
 )
+
+JUDGE_SUBGOAL = """
+The robot has carried out one subgoal of the plan and waits: say what became of it, and whether the rest of the plan can
+still be carried out as it stands. Compare the pictures from before this subgoal with those from now.
+
+status, of this subgoal alone:
+- done: the pictures from now show its result, however it came about.
+- not_done: they show that it was not reached. cause: what happened, if you can see it: nothing was picked up, it was put
+  down in the wrong place or container, it slipped, somebody moved it.
+- unclear: the pictures do not show it, for instance because something hides it.
+
+rest_holds, of all the others: the boxes in both pictures are where the things lay when the plan was made. The later
+subgoals act there. Say false when a thing that they use is not in its box any more, or is covered or turned, when a place
+that they use is taken, or when something that an earlier subgoal reached is lost. A shadow, a reflection or another light
+changes a picture too, and is no reason. That the later subgoals are not done yet is no reason either.
+evidence: what you see, in a few words.
+"""
 
 JUDGE_OUTCOME = """
 Compare the pictures from before with those from now, and give one verdict for each subgoal.
@@ -51,6 +76,19 @@ def _verdict_words(verdict: Verdict) -> str:
     return f"{verdict.subgoal}: {verdict.status}{cause}{evidence}"
 
 
+def _render_judge_subgoal(question: JudgeSubgoal) -> list[Part]:
+    return [
+        *task_parts(question.task, "The scene before this subgoal"),
+        *subgoal_parts(question.subgoals),
+        *target_parts(question.targets, "Targets, as they were found when the plan was made"),
+        *words(f"To be judged now: {subgoal_words(question.subgoal)}"),
+        *listed("Steps that were carried out for it, in order", question.steps, "none"),
+        *listed("What the robot reported", question.measured, "nothing"),
+        *listed("What a comparison of the pictures shows that the plan does not expect", question.doubts, "nothing"),
+        *view_parts("The scene now", question.after),
+    ]
+
+
 def _render_judge_outcome(question: JudgeOutcome) -> list[Part]:
     return [
         *task_parts(question.task, "The scene before anything moved"),
@@ -76,6 +114,7 @@ def _render_replan(question: Replan) -> list[Part]:
 REPLANNER = role(
     "replanner",
     SYSTEM,
+    Ask(JudgeSubgoal, JUDGE_SUBGOAL, _render_judge_subgoal),
     Ask(JudgeOutcome, JUDGE_OUTCOME, _render_judge_outcome),
     Ask(Replan, REPLAN, _render_replan),
 )

@@ -22,7 +22,7 @@ from wonderful_team.api.rollout import rollout
 from wonderful_team.api.team import Team
 from wonderful_team.core.actions import Vocabulary
 from wonderful_team.core.filesystem import write_public
-from wonderful_team.core.protocols import Event, Model, Subscriber, World
+from wonderful_team.core.protocols import ChecksSubgoals, Event, Model, Policy, Subscriber, World, offers
 from wonderful_team.core.values import AskUser, Observation, Plan
 from wonderful_team.errors import ConfigError, ReplayError, WonderfulTeamError, reading
 from wonderful_team.models.replay import Branching, ReplayModel, check_asked_at
@@ -31,7 +31,7 @@ from wonderful_team.record.plan_file import has_short_id
 from wonderful_team.record.record_schema import read_record
 from wonderful_team.record.setup import Setup, read_setup, same_limits
 from wonderful_team.record.stored import stored_instruction, stored_observation
-from wonderful_team.record.story import recorded_plan, situations
+from wonderful_team.record.story import Asked, recorded_plan, situations
 from wonderful_team.registry.files import check_names_no_code, names_no_code
 from wonderful_team.runtime.loop import Caller
 
@@ -87,9 +87,9 @@ def replay(folder: Path, *, tolerant: bool = False, subscribers: Sequence[Subscr
                 with reading(f"{folder}: the record"):
                     asked = list(situations(folder, record, setup))
                 with Caller() as caller:
-                    for situation in asked:
-                        plans.seen(situation.observation)
-                        caller.wait_for(policy.decide(situation))
+                    for one in asked:
+                        plans.seen(one.situation.observation)
+                        caller.wait_for(_answered(policy, one))
             else:
                 _plan_again(folder, record, setup, method)
         except WonderfulTeamError as error:
@@ -103,6 +103,21 @@ def replay(folder: Path, *, tolerant: bool = False, subscribers: Sequence[Subscr
     now = [] if setup.plan is None else [setup.plan]
     now += [plans.short_id(plan) if short else plan.id for plan in plans.made]
     return Replayed(tuple(then), tuple(dict.fromkeys(now)), model.replayed, tuple(model.differences))
+
+
+def _answered(policy: Policy, asked: Asked) -> Any:
+    """What a method says where it was asked then: what to do, or whether to go on.
+
+    Raises:
+        ConfigError: It was asked whether to go on, and cannot be.
+    """
+    if not asked.check:
+        return policy.decide(asked.situation)
+    if not offers(policy, ChecksSubgoals):
+        raise ConfigError(
+            f"the record asks method {policy.name!r} after a subgoal whether to go on, and it has no check()"
+        )
+    return policy.check(asked.situation)
 
 
 class _Plans:

@@ -13,6 +13,7 @@ from wonderful_team.contracts.judge_boxes import BoxVerdicts, JudgeBoxes, Target
 from wonderful_team.contracts.judge_from_boxes import FoundBox, JudgeFromBoxes, TaskVerdict
 from wonderful_team.contracts.judge_outcome import JudgeOutcome, Outcome, VerdictDraft
 from wonderful_team.contracts.judge_revision import JudgeRevision, RevisionVerdict
+from wonderful_team.contracts.judge_subgoal import JudgeSubgoal, SubgoalOutcome
 from wonderful_team.contracts.list_objects import ListObjects, NamedPoint, ObjectList, SlotDescription
 from wonderful_team.contracts.list_subtasks import ListSubtasks, SubtaskDraft, SubtaskList
 from wonderful_team.contracts.locate_points import LocatePoints, Points
@@ -82,6 +83,7 @@ QUESTIONS: tuple[type[Question], ...] = (
     WriteFunction,
     ReviewPath,
     Remember,
+    JudgeSubgoal,
     JudgeOutcome,
     Replan,
     PlanDirectly,
@@ -125,6 +127,7 @@ __all__ = [
     "JudgeFromBoxes",
     "JudgeOutcome",
     "JudgeRevision",
+    "JudgeSubgoal",
     "ListObjects",
     "ListSubtasks",
     "ListedObject",
@@ -181,6 +184,7 @@ __all__ = [
     "Strip",
     "SubgoalCheck",
     "SubgoalDraft",
+    "SubgoalOutcome",
     "SubgoalTargets",
     "SubtaskDraft",
     "SubtaskList",

@@ -191,6 +191,8 @@ class Situation:
         plan: A plan that was read and approved beforehand and must be run as it is.
         advice: Why a person declined the last plan; one new plan may heed it, and that is no replan.
         facts: What the world says of the robot and its place, in words.
+        doubts: After a subgoal, while others are still to run: what a comparison of the pictures shows, or the robot reports, that
+            the plan does not expect; one line each, () where all is as expected.
     """
 
     observation: Observation
@@ -207,6 +209,7 @@ class Situation:
     looks_left = renamed_attribute("looks_left", "reobserve_left")
     advice: str = ""
     facts: str = ""
+    doubts: tuple[str, ...] = ()
 
 
 @renamed_arguments(look="reobserve")
@@ -245,6 +248,21 @@ class GaveUp:
 
 
 Decision: TypeAlias = Act | Done | GaveUp
+JUDGE, CHECK = "judge", "check"
+"""Names of the events that tell verdicts: of a whole attempt, with a decision; of the subgoal that ran last."""
+
+
+@dataclass(frozen=True)
+class Checked:
+    """What a method says of the subgoal that ran last, while others of its plan are still to run.
+
+    Attributes:
+        verdicts: On that subgoal; () where nobody judged it.
+        stop: Why the rest of the plan must not run any more; "" to go on. The method is asked for a new plan then, which is a replan.
+    """
+
+    verdicts: tuple[Verdict, ...] = ()
+    stop: str = ""
 
 
 @runtime_checkable
@@ -257,6 +275,19 @@ class Policy(Protocol):
     name: str
 
     def decide(self, situation: Situation) -> Decision | Awaitable[Decision]: ...
+
+
+class ChecksSubgoals(Protocol):
+    """A method that is asked after each subgoal of its plan but the last, for as long as it may still plan anew. May be left out.
+
+    `check` may be plain or async.
+    """
+
+    checks_subgoals: bool
+
+    def check(self, situation: Situation) -> Checked | Awaitable[Checked]:
+        """Whether the rest of the plan still makes sense: `situation.executed` ends with the subgoal that ran last."""
+        ...
 
 
 class Subscriber(Protocol):
@@ -296,6 +327,8 @@ def privileged(world: World) -> Privileged | None:
 __all__ = [
     "Act",
     "Answer",
+    "Checked",
+    "ChecksSubgoals",
     "Classifier",
     "Decision",
     "Detection",

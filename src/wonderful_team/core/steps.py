@@ -6,6 +6,7 @@ seen from above.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import ClassVar, Literal, TypeAlias, get_args
 
@@ -227,3 +228,20 @@ def places_of(step: Step) -> tuple[tuple[str, Place], ...]:
     """Every place a step refers to, as (role, place); roles name the points of a grounded target."""
     found = ((role, getattr(step, name)) for role, name in step.roles)
     return tuple((role, At(place) if isinstance(place, str) else place) for role, place in found)
+
+
+def carried_by(steps: Sequence[Step]) -> str | None:
+    """The target that the steps of one subgoal carry: what is picked, or where the tool goes before the gripper closes; None for nothing."""
+    name: str | None = None
+    at: str | None = None
+    for step in steps:
+        match step:
+            case PickPlaceStep():
+                return step.pick
+            case CloseStep():
+                name = at
+            case OpenStep() if name is not None:
+                return name
+            case MoveStep() if name is None:
+                at = step.to.target
+    return name

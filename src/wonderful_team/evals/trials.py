@@ -19,6 +19,15 @@ JUDGED = {
     (False, True): "judged not done, wrongly",
 }
 """Facts that count a trial's judgements of what it did: what was said, whether it was so, and the fact's name."""
+JUDGED_SUBGOAL: dict[tuple[bool, bool | None], str] = {
+    (True, True): "subgoal judged done, rightly",
+    (True, False): "subgoal judged done, wrongly",
+    (False, False): "subgoal judged not done, rightly",
+    (False, True): "subgoal judged not done, wrongly",
+    (True, None): "subgoal judged done, truth not known",
+    (False, None): "subgoal judged not done, truth not known",
+}
+"""The same of judgements on single subgoals, made while others were still to run; None where the simulator's truth says nothing of it."""
 """Fact of a trial: after some action a goal of the task held that did not hold before (the paper's Appendix A)."""
 OUTCOMES = ("success", "failure", "error", "unscored")
 Outcome: TypeAlias = Literal["success", "failure", "error", "unscored"]

@@ -69,11 +69,10 @@ def replans(record: dict[str, Any]) -> list[dict[str, Any]]:
     """For each plan after the first: what was believed, what was seen, what changed."""
     planner = record["planner"]
     made = planner["plans"]
-    judged = planner["verdicts"]
     found = []
     for number in range(1, len(made)):
         before, after = made[number - 1]["plan"], made[number]["plan"]
-        verdicts = judged[number - 1]["verdicts"] if number - 1 < len(judged) else []
+        verdicts = _last_said(planner, number - 1)
         refusal = [
             refusal_words(check["name"], check["value"], check["limit"])
             for gate in planner["gates"]
@@ -87,9 +86,29 @@ def replans(record: dict[str, Any]) -> list[dict[str, Any]]:
                 "believed": before["subgoals"],
                 "verdicts": verdicts,
                 "refusal": [] if verdicts else refusal,
+                "stopped": _stopped(planner, number - 1),
                 "rows": diff_rows(before["subgoals"], after["subgoals"]),
                 "steps": [step_words(step, target_words(after)) for step in after["steps"]],
                 "status": after["status"].replace("_", " "),
             }
         )
     return found
+
+
+def _plan_of(planner: dict[str, Any], subgoals: int) -> int | None:
+    """Which plan the last of so many subgoals that ran belongs to."""
+    ran = planner["subgoals"][:subgoals]
+    return ran[-1]["plan"] if ran else None
+
+
+def _last_said(planner: dict[str, Any], number: int) -> list[dict[str, Any]]:
+    """The last verdicts on what ran of a plan: on all of it, or on single subgoals while it ran."""
+    said = [one for one in planner["verdicts"] if _plan_of(planner, one["after_subgoals"]) == number]
+    whole = [one["verdicts"] for one in said if not one.get("check")]
+    return whole[-1] if whole else [verdict for one in said for verdict in one["verdicts"]]
+
+
+def _stopped(planner: dict[str, Any], number: int) -> str:
+    """Why a plan was stopped after one of its subgoals; "" where it was not."""
+    checks = [one for one in planner["decisions"] if one["decision"] == "Checked" and one["reason"]]
+    return next((str(one["reason"]) for one in checks if _plan_of(planner, one["so_far"]["subgoals"]) == number), "")

@@ -35,6 +35,13 @@ async def judge_outcome(
     return verdicts
 
 
+def causes(verdicts: Sequence[Verdict]) -> str:
+    """What is not done, and why, in one line."""
+    return "; ".join(
+        f"{v.subgoal} {v.status.replace('_', ' ')}: {v.cause or v.evidence}" for v in verdicts if v.status != "done"
+    )
+
+
 async def advise(
     session: AgentSession,
     scene_now: SceneShown,

@@ -11,7 +11,16 @@ from collections.abc import Callable
 from typing import Any
 
 from wonderful_team.agents import step_words
-from wonderful_team.contracts import ChooseMark, JudgeOutcome, Question, ReadScene, Replan, RevisePlan, WriteSteps
+from wonderful_team.contracts import (
+    ChooseMark,
+    JudgeOutcome,
+    JudgeSubgoal,
+    Question,
+    ReadScene,
+    Replan,
+    RevisePlan,
+    WriteSteps,
+)
 from wonderful_team.core.actions import Step
 
 LONGEST = 300
@@ -60,6 +69,10 @@ def _judged(_: JudgeOutcome, answer: Any) -> str:
     return f"After an attempt: {'; '.join(said)}."
 
 
+def _checked(question: JudgeSubgoal, answer: Any) -> str:
+    return f"{question.subgoal.id}: the plan was stopped: {answer.stop}" if answer.stop else ""
+
+
 def _advised(_: Replan, answer: Any) -> str:
     return f"You advised: {answer.advice}" if answer.advice else ""
 
@@ -69,6 +82,7 @@ _NOTES: dict[type[Question], Callable[[Any, Any], str]] = {
     WriteSteps: lambda _, answer: steps_note(answer.to_steps()),
     ChooseMark: _chosen,
     ReadScene: _read,
+    JudgeSubgoal: _checked,
     JudgeOutcome: _judged,
     Replan: _advised,
 }

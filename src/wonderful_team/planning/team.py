@@ -11,7 +11,7 @@ from wonderful_team.core.actions import Vocabulary
 from wonderful_team.core.caps import Caps
 from wonderful_team.core.pictures import PathPoint
 from wonderful_team.core.plan_endings import ENDS_A_PLAN, ended_by
-from wonderful_team.core.protocols import Act, Decision, Detector, Done, GaveUp, Model, Situation, Subscriber
+from wonderful_team.core.protocols import Act, Checked, Decision, Detector, Done, GaveUp, Model, Situation, Subscriber
 from wonderful_team.core.text import counted
 from wonderful_team.core.together import both
 from wonderful_team.core.values import (
@@ -31,6 +31,7 @@ from wonderful_team.errors import ActionRefusedError, ConfigError, GeometryError
 from wonderful_team.models.budget import Budget
 from wonderful_team.models.client import DEADLINE_S, ModelClient
 from wonderful_team.planning import acting, endings, grounding, judging, plan_loop
+from wonderful_team.planning.checking import SubgoalChecks, done_subgoals
 from wonderful_team.planning.clarifying import clarify
 from wonderful_team.planning.config import TeamConfig
 from wonderful_team.planning.functions import write_functions
@@ -90,11 +91,7 @@ class TeamPolicy:
             concurrency=concurrency,
             deadline_s=deadline_s,
         )
-        self._session: AgentSession | None = None
-        self._last: tuple[SceneShown, Plan] | None = None
-        self._looking = False
-        self._said: tuple[str, ...] = ()
-        self._done: tuple[str, ...] = ()
+        self.reset()
 
     @property
     def usage_by_role(self) -> Mapping[str, Usage]:
@@ -127,9 +124,12 @@ class TeamPolicy:
     def reset(self) -> None:
         """Forget the trial: notebooks, memory, budget."""
         self._client.budget = Budget(self._caps)
-        self._session = self._last = None
+        self._session: AgentSession | None = None
+        self._last: tuple[SceneShown, Plan] | None = None
         self._looking = False
-        self._said = self._done = ()
+        self._said: tuple[str, ...] = ()
+        self._done: tuple[str, ...] = ()
+        self._checks = SubgoalChecks()
 
     async def make_plan(
         self,
@@ -323,13 +323,11 @@ class TeamPolicy:
             # Not judged first: the new plan holds what is left to do in the new picture.
             self._done = (*self._done, *done_lines(plan))
             return await self._next_plan(situation, (), plan)
-        self._done = ()
-        verdicts = await judging.judge_outcome(self._session, scene, plan, situation.observation, situation.executed)
+        verdicts = await self._checks.verdicts(self._session, scene, plan, situation)
+        self._done = done_subgoals(plan, verdicts)
         if all(verdict.status == "done" for verdict in verdicts):
             return Done("every subgoal is done", verdicts)
-        causes = "; ".join(
-            f"{v.subgoal} {v.status.replace('_', ' ')}: {v.cause or v.evidence}" for v in verdicts if v.status != "done"
-        )
+        causes = judging.causes(verdicts)
         if situation.replans_left <= 0:
             return GaveUp(f"no replans left; {causes}", "execution", plan, verdicts)
         now = replace(_scene_of(situation), said=self._said)
@@ -338,10 +336,23 @@ class TeamPolicy:
             return Done(advice.reasoning, verdicts)
         if advice.decision == "give_up":
             return GaveUp(advice.cause or causes, "execution", plan, verdicts)
-        return await self._next_plan(situation, (f"{advice.cause} {advice.advice}".strip(),), plan, verdicts)
+        told = () if self._checks.stopped else verdicts  # those of a plan that was stopped were told then
+        return await self._next_plan(situation, (f"{advice.cause} {advice.advice}".strip(),), plan, told)
+
+    @property
+    def checks_subgoals(self) -> bool:
+        """Policy: `paper` judges whole attempts only, as the paper does."""
+        return self.config.mode == "lean"
+
+    async def check(self, situation: Situation) -> Checked:
+        """Policy: after a subgoal, while others are still to run."""
+        if self._session is None or self._last is None:
+            raise ConfigError("the team is asked about a subgoal of a trial that it did not begin")
+        return await self._checks.check(self._session, *self._last, situation)
 
     async def _after_refusal(self, situation: Situation, plan: Plan) -> Decision:
         assert situation.refused is not None
+        self._done = done_subgoals(plan, self._checks.known) or self._done
         if situation.advice:
             self._said = (*self._said, f"declined the last plan: {situation.advice}")
             return await self._next_plan(situation, (f"A person declined the plan: {situation.advice}",), plan)
@@ -365,6 +376,7 @@ class TeamPolicy:
         before: Plan | None,
         verdicts: tuple[Verdict, ...] = (),
     ) -> Decision:
+        self._checks = SubgoalChecks()
         plan = await self.make_plan(
             situation.observation,
             situation.instruction,

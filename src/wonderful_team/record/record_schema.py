@@ -110,12 +110,14 @@ class SoFar(_Part):
 
 
 class Asked(_Part):
-    """What the method was told of attempts and looks when it was asked what to do."""
+    """What the method was told of attempts and looks when it was asked what to do, or after a subgoal whether to go on."""
 
     attempt: int
     replans_left: int
     looks_left: int
     so_far: SoFar
+    check: bool = False
+    doubts: list[str] = []
 
 
 class ClarifiedEntry(_Part):
@@ -186,10 +188,11 @@ class SubgoalEntry(_Part):
 
 
 class VerdictsEntry(_Part):
-    """The judge's word on every subgoal."""
+    """The judge's word on every subgoal; `check` is one on the subgoal that ran last, while others were still to run."""
 
     after_subgoals: int
     verdicts: list[dict[str, Any]]
+    check: bool = False
 
 
 class CrashEntry(_Part):

@@ -15,7 +15,7 @@ from wonderful_team.core.filesystem import write_private
 from wonderful_team.core.interrupts import held
 from wonderful_team.core.jsonable import to_jsonable
 from wonderful_team.core.pictures import Picture
-from wonderful_team.core.protocols import Event
+from wonderful_team.core.protocols import CHECK, Event
 from wonderful_team.core.text import counted, ending_words, picture_names, spoken, visible
 from wonderful_team.core.values import GateCheck, GateReport, Instruction, Limits, Observation, Plan, Request, Trial
 from wonderful_team.errors import ActionRefusedError, BudgetReached, FileNotWrittenError, WonderfulTeamError
@@ -310,9 +310,11 @@ class Recorder:
 
     def _on_verdicts(self, event: Event) -> None:
         verdicts = redact_all(to_jsonable(tuple(event.content)))
-        if not self._planner["verdicts"] or self._planner["verdicts"][-1]["verdicts"] != verdicts:
-            after = len(self._planner["subgoals"])
-            self._add("verdicts", {"after_subgoals": after, "verdicts": verdicts})
+        entry = {"after_subgoals": len(self._planner["subgoals"]), "verdicts": verdicts}
+        if event.name == CHECK:
+            self._add("verdicts", {**entry, "check": True})
+        elif not self._planner["verdicts"] or self._planner["verdicts"][-1]["verdicts"] != verdicts:
+            self._add("verdicts", entry)
 
     def _on_warning(self, event: Event) -> None:
         text = str(event.content)

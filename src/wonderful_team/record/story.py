@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from itertools import islice, zip_longest
 from pathlib import Path
 from typing import Any
 
-from wonderful_team.core.actions import Vocabulary
+from wonderful_team.core.actions import Action, Home, Vocabulary
 from wonderful_team.core.protocols import Situation
-from wonderful_team.core.values import GateCheck, GateReport, Observation, Plan, StepReport, SubgoalRun
+from wonderful_team.core.values import GOING_HOME, GateCheck, GateReport, Observation, Plan, StepReport, SubgoalRun
 from wonderful_team.errors import ConfigError
 from wonderful_team.record.setup import Setup, same_limits
 from wonderful_team.record.stored import stored_instruction, stored_observation, stored_plan
@@ -17,8 +19,20 @@ Record = Mapping[str, Any]
 _NOTHING = {"gates": 0, "executions": 0, "subgoals": 0}
 
 
-def situations(folder: Path, record: Record, setup: Setup) -> Iterator[Situation]:
-    """What the method was told before each of its decisions, in order.
+@dataclass(frozen=True, eq=False)
+class Asked:
+    """One time that a method was asked.
+
+    Attributes:
+        check: It was asked whether the rest of its plan still makes sense, not what to do.
+    """
+
+    situation: Situation
+    check: bool
+
+
+def situations(folder: Path, record: Record, setup: Setup) -> Iterator[Asked]:
+    """What the method was told each time that it was asked what to do or whether to go on, in order.
 
     Raises:
         ConfigError: The record does not hold what is needed; names what.
@@ -30,7 +44,8 @@ def situations(folder: Path, record: Record, setup: Setup) -> Iterator[Situation
         now = asked["so_far"]
         # The last thing that happened before a method was asked is a look.
         observation = stored_observation(folder, record, now["observations"] - 1)
-        yield Situation(
+        check = bool(asked.get("check"))
+        situation = Situation(
             observation,
             instruction,
             vocabulary,
@@ -43,8 +58,11 @@ def situations(folder: Path, record: Record, setup: Setup) -> Iterator[Situation
             reobserve_left=asked["looks_left"],
             advice=asked.get("advice", ""),
             facts=setup.facts,
+            doubts=tuple(asked.get("doubts", ())),
         )
-        before = now
+        yield Asked(situation, check)
+        # What ran is told at every check and once more when the method is asked what to do.
+        before = before if check else now
 
 
 def _asked(record: Record, setup: Setup) -> list[dict[str, Any]]:
@@ -93,9 +111,9 @@ def _runs(folder: Path, record: Record, before: Mapping[str, int], now: Mapping[
         plan = stored_plan(folder, record, number)
         first = done.get(number, 0)
         done[number] = last = first + entry["actions"]
-        told = [
-            _report(planned.action, report) for planned, report in zip(plan.actions[first:last], reports, strict=False)
-        ]
+        planned = [one.action for one in plan.actions[first:last]]
+        ran = list(islice(reports, entry["actions"]))
+        told = [_report(action, report) for action, report in zip_longest(planned, ran) if report is not None]
         yield SubgoalRun(
             entry["subgoal"],
             _seen(folder, record, entry["before"]),
@@ -104,7 +122,10 @@ def _runs(folder: Path, record: Record, before: Mapping[str, int], now: Mapping[
         )
 
 
-def _report(action: Any, told: Mapping[str, Any]) -> StepReport:
+def _report(action: Action | None, told: Mapping[str, Any]) -> StepReport:
+    """One report. Beside a plan's actions only the way home runs by itself, after the last of them that ran."""
+    if action is None or action.kind != told["action"].get("kind", action.kind):
+        action = Home()
     return StepReport(action, told["executed"], told["measured"], told["fault"])
 
 
@@ -117,7 +138,8 @@ def _seen(folder: Path, record: Record, views: Mapping[str, str]) -> Observation
 
 
 def _refusal(gates: list[Mapping[str, Any]]) -> GateReport | None:
-    """The last passage through the gate, when it was refused."""
+    """The last passage through the gate, when it was refused; the way home after a failure is no part of a plan."""
+    gates = [gate for gate in gates if gate["where"] != GOING_HOME]
     if not gates or gates[-1]["admitted"]:
         return None
     return GateReport(tuple(GateCheck(**check) for check in gates[-1]["checks"]))

@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
+from typing import TypeAlias
 
 from wonderful_team.core import deadline
 from wonderful_team.core.actions import Home, HomeStep
@@ -13,6 +14,7 @@ from wonderful_team.core.geometry import Box
 from wonderful_team.core.protocols import Act, World
 from wonderful_team.core.text import counted
 from wonderful_team.core.values import (
+    GOING_HOME,
     GateReport,
     Observation,
     Plan,
@@ -25,12 +27,16 @@ from wonderful_team.core.values import (
 from wonderful_team.errors import ConfigError
 from wonderful_team.runtime.approval import Approval, Approver, Declined, Proposal
 from wonderful_team.runtime.course import stages_of
+from wonderful_team.runtime.expected import Expectations
 from wonderful_team.runtime.gate import check_gate
 from wonderful_team.runtime.read_plan_checks import read_plan_checks
 from wonderful_team.runtime.rollout_log import RolloutEnd, RolloutLog
 from wonderful_team.runtime.seen_checks import still_free_checks
 from wonderful_team.runtime.stage import Stage
 from wonderful_team.runtime.staleness import staleness_checks, touched, watched
+
+Check: TypeAlias = Callable[[SubgoalRun, tuple[str, ...]], str]
+"""Asked after a subgoal with what the plan did not expect: why to stop there, or ""."""
 
 
 class Execution:
@@ -66,6 +72,7 @@ class Execution:
         self._strict = strict
         self._age_limit_s: float | None = None
         self._again = False
+        self._in_view = False
         self.refusal: GateReport | None = None
         self.declined: Declined | None = None
 
@@ -77,6 +84,7 @@ class Execution:
         *,
         read: ReadPlan | None = None,
         again: bool = False,
+        check: Check | None = None,
     ) -> RolloutEnd | None:
         """Gate and execute; None when all actions ran, else why not. `final` when no further attempt makes sense.
 
@@ -85,8 +93,9 @@ class Execution:
             then: The picture that it was made from; None when that is not at hand.
             horizon: The world's limit on actions, over the whole run.
             read: The plan that was read beforehand, if this is where it has to run: it runs, or nothing does.
-            again: Whether the policy will be asked again: an arm that failed is then brought out of the picture, but never where a
+            again: Whether the policy may plan anew: an arm that failed is then brought out of the picture, but never where a
                 plan was read, of which exactly its actions run.
+            check: Asked after every subgoal but the last, where the policy may plan anew and no plan was read.
         """
         self.refusal = self.declined = None
         self._again = again and read is None
@@ -97,7 +106,7 @@ class Execution:
             self.refusal = report
             return self._refused_ending(report, read)
         self._progress.observed("before", now)
-        return self._run_all(decision, then or now, now, horizon, read)
+        return self._run_all(decision, then or now, now, horizon, read, check if self._again else None)
 
     def _refused_ending(self, report: GateReport, read: ReadPlan | None) -> RolloutEnd:
         if self.declined is not None and not (self.declined.because and read is None):
@@ -165,7 +174,13 @@ class Execution:
         return now, replace(report, checks=(*read_checks, *report.checks))
 
     def _run_all(
-        self, decision: Act, then: Observation, now: Observation, horizon: int | None, read: ReadPlan | None
+        self,
+        decision: Act,
+        then: Observation,
+        now: Observation,
+        horizon: int | None,
+        read: ReadPlan | None,
+        check: Check | None,
     ) -> RolloutEnd | None:
         actions, plan = decision.actions, decision.plan
         expected_change: list[Box] = []
@@ -173,6 +188,7 @@ class Execution:
         stages = stages_of(actions, plan, now.main, self._world.limits) if len(actions) > 1 else ()
         last = before = now
         reports: list[StepReport] = []
+        expected = None if plan is None else Expectations(actions, plan, now, self._in_view)
         for index, planned in enumerate(actions):
             if horizon is not None and self._progress.executed >= horizon:
                 self._close(actions[index - 1], before, last, reports)
@@ -190,12 +206,18 @@ class Execution:
             if not report.executed:
                 last = self._out_of_sight(planned, before, last, reports)
             if ends or not report.executed:
-                self._close(planned, before, last, reports)
+                run = self._close(planned, before, last, reports)
                 before, reports = last, []
             if not report.executed:
                 return RolloutEnd(
                     None, "execution", f"action {index + 1} did not run: {report.fault or 'the robot gave no reason'}"
                 )
+            if ends and check is not None and index + 1 < len(actions):
+                doubts = expected.doubts(run, actions[index + 1 :], self._in_view) if expected is not None else ()
+                stop = check(run, doubts)
+                if stop:
+                    self._leave(planned, last)
+                    return RolloutEnd(None, "execution", f"stopped after {run.subgoal}: {stop}")
         return None
 
     def _execute(self, planned: PlannedAction, before: Observation, reports: list[StepReport]) -> StepReport:
@@ -210,12 +232,21 @@ class Execution:
             raise
         self._progress.ran_action(planned, report)
         reports.append(report)
+        # Where an arm can go home, it stands before the scene until it does.
+        self._in_view = Home.kind in self._world.vocabulary.kinds and not isinstance(planned.action, Home)
         return report
+
+    def _leave(self, planned: PlannedAction, last: Observation) -> None:
+        """Home after a subgoal at which a plan is stopped, where the arm is not there; told as more of that subgoal."""
+        reports: list[StepReport] = []
+        after = self._out_of_sight(planned, last, last, reports)
+        if reports:
+            self._close(planned, last, after, reports)
 
     def _out_of_sight(
         self, failed: PlannedAction, before: Observation, last: Observation, reports: list[StepReport]
     ) -> Observation:
-        """Home with an empty hand that has failed, through the gate like everything else: from there the whole scene is seen.
+        """Home with an empty hand where the plan ends early, through the gate like everything else: from there the whole scene is seen.
 
         Where a person consents to plans, nothing moves that she has not read; what is held stays where it is.
         """
@@ -233,7 +264,7 @@ class Execution:
             must_run=True,
             max_age_s=self._age_limit_s,
         )
-        self._progress.passed_gate("before going home", report)
+        self._progress.passed_gate(GOING_HOME, report)
         if not report.admitted:
             return last
         self._execute(home, before, reports)
@@ -269,11 +300,12 @@ class Execution:
 
     def _close(
         self, planned: PlannedAction, before: Observation, after: Observation, reports: Sequence[StepReport]
-    ) -> None:
+    ) -> SubgoalRun:
+        run = SubgoalRun(planned.step.subgoal, before, after, tuple(reports))
         if reports:
-            run = SubgoalRun(planned.step.subgoal, before, after, tuple(reports))
             self._progress.observed(f"after {planned.step.subgoal}", after)
             self._progress.ran_subgoal(run)
+        return run
 
 
 def _only_consent(report: GateReport) -> bool:

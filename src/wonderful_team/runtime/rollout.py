@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, cast
 
 from wonderful_team.core.protocols import (
     Act,
+    ChecksSubgoals,
     Done,
     GaveUp,
     Policy,
@@ -18,7 +20,7 @@ from wonderful_team.core.protocols import (
     facts_of,
     offers,
 )
-from wonderful_team.core.values import Observation, Plan, ReadPlan, Trial
+from wonderful_team.core.values import Observation, Plan, ReadPlan, SubgoalRun, Trial
 from wonderful_team.errors import (
     BudgetReached,
     ConfigError,
@@ -29,12 +31,12 @@ from wonderful_team.errors import (
     WorldUnavailableError,
 )
 from wonderful_team.runtime.approval import Approval, Approver
-from wonderful_team.runtime.execute import Execution
+from wonderful_team.runtime.execute import Check, Execution
 from wonderful_team.runtime.loop import Caller
 from wonderful_team.runtime.optional import ChunkPolicy, Horizon
 from wonderful_team.runtime.rollout_log import RolloutEnd, RolloutLog
 from wonderful_team.runtime.staleness import MAX_AGE_S
-from wonderful_team.runtime.user_code import GuardedWorld, decision_of, score_of
+from wonderful_team.runtime.user_code import GuardedWorld, checked_of, decision_of, score_of
 
 NOBODY_JUDGED = "; nobody judged the result: there is no scorer, and a method judges only where it may replan"
 
@@ -165,7 +167,8 @@ def _attempts(
             return _said(decision, progress)
         left -= replanning
         then = observation if read is None else read.observation
-        halted = execution.run(decision, then, horizon, read=read, again=left > 0)
+        check = _after_subgoals(policy, caller, progress, replace(situation, replans_left=left), first_run)
+        halted = execution.run(decision, then, horizon, read=read, again=left > 0, check=check)
         if halted is not None and halted.final:
             return halted
         read, refused = None, execution.refusal
@@ -182,6 +185,26 @@ def _attempts(
             return halted or _ran_out()
         observation = progress.observe(world, "look" if looking else f"attempt {attempt}")
     return RolloutEnd("failure", "budget", f"the policy was asked {MAX_DECISIONS} times")
+
+
+def _after_subgoals(
+    policy: Policy, caller: Caller, progress: RolloutLog, asked: Situation, first_run: int
+) -> Check | None:
+    """Ask a method after every subgoal whether to go on; None for one that is not asked."""
+    if not (offers(policy, ChecksSubgoals) and policy.checks_subgoals):
+        return None
+
+    def check(run: SubgoalRun, doubts: tuple[str, ...]) -> str:
+        told = tuple(progress.runs[first_run:])
+        situation = replace(
+            asked, observation=run.after, executed=told, refused=None, plan=None, advice="", doubts=doubts
+        )
+        progress.asking(situation, check=True)
+        checked = checked_of(policy, situation, caller)
+        progress.checked(checked)
+        return checked.stop
+
+    return check
 
 
 def _said(decision: Done | GaveUp | Any, progress: RolloutLog) -> RolloutEnd:

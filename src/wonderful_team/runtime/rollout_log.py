@@ -6,7 +6,19 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
-from wonderful_team.core.protocols import Act, Decision, Event, Policy, Situation, Subscriber, World, offers
+from wonderful_team.core.protocols import (
+    CHECK,
+    JUDGE,
+    Act,
+    Checked,
+    Decision,
+    Event,
+    Policy,
+    Situation,
+    Subscriber,
+    World,
+    offers,
+)
 from wonderful_team.core.values import (
     GateReport,
     Observation,
@@ -59,7 +71,7 @@ class RolloutLog:
     def observed(self, where: str, observation: Observation) -> None:
         self.tell("observe", where, observation)
 
-    def asking(self, situation: Situation) -> None:
+    def asking(self, situation: Situation, *, check: bool = False) -> None:
         """Note what a method is told beside pictures and reports, so that it can be asked so again."""
         told: dict[str, Any] = {
             "attempt": situation.attempt,
@@ -68,6 +80,8 @@ class RolloutLog:
         }
         if situation.advice:
             told["advice"] = situation.advice
+        if check:
+            told |= {"check": True, "doubts": list(situation.doubts)}
         self.tell("asking", f"attempt {situation.attempt}", told)
 
     def decided(self, decision: Decision) -> None:
@@ -75,12 +89,19 @@ class RolloutLog:
         self.last = decision
         name = type(decision).__name__
         self.tell("decision", name, {"decision": name, "reason": getattr(decision, "reason", "")})
-        verdicts = tuple(getattr(decision, "verdicts", ()))
-        if verdicts:
-            self.verdicts += verdicts
-            self.tell("verdicts", "judge", verdicts)
+        self._judged(JUDGE, tuple(getattr(decision, "verdicts", ())))
         if isinstance(decision, Act) and decision.plan is not None:
             self.add_plan(decision.plan)
+
+    def checked(self, checked: Checked) -> None:
+        """Note what a method says after a subgoal, whether it goes on or not."""
+        self.tell("decision", "Checked", {"decision": "Checked", "reason": checked.stop})
+        self._judged(CHECK, checked.verdicts)
+
+    def _judged(self, name: str, verdicts: tuple[Verdict, ...]) -> None:
+        if verdicts:
+            self.verdicts += verdicts
+            self.tell("verdicts", name, verdicts)
 
     def traced(self, error: WonderfulTeamError) -> None:
         """Tell the traceback of the user's own code, where that is what failed."""

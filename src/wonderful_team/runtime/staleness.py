@@ -99,7 +99,7 @@ def _region(role: str, point: Point, planned: PlannedAction, plan: Plan | None, 
     if grounded is not None and grounded.target.kind == "object" and grounded.box is not None:
         if grounded.box.contains(point):
             return Region(name, grounded.box, index)
-    return Region(name, _window(point, _held_box(planned, plan), view), index)
+    return Region(name, point_window(point, _held_box(planned, plan), view), index)
 
 
 def touched(planned: PlannedAction, plan: Plan | None, before: View, after: View) -> tuple[Box, ...]:
@@ -112,9 +112,9 @@ def touched(planned: PlannedAction, plan: Plan | None, before: View, after: View
     held = _held_box(planned, plan)
     match _motion(planned):
         case Carry():
-            return tuple(_window(point, held, before).scaled(1.6) for _, point in points)
+            return tuple(point_window(point, held, before).scaled(1.6) for _, point in points)
         case Slide():
-            ends = [_window(point, held, before).scaled(1.6) for _, point in points]
+            ends = [point_window(point, held, before).scaled(1.6) for _, point in points]
             return (Box.bounding([corner for box in ends for corner in box.corners]),) if ends else ()
         case _:
             return changed_boxes(before, after)
@@ -126,7 +126,8 @@ def _held_box(planned: PlannedAction, plan: Plan | None) -> Box | None:
     return None if grounded is None else grounded.box
 
 
-def _window(point: Point, held: Box | None, view: View) -> Box:
+def point_window(point: Point, held: Box | None, view: View) -> Box:
+    """A window round a point: as large as what is held there, else of a fixed share of the picture."""
     if held is not None:
         return Box.around(point, held.width, held.height)
     side = 2 * _POINT_REACH_PX_SHARE * min(view.size_px)

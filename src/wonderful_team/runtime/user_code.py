@@ -13,6 +13,8 @@ from wonderful_team.core import deadline
 from wonderful_team.core.actions import Action, Vocabulary
 from wonderful_team.core.protocols import (
     Act,
+    Checked,
+    ChecksSubgoals,
     Decision,
     Done,
     GaveUp,
@@ -23,7 +25,16 @@ from wonderful_team.core.protocols import (
     World,
     facts_of,
 )
-from wonderful_team.core.values import Instruction, Limits, Observation, Plan, PlannedAction, StepReport, size_problem
+from wonderful_team.core.values import (
+    Instruction,
+    Limits,
+    Observation,
+    Plan,
+    PlannedAction,
+    StepReport,
+    Verdict,
+    size_problem,
+)
 from wonderful_team.errors import (
     MethodCodeError,
     RobotFaultError,
@@ -134,6 +145,23 @@ def decision_of(policy: Policy, situation: Situation, caller: Caller) -> Decisio
     if not isinstance(settled, Done) and settled.plan is not None:
         _checked(settled.plan, Plan, f"the plan of {whose}", MethodCodeError)
     return settled
+
+
+def checked_of(policy: ChecksSubgoals, situation: Situation, caller: Caller) -> Checked:
+    """What a method says after a subgoal, checked like its decisions."""
+    deadline.check("the run")
+    if type(policy).__module__.startswith(_OURS):
+        return cast(Checked, caller.wait_for(policy.check(situation)))
+    whose = f"check() of method {getattr(policy, 'name', type(policy).__name__)!r}"
+    with code_of(whose, MethodCodeError):
+        checked = caller.wait_for(deadline.bounded(whose, policy.check, situation), whose)
+    said: Checked = _checked(checked, Checked, f"what {whose} returned", MethodCodeError)
+    _checked(said.stop, str, f"stop of what {whose} returned", MethodCodeError)
+    for number, verdict in enumerate(
+        _checked(said.verdicts, tuple, f"verdicts of what {whose} returned", MethodCodeError), 1
+    ):
+        _checked(verdict, Verdict, f"verdict {number} of what {whose} returned", MethodCodeError)
+    return said
 
 
 def score_of(scorer: Privileged) -> Score:

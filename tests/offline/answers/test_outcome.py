@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import cv2
 import numpy as np
 import pytest
@@ -10,6 +12,7 @@ from tests.offline.answers.tables import ask, draft, picture, table, task
 from wonderful_team.contracts import (
     Advice,
     JudgeOutcome,
+    JudgeSubgoal,
     MemoryEntry,
     Outcome,
     PathReview,
@@ -18,7 +21,8 @@ from wonderful_team.contracts import (
     ReviewPath,
     WriteFunction,
 )
-from wonderful_team.core.pictures import PathMark
+from wonderful_team.core.geometry import Box
+from wonderful_team.core.pictures import BoxMark, PathMark
 from wonderful_team.core.values import Request, Subgoal, Verdict, View
 from wonderful_team.errors import UnsupportedQuestion
 from wonderful_team.offline import OfflineModel
@@ -50,6 +54,29 @@ def test_where_the_thing_is_now_decides(text: str, at: tuple[int, int], status: 
     (verdict,) = outcome(text, BEFORE, after).verdicts
     assert verdict.status == status
     assert "green star" in verdict.evidence
+
+
+@pytest.mark.parametrize(
+    ("star", "disc", "status", "holds"),
+    [((300, 160), (520, 240), "done", True), ((500, 80), (520, 240), "not_done", True), ((300, 160), (430, 80), "done", False)],
+    ids=["as planned", "not carried", "somebody moved what comes next"],
+)  # fmt: skip
+def test_a_subgoal_is_judged_while_others_are_still_to_run(
+    star: tuple[int, int], disc: tuple[int, int], status: str, holds: bool
+) -> None:
+    text = f"{ON}, then put the yellow disc onto the blue square"
+    plan = draft(text, BEFORE)
+    first, second = plan.to_subgoals()
+    after = table(("square", "blue", 300, 160, 52), ("disc", "yellow", *disc, 30), ("star", "green", *star, 36))
+    shown = task(text, BEFORE)
+    named = next(target.id for target in plan.to_targets() if "yellow" in target.words)
+    box = shown.main.frame.box_to_picture(Box.around((520, 240), 60, 60))
+    shown = replace(shown, views=(shown.main.marked(BoxMark(box, "target", named)), *shown.views[1:]))
+    question = JudgeSubgoal(shown, first, (first, second), plan.to_targets(), (), (picture(after),), (), ())
+    answer = ask(question)
+    assert (answer.status, answer.rest_holds) == (status, holds)
+    assert bool(answer.what_changed) is not holds
+    assert bool(answer.stop) is (status == "not_done" or not holds)
 
 
 def test_the_robots_report_explains_a_failure() -> None:

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 
+import numpy as np
 import pytest
 
 import wonderful_team as wt
 from tests.sims.arms.needed import needs_arms
+from wonderful_team.api.replay import replay
 from wonderful_team.errors import ConfigError
 from wonderful_team.sims.arms import make_world
 from wonderful_team.sims.arms.options import asked
@@ -26,7 +29,7 @@ def ran(task: str, replans: int, seed: int = 1001) -> Ran:
 
 
 @pytest.mark.parametrize(
-    "kind", ["nudge", pytest.param("hand", marks=pytest.mark.slow), pytest.param("slip", marks=pytest.mark.slow)]
+    "kind", ["nudge", *(pytest.param(kind, marks=pytest.mark.slow) for kind in ("hand", "slip", "wrongbox"))]
 )
 def test_with_replans_the_loop_makes_up_for_it_and_without_it_fails(kind: str) -> None:
     trial, happened = ran(f"lid_box/one@{kind}=1", replans=0)
@@ -74,3 +77,64 @@ def test_disturbances_are_asked_for_by_name() -> None:
         asked("star@shove=1", None, 0, 0)
     with pytest.raises(ConfigError, match="is no option"):
         asked("star@slip=4", None, 0, 0)
+
+
+def test_a_thing_in_the_box_is_put_onto_the_plate_by_a_hand_and_the_oracle_brings_it_back() -> None:
+    world = make_world("lid_box/one@wrongbox=1", seed=1001)
+    try:
+        table, truth = world._table, world.privileged
+        wanted = f"{truth.truth()['words']['colour']} block"
+        table.disturbances.let_go((wanted,))
+        assert table.disturbances.happened == []  # it is not where it belongs yet
+        box, plate = table.poses()["box"], table.poses()["plate"]
+        table.put("lid", np.array([*table.work._free(table.things["lid"], table.poses()), 0.0]), 0.0)
+        table.put(wanted, box.position_m, 0.0)
+        assert table.arrived(wanted)
+        table.disturbances.let_go((wanted,))
+        (one,) = table.disturbances.happened
+        assert (one.kind, one.thing) == ("wrongbox", wanted)
+        assert math.dist(table.poses()[wanted].position_m[:2], plate.position_m[:2]) < 0.03
+        assert f"the {wanted} is not in the box" in truth.score().reason
+        assert truth.oracle()
+        table.disturbances.let_go((wanted,))
+        assert len(table.disturbances.happened) == 1
+    finally:
+        world.close()
+
+
+def test_only_where_it_is_asked_for_there_is_another_container_and_the_rest_stands_as_without() -> None:
+    worlds = [make_world(f"lid_box/one{option}", seed=1001) for option in ("", "@wrongbox=1")]
+    try:
+        plain, other = (dict(world.privileged.start()) for world in worlds)
+        assert set(other) - set(plain) == {"plate"}
+        assert all(math.dist(plain[name].position_m, other[name].position_m) < 0.002 for name in plain)
+    finally:
+        for world in worlds:
+            world.close()
+
+
+@pytest.mark.slow
+def test_a_plan_that_is_lost_stops_after_the_subgoal_and_the_record_replays(tmp_path: Path) -> None:
+    world = wt.make_world("arms/lid_box/one@nudge=1", seed=1001)
+    try:
+        trial = wt.rollout(wt.Team(model="simulated:perfect", out=tmp_path), world, replans=1)
+    finally:
+        world.close()
+    assert trial.outcome == "success", trial.reason
+    first, second = trial.plans
+    assert len(trial.reports) == len(first.actions) // 2 + len(second.actions)
+    assert [verdict.status for verdict in trial.verdicts] == ["done", "done"]
+    assert trial.folder is not None
+    assert replay(trial.folder).same
+
+
+@pytest.mark.slow
+def test_a_trial_whose_arm_went_home_by_itself_replays(tmp_path: Path) -> None:
+    world = wt.make_world("arms/lid_box/one@slip=1", seed=1001)
+    try:
+        trial = wt.rollout(wt.Team(model="simulated:perfect", out=tmp_path), world, replans=1)
+    finally:
+        world.close()
+    assert any(not report.executed for report in trial.reports)
+    assert trial.folder is not None
+    assert replay(trial.folder).same

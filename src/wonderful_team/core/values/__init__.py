@@ -24,6 +24,7 @@ from wonderful_team.core.values.plan_size import MAX_ACTIONS, MAX_FUNCTIONS, MAX
 from wonderful_team.core.values.read import ReadPlan
 from wonderful_team.core.values.request import NOTEBOOK, Answer, Note, Part, Request, SentPicture, Usage, Words
 from wonderful_team.core.values.result import (
+    GOING_HOME,
     GateCheck,
     GateReport,
     HeightProfile,
@@ -35,6 +36,7 @@ from wonderful_team.core.values.result import (
 )
 
 __all__ = [
+    "GOING_HOME",
     "NOTEBOOK",
     "Alike",
     "Answer",

@@ -16,6 +16,8 @@ from wonderful_team.core.values.request import Usage
 
 NO_PLAN = ("not_found", "not_understood", "needs_clarification", "refused")
 """How a plan ends that nothing can run of, by the method's own word."""
+GOING_HOME = "before going home"
+"""Where the gate stands for an arm that leaves the picture where a plan ends early."""
 
 
 @dataclass(frozen=True, eq=False)

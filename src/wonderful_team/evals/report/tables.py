@@ -18,9 +18,9 @@ from wonderful_team.evals.report import ablation, judgements
 from wonderful_team.evals.report.paired import paired_figures
 from wonderful_team.evals.schema import CONDITION
 from wonderful_team.evals.summary import Cell, Summary
-from wonderful_team.evals.trials import JUDGED, Condition, Row
+from wonderful_team.evals.trials import JUDGED, JUDGED_SUBGOAL, Condition, Row
 
-_JUDGED = frozenset(JUDGED.values())
+_JUDGED = frozenset((*JUDGED.values(), *JUDGED_SUBGOAL.values()))
 _RESULT = (
     "outcome",
     "stage",

@@ -10,7 +10,7 @@ from wonderful_team.offline.answers import crops, grounding, listing, marks, pro
 from wonderful_team.offline.answers.drafting import answer_extract
 from wonderful_team.offline.answers.functions import answer_write_function
 from wonderful_team.offline.answers.moves import answer_draft, answer_revise
-from wonderful_team.offline.answers.outcome import answer_outcome, answer_replan
+from wonderful_team.offline.answers.outcome import answer_outcome, answer_replan, answer_subgoal
 from wonderful_team.offline.answers.paths import answer_review_path
 from wonderful_team.offline.answers.remembering import answer_remember
 from wonderful_team.offline.answers.reviewing import answer_review
@@ -60,6 +60,7 @@ ANSWERS: dict[type[contracts.Question], Callable[..., Any]] = {
     contracts.WriteFunction: answer_write_function,
     contracts.ReviewPath: answer_review_path,
     contracts.Remember: answer_remember,
+    contracts.JudgeSubgoal: answer_subgoal,
     contracts.JudgeOutcome: answer_outcome,
     contracts.Replan: answer_replan,
     contracts.PlanDirectly: answer_plan_directly,

@@ -1,10 +1,12 @@
-"""JudgeOutcome and Replan: where things are now against where they should be."""
+"""JudgeSubgoal, JudgeOutcome and Replan: where things are now against where they should be."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 
-from wonderful_team.contracts import Advice, JudgeOutcome, Outcome, Replan, VerdictDraft
+from wonderful_team.contracts import Advice, JudgeOutcome, JudgeSubgoal, Outcome, Replan, SubgoalOutcome, VerdictDraft
 from wonderful_team.core.geometry import Box, Frame
 from wonderful_team.core.pictures import BoxMark, Picture
 from wonderful_team.core.values import Target
@@ -49,10 +51,30 @@ def answer_outcome(question: JudgeOutcome) -> Outcome:
     )
 
 
+def answer_subgoal(question: JudgeSubgoal) -> SubgoalOutcome:
+    """What became of one subgoal, and whether what the later ones use lies where it lay, from the pictures."""
+    before = eyes_of_task(question.task)
+    judge = _Judge(question, before, eyes_of(question.after[0], question.task.slots))
+    own = question.subgoal
+    parts = [judge.task(task) for task in tasks_of(own, question.targets, before)]
+    order = ("not_done", "undone", "unclear", "done")
+    status, evidence = min(parts, key=lambda part: order.index(part[0]))
+    missed = status in ("not_done", "undone")
+    changed = "; ".join(judge.strayed(question))
+    return SubgoalOutcome(
+        reasoning="Compared where things show before and after.",
+        status="not_done" if missed else "done" if status == "done" else "unclear",
+        evidence=evidence,
+        cause=judge.cause(own.id, evidence) if missed else None,
+        rest_holds=not changed,
+        what_changed=changed,
+    )
+
+
 class _Judge:
     """Compares two pictures."""
 
-    def __init__(self, question: JudgeOutcome, before: Eyes, after: Eyes) -> None:
+    def __init__(self, question: JudgeOutcome | JudgeSubgoal, before: Eyes, after: Eyes) -> None:
         self.question, self.before, self.after = question, before, after
         self.boxes = {
             mark.label.split()[0]: mark.box
@@ -88,6 +110,19 @@ class _Judge:
             told = f"the {name} lies {{}} radii from where the {task.place.words} was"
             return _at_origin(told, now, thing, place)
         return self._at_place(task.how, name, task.place, place, thing, now)
+
+    def strayed(self, question: JudgeSubgoal) -> Iterator[str]:
+        """The things that later subgoals use and this one does not, and that do not lie where they lay."""
+        names = {name for subgoal in question.later for name in subgoal.targets} - set(question.subgoal.targets)
+        for target in question.targets:
+            was = self._was(target, None) if target.id in names and target.kind == "object" else None
+            if was is None:
+                continue
+            now = self._now(was)
+            if now is None and any(doubt.startswith(f"{target.id} ") for doubt in question.doubts):
+                yield f"the {target.words} does not show any more"
+            elif now is not None and self._moved(was, now) >= STAYED:
+                yield f"the {target.words} {self._told_move(was, now)}"
 
     def _swept(self, aim: Aim, was: Thing) -> tuple[str, str]:
         """Whether a thing lies wholly in the place it was pushed to; alike things in there count once each."""

@@ -27,6 +27,8 @@ DISTURBANCES = {
     "nudge": "after a thing was let go, the next one that has to go somewhere is pushed by 3 to 6 cm",
     "hand": "after a thing was let go, a hand puts the next one that has to go somewhere at another free place",
     "remove": "after a thing was let go, the next one that has to go somewhere is taken off the table for good",
+    "wrongbox": "after a thing was let go where it has to go, a hand puts it into or onto another container or area; where there is "
+    "none, at a free place",
     "slip": "a thing slips out of the fingers 3 cm after it was lifted",
 }
 """Every kind with what it does."""
@@ -99,6 +101,10 @@ class Disturbances:
             name = self._next(released) if self.left.get(kind) else None
             if name is not None and self._move(kind, name):
                 self.left[kind] -= 1
+        wanted = self.table.wanted_things() if self.left.get("wrongbox") else ()
+        name = next((name for name in released if name in wanted and self.table.arrived(name)), None)
+        if name is not None and self._move("wrongbox", name):
+            self.left["wrongbox"] -= 1
 
     def _next(self, released: Sequence[str]) -> str | None:
         """The first thing that still has to go somewhere; where nothing has, what was just let go."""
@@ -110,18 +116,32 @@ class Disturbances:
         table, poses = self.table, self.table.poses()
         rng = generator(table.seed, f"disturbance {kind}", len(self.happened))
         pose = poses[name]
+        end: Array | None
         if kind == "remove":
-            end: Array | None = np.array(GONE_M)
+            end = np.array(GONE_M)
+        elif kind == "wrongbox" and (other := self._other_container(name, rng)) is not None:
+            end = other
         else:
             end = self._place(name, pose, rng, NUDGE_M if kind == "nudge" else None)
         if end is None:
             return False
         height = float(pose.position_m[2]) if kind == "nudge" else float(end[2])
-        yaw = float(pose.yaw_rad) if kind != "hand" else float(rng.uniform(-math.pi, math.pi))
+        yaw = float(pose.yaw_rad) if kind not in ("hand", "wrongbox") else float(rng.uniform(-math.pi, math.pi))
         before = (float(pose.position_m[0]), float(pose.position_m[1]))
         self.happened.append(Happened(kind, name, before, (float(end[0]), float(end[1]))))
         table.put(name, np.array([end[0], end[1], height]), yaw)
         return True
+
+    def _other_container(self, name: str, rng: np.random.Generator) -> Array | None:
+        """The middle of a container or area in or on which nothing lies, over its top, shape (3,) [m]; None where there is none."""
+        table, poses = self.table, self.table.poses()
+        others = [footprint_of(t, poses[n]).convex_hull for n, t in table.things.items() if not _holds(t)]
+        free = []
+        for other, thing in table.things.items():
+            if _holds(thing) and all(footprint_of(thing, poses[other]).convex_hull.disjoint(one) for one in others):
+                x, y, z = (float(value) for value in poses[other].position_m)
+                free.append(np.array([x, y, z + thing.body.height_m]))
+        return free[int(rng.integers(len(free)))] if free else None
 
     def _place(self, name: str, pose: Pose, rng: np.random.Generator, by_m: tuple[float, float] | None) -> Array | None:
         """A free place near by or anywhere else, shape (3,) [m]; None when none was found."""
@@ -168,6 +188,10 @@ class Disturbances:
             self.left["slip"] -= 1
             self._loose_until_s = now + LOOSE_S
             robot.loosen()
+
+
+def _holds(thing: Thing) -> bool:
+    return thing.body.kind in ("base", "area")
 
 
 def both(*calls: Any) -> Any:

@@ -21,6 +21,8 @@ from wonderful_team.sims.tabletop.rules import Rules
 
 ABOVE_M, CLEAR_M, GRASP_M = 0.1, 0.25, 0.03
 YAWS = 24
+LEVEL_M = 0.002
+"""Something may end so far over where a thing begins that lies on it [m]."""
 ROOM_M = 0.006
 """More than the thing's width the fingers want between them [m]."""
 
@@ -33,7 +35,7 @@ def grasp_yaw(thing: Thing, poses: Poses, things: Mapping[str, Thing], row: ArmR
     others = [
         footprint_of(other, poses[name])
         for name, other in things.items()
-        if name != thing.name and other.body.kind != "area"
+        if name != thing.name and other.body.kind != "area" and not _under(other, poses[name], poses[thing.name])
     ]
     found = []
     for yaw in np.linspace(-math.pi / 2, math.pi / 2, YAWS, endpoint=False):
@@ -51,6 +53,11 @@ def grasp_yaw(thing: Thing, poses: Poses, things: Mapping[str, Thing], row: ArmR
         )
         found.append((hit, round(width, 3), abs(yaw), float(yaw)))
     return min(found)[3] if found and not min(found)[0] else None
+
+
+def _under(other: Thing, at: Pose, thing: Pose) -> bool:
+    """Whether something ends below where a thing begins, such as a plate that it lies on: the fingers do not meet it."""
+    return float(at.position_m[2]) + other.body.height_m <= float(thing.position_m[2]) + LEVEL_M
 
 
 def arm_actions(pick: PickPlace, yaw_rad: float, height_m: float) -> list[Action]:

@@ -81,10 +81,12 @@ class ArmScene(Scene):
 
     Attributes:
         work: What the task does beside moving things.
+        other_container: Another container than the one that things belong in is wanted, where the task has none.
     """
 
     apart_m: float = APART_M
     work: Work | None = None
+    other_container: bool = False
 
     def free_place(
         self, draft: Thing, *, on: Thing | None = None, within: Room | None = None, away: Sequence[Spot] = ()

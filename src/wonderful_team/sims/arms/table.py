@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
@@ -59,7 +59,7 @@ class ArmTable(SimulatedTable):
     def __init__(self, task: TabletopTask, seed: int, asked: Asked) -> None:
         super().__init__()
         self.task, self.seed, self.asked = task, seed, asked
-        scene = task.scene(seed, made=ArmScene)
+        scene = task.scene(seed, made=partial(ArmScene, other_container="wrongbox" in asked.disturbances))
         assert isinstance(scene, ArmScene)
         self.scene, self.work = scene, scene.work
         self.things: Mapping[str, Thing] = {thing.name: thing for thing in scene.things}

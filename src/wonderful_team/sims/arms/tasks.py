@@ -27,6 +27,8 @@ MOVES = 14
 """Actions that one pick and place may take: ten, and a few more for what went wrong."""
 COLOURS = ("red", "green", "yellow", "purple", "orange")
 BOWLS = ("blue", "cyan")
+PLATE_COLOUR = "olive"
+"""Of the plate beside the closed box: no block, box or lid has it."""
 PAPERS = ("green", "yellow", "orange", "cyan", "pink")
 NEAR_ROOM_M: Room = (0.3, -0.3, 0.66, 0.3)
 STAR_M = 0.065
@@ -121,11 +123,12 @@ def _lid_box(scene: Scene, count: int) -> None:
         scene.add("cube", colour, name=f"{colour} block", stretch=stretch)
         for colour, stretch in zip(colours, heights, strict=True)
     ]
+    assert isinstance(scene, ArmScene)
+    plate = [scene.add("plate", PLATE_COLOUR, name="plate")] if scene.other_container else []
     # There is room for the lid beside everything.
     scene.free_place(lid)
     scene.say(**{f"colour{k}" if count > 1 else "colour": colours[k] for k in range(count)})
-    assert isinstance(scene, ArmScene)
-    scene.work = ClosedBox(closed, lid, blocks[:count], blocks[count:])
+    scene.work = ClosedBox(closed, lid, blocks[:count], [*blocks[count:], *plate])
 
 
 @task("lid_box/one", instruction="put the {colour} block into the box", horizon=3 * MOVES)

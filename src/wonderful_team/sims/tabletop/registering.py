@@ -41,7 +41,7 @@ class TabletopTask:
         recolour: int | None = None,
         partition: str | None = None,
         tiers: Tiers | None = None,
-        made: type[Scene] = Scene,
+        made: Callable[..., Scene] = Scene,
     ) -> Scene:
         """Set the table; the same seed sets the same table, and things stand at the same places at every tier.
 

@@ -96,3 +96,22 @@ def cleared(aims: Sequence[Aim], eyes: Eyes) -> list[Aim]:
         shift[position] = len(done)
         done.append(replace(aim, after=tuple(sorted({shift[index] for index in aim.after} | set(firsts)))))
     return done
+
+
+def leaving_first(aims: list[Aim], eyes: Eyes) -> list[Aim]:
+    """Aims of one command, in an order in which what leaves a place does so before another thing goes there.
+
+    The order stays where it was asked for, and where two change places.
+    """
+    if any(aim.after for aim in aims):
+        return aims
+    goals = [None if aim.to is None else aim.to.number for aim in aims]
+    stands = [None if (thing := eyes.thing(aim.thing.number)) is None else thing.on for aim in aims]
+    waiting, ordered = list(range(len(aims))), []
+    while waiting:
+        # What lies where it is to go already does not leave.
+        leaving = {stands[k] for k in waiting if stands[k] != goals[k]} - {None}
+        ready = next((k for k in waiting if goals[k] not in leaving - {stands[k]}), waiting[0])
+        waiting.remove(ready)
+        ordered.append(aims[ready])
+    return ordered

@@ -21,7 +21,7 @@ from wonderful_team.offline.eyes import (
     unique_words,
 )
 from wonderful_team.offline.goals.aims import Aim, Aims, Named
-from wonderful_team.offline.goals.clearing import closed_by
+from wonderful_team.offline.goals.clearing import closed_by, leaving_first
 from wonderful_team.offline.goals.handling import handled_aims
 from wonderful_team.offline.goals.ranking import ranked_aims
 from wonderful_team.offline.goals.showing import shown_aims
@@ -59,7 +59,7 @@ def derive(understood: Understood, eyes: Eyes, *, strict: bool = True, literal: 
     stay = frozenset(number for what in understood.spared for number in _numbers(what, eyes, result))
     for command in understood.commands:
         first = len(result.aims)
-        aims = _of_command(command, eyes, result, strict)
+        aims = leaving_first(_of_command(command, eyes, result, strict), eyes)
         kept = command.off or command.limit
         if kept is not None and aims and not any(aim.off or aim.limit for aim in aims):
             result.absent.append(f"no way is known there that keeps off the {kept.text}")

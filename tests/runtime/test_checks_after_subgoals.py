@@ -20,7 +20,7 @@ from wonderful_team.core.actions import (
     PickPlaceStep,
     Vocabulary,
 )
-from wonderful_team.core.protocols import Act, Checked, Done, Situation
+from wonderful_team.core.protocols import Act, Checked, Done, GaveUp, Situation
 from wonderful_team.core.values import Observation, PlannedAction, RobotState, StepReport, SubgoalRun, Verdict
 from wonderful_team.runtime import rollout
 from wonderful_team.runtime.expected import Expectations
@@ -161,6 +161,27 @@ def test_a_check_of_somebody_elses_method_that_returns_something_else_is_its_fai
     trial = rollout(policy, SquaresWorld(), replans=1)
     assert trial.outcome == "failure"
     assert "check() of method 'moves'" in trial.reason
+
+
+class Judging(Checker):
+    """Says what became of every subgoal once the whole attempt has run."""
+
+    def decide(self, situation: Situation) -> Act | Done | GaveUp:
+        decision = super().decide(situation)
+        judged = (Verdict("G1", "undone", "moved since"), Verdict("G2", "done"))
+        return replace(decision, verdicts=judged) if isinstance(decision, Done) else decision
+
+
+def test_a_judgement_of_the_whole_attempt_takes_the_place_of_what_was_said_on_the_way() -> None:
+    trial = rollout(Judging([list(TWO)]), SquaresWorld(), replans=1)
+    assert [(verdict.subgoal, verdict.status) for verdict in trial.verdicts] == [("G1", "undone"), ("G2", "done")]
+
+
+def test_what_was_said_of_a_stopped_attempt_stays_beside_the_judgement_of_the_next() -> None:
+    policy = Judging([list(TWO), list(TWO)], always=True)
+    trial = rollout(policy, SquaresWorld(), replans=1)
+    said = [(verdict.subgoal, verdict.status) for verdict in trial.verdicts]
+    assert said == [("G1", "not_done"), ("G1", "undone"), ("G2", "done")]
 
 
 @dataclass

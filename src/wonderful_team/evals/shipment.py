@@ -14,7 +14,6 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
-import wonderful_team
 from wonderful_team.core.filesystem import make_private_folder
 from wonderful_team.core.text import look_in_copies
 from wonderful_team.errors import ConfigError
@@ -24,6 +23,8 @@ LIMIT_BYTES = 100_000_000
 """Most that the user's files may come to: Ray keeps them in the memory of the head node."""
 CONFIG_VARIABLE = "WONDERFUL_TEAM_CONFIG"
 FILES = "files"
+PACKAGE = Path(__file__).resolve().parents[1]
+"""This package, of which every worker runs the same code."""
 
 
 def _nothing() -> None:
@@ -61,7 +62,7 @@ class Shipment:
                 f"at most {LIMIT_BYTES / 1e6:.0f} MB travel to a cluster. Valid: fewer files, or a store for each machine with --shard I/N"
             )
         shutil.copytree(
-            Path(wonderful_team.__file__).parent,
+            PACKAGE,
             folder / "wonderful_team",
             ignore=shutil.ignore_patterns("__pycache__"),
         )
@@ -87,7 +88,7 @@ class Parcel:
 
     def unpack(self) -> None:
         """Make this process find the copies, wherever the shipment lies here."""
-        copies = Path(wonderful_team.__file__).resolve().parents[1] / FILES
+        copies = PACKAGE.parent / FILES
         start = copies / Path(self.cwd).relative_to(Path(self.cwd).anchor)
         start.mkdir(parents=True, exist_ok=True)
         os.chdir(start)

@@ -57,6 +57,8 @@ class RolloutLog:
     verdicts: list[Verdict] = field(default_factory=list)
     executed: int = 0
     last: Decision | None = None
+    _before_attempt: int = field(default=0, init=False)
+    """Verdicts on the attempts before the one that runs."""
 
     def tell(self, kind: str, name: str, content: Any = None) -> None:
         for subscriber in self.subscribers:
@@ -90,8 +92,10 @@ class RolloutLog:
         name = type(decision).__name__
         self.tell("decision", name, {"decision": name, "reason": getattr(decision, "reason", "")})
         self._judged(JUDGE, tuple(getattr(decision, "verdicts", ())))
-        if isinstance(decision, Act) and decision.plan is not None:
-            self.add_plan(decision.plan)
+        if isinstance(decision, Act):
+            self._before_attempt = len(self.verdicts)
+            if decision.plan is not None:
+                self.add_plan(decision.plan)
 
     def checked(self, checked: Checked) -> None:
         """Note what a method says after a subgoal, whether it goes on or not."""
@@ -99,9 +103,13 @@ class RolloutLog:
         self._judged(CHECK, checked.verdicts)
 
     def _judged(self, name: str, verdicts: tuple[Verdict, ...]) -> None:
-        if verdicts:
-            self.verdicts += verdicts
-            self.tell("verdicts", name, verdicts)
+        if not verdicts:
+            return
+        if name == JUDGE:
+            # A judgement of the whole attempt takes the place of what was said of its subgoals while it ran.
+            del self.verdicts[self._before_attempt :]
+        self.verdicts += verdicts
+        self.tell("verdicts", name, verdicts)
 
     def traced(self, error: WonderfulTeamError) -> None:
         """Tell the traceback of the user's own code, where that is what failed."""

@@ -62,8 +62,8 @@ def test_pictures_are_called_by_number_in_the_order_of_the_words() -> None:
 
 
 def test_places_in_an_order_are_read_as_they_are_written() -> None:
-    assert [ordinal(number) for number in (1, 10, 11, 13, 21, 22, 23, 100)] == [
-        "first", "tenth", "11th", "13th", "21st", "22nd", "23rd", "100th"
+    assert [ordinal(number) for number in (1, 10, 11, 13, 21, 22, 23, 100, 111)] == [
+        "first", "tenth", "11th", "13th", "21st", "22nd", "23rd", "100th", "111th"
     ]  # fmt: skip
     assert all(ORDINALS[ordinal(number)] == number for number in range(1, MOST_IN_ORDER + 1))
     assert ORDINALS["1st"] == ORDINALS["first"]

@@ -69,4 +69,12 @@ def test_an_order_that_ends_before_is_not_guessed(tmp_path: Path) -> None:
     rgb, _ = lined_up(3, 4)
     made = wt.Team(model="offline", out=tmp_path).plan(rgb, "put the 13th red block from the left into the blue bowl")
     assert made.plan.status != "planned"
-    assert "13" in made.plan.message
+    assert "No 13th red block from the left is in the picture" in made.plan.message
+
+
+def test_more_things_than_a_plan_may_hold_are_said_to_be_too_many(tmp_path: Path) -> None:
+    centres = np.array([(50 + 86 * x, 50 + 95 * y) for x in range(11) for y in range(10)])
+    rgb = drawn(centres, np.random.default_rng(0))
+    made = wt.Team(model="offline", out=tmp_path).plan(rgb, "put every red block into the blue bowl")
+    assert (made.plan.status, made.plan.actions) == ("not_understood", ())
+    assert "110 subgoals, at most 100 are allowed" in made.plan.message

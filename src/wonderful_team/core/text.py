@@ -29,25 +29,29 @@ def counted(number: int, noun: str) -> str:
 
 
 MOST_IN_ORDER = 100
-_ORDINALS = ("", "first", "second", "third", "fourth", "fifth", "sixth", "seventh", "eighth", "ninth", "tenth")
+"""The last place in an order that is read."""
+_WORDS = ("first", "second", "third", "fourth", "fifth", "sixth", "seventh", "eighth", "ninth", "tenth")
+
+
+def _in_digits(number: int) -> str:
+    ending = "th" if 10 < number % 100 < 14 else {1: "st", 2: "nd", 3: "rd"}.get(number % 10, "th")
+    return f"{number}{ending}"
+
+
 ORDINALS: Mapping[str, int] = {
-    **{word: number for number, word in enumerate(_ORDINALS) if word},
-    **{
-        f"{number}{'th' if 10 < number % 100 < 14 else {1: 'st', 2: 'nd', 3: 'rd'}.get(number % 10, 'th')}": number
-        for number in range(1, MOST_IN_ORDER + 1)
-    },
+    **{word: number for number, word in enumerate(_WORDS, 1)},
+    **{_in_digits(number): number for number in range(1, MOST_IN_ORDER + 1)},
 }
 """Places in an order by the words for them, in letters and in digits."""
-_IN_WORDS = {number: word for word, number in tuple(ORDINALS.items())[::-1]}
 
 
 def ordinal(number: int) -> str:
     """`third`, and `13th` from eleven on.
 
     Args:
-        number: From 1 to MOST_IN_ORDER.
+        number: From 1 on.
     """
-    return _IN_WORDS[number]
+    return _WORDS[number - 1] if number <= len(_WORDS) else _in_digits(number)
 
 
 def visible(text: Text, *, layout: bool = False) -> Text:

@@ -290,18 +290,15 @@ def _by_place(eyes: Eyes, thing: Thing, base: Description) -> Description:
         replace(base, superlative="rightmost", ordinal=len(columns) + 1 - place),
         replace(base, superlative="topmost", ordinal=rows.index(thing.number) + 1),
     ]
-    for description in candidates:
-        found = eyes.find(description) if description.ordinal <= FEW else []
-        clear = len(fitting) <= FEW or (bool(found) and found[0].score >= GOOD)
-        if _means(found, thing) and clear:
-            return worded(description)
+    if len(fitting) <= FEW:
+        return worded(next((one for one in candidates if _means(eyes.find(one), thing)), candidates[0]))
     counted = {way: [match.thing for match in in_lines(matches, way)] for way in LINE_BY_LINE}
     lines = [replace(base, superlative=way, ordinal=order.index(thing) + 1) for way, order in counted.items()]
     for description in (*lines, *candidates):
         found = eyes.find(description) if description.ordinal <= MOST_IN_ORDER else []
         if _means(found, thing) and found[0].score >= GOOD:
             return worded(description)
-    return worded(candidates[0] if place <= FEW else candidates[1])
+    return worded(candidates[0])
 
 
 PICTURE_SIDES = {"leftmost": "on the left", "rightmost": "on the right", "topmost": "at the top",

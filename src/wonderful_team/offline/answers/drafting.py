@@ -16,7 +16,7 @@ from wonderful_team.contracts import (
     TargetList,
 )
 from wonderful_team.contracts.shown import ShownTask
-from wonderful_team.core.values import Alike, PointRole
+from wonderful_team.core.values import Alike, PointRole, size_problem
 from wonderful_team.errors import NotUnderstoodError
 from wonderful_team.offline.description import Description
 from wonderful_team.offline.eyes import Eyes, eyes_of_task, is_shown_alone, side_words, told_apart
@@ -117,11 +117,21 @@ def function_of(aim: Aim) -> str | None:
 
 
 def write_plan(aims: Sequence[Aim], slots: tuple[str, ...], with_targets: bool, reasoning: str) -> PlanDraft:
-    """Subgoals and targets of aims, in order."""
+    """Subgoals and targets of aims, in order.
+
+    Raises:
+        NotUnderstoodError: They are more than a plan may hold.
+    """
     writer = _Writer(slots)
+    needed = [aim_targets(aim, writer) for aim in aims]
+    problem = size_problem(subgoals=len(aims), targets=len(writer.targets))
+    if problem:
+        raise NotUnderstoodError(
+            f"what is asked for takes a plan of {problem}. Name fewer, such as 'put 50 red blocks into the bowl'"
+        )
     subgoals = []
-    for number, aim in enumerate(aims, start=1):
-        targets, after = aim_targets(aim, writer), [f"G{position + 1}" for position in aim.after]
+    for number, (aim, targets) in enumerate(zip(aims, needed, strict=True), start=1):
+        after = [f"G{position + 1}" for position in aim.after]
         parts = {"text": aim_text(aim), "after": after, "targets": targets if with_targets else []}
         subgoals.append(SubgoalDraft.model_validate({"id": f"G{number}", "function": function_of(aim), **parts}))
     return PlanDraft(

@@ -12,6 +12,7 @@ terminated when the task is solved or failed, and truncated at the horizon; `inf
     gymnasium_env.register()
     env = gymnasium.make("wonderful_team/visual_manipulation-v0", partition="L3", clutter=1)
     observation, info = env.reset(seed=3)
+    env.action_space.seed(3)
     print(info["instruction"].text, list(info["instruction"].slots))
     ended = False
     while not ended:

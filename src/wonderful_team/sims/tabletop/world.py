@@ -55,7 +55,7 @@ class TabletopWorld(SimulatedWorld[Table, TabletopTruth]):
         self.partition, self.tiers = partition, wanted.tiers
         self.vocabulary: Vocabulary = found.vocabulary
         blade_m = 2 * BLADE_HALF_M[1] if "push" in self.vocabulary.kinds else None
-        self.limits = Limits(TABLE_LOW_M, TABLE_HIGH_M, blade_m=blade_m, lift_m=LIFT_M)
+        self.limits = Limits(TABLE_LOW_M, TABLE_HIGH_M, clearance_m=LIFT_M, blade_m=blade_m, lift_m=LIFT_M)
         self.facts = suction_facts(2 * CUP_RADIUS_M) if blade_m is None else blade_facts(blade_m)
         self._table = Table(
             found, seed, wanted.size_px, recolour=recolour, renderer=renderer, partition=partition, tiers=wanted.tiers

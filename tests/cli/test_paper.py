@@ -111,7 +111,7 @@ def test_crashes_of_a_methods_code_are_counted_apart_from_other_failures() -> No
     head, lines = filled(PAPER_TABLES["moka"], Summary(tuple(rows), (), (asked,), ()))
     line = dict(zip(head, next(line for line in lines if line[0] == "moka"), strict=True))
     for column, paper in (("success", "20 %"), ("failed otherwise", "40 %"), ("code crashed", "40 %")):
-        assert line[f"ours: {column}"].startswith("33.3333 % (n = 3;")
+        assert line[f"ours: {column}"].startswith("33.3 % (n = 3;")
         assert line[f"paper: {column}"].startswith(paper)
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import shlex
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -68,13 +69,14 @@ def _run(names: list[str], folder: Path, open_page: bool, options: dict[str, Any
     from wonderful_team.evals.report.paper_page import Part, write_paper
 
     words = shlex.join(["wonderful-team", *(click.get_current_context().obj or ())])
-    parts, code, stopped = [], 0, ""
+    parts, code, stopped = list[Part](), 0, ""
+    study: Study | None = None
     # One store for all: a cap holds for all of them together, and trials that two tables need are run once.
     store = folder / "paper.db"
     make_private_folder(folder)
     for name in names:
         table = PAPER_TABLES[name]
-        summary, report = None, None
+        summary = None
         not_run = _missing(table, options["only"]) if len(names) > 1 else ""
         if not_run:
             click.echo(f"{name}: not run: {not_run}", err=True)
@@ -86,10 +88,13 @@ def _run(names: list[str], folder: Path, open_page: bool, options: dict[str, Any
             click.echo(f"{name}: {table.title}", err=True)
             ended, code = bench.run_study(study, options)
             summary, stopped = study.summary(), ended.why
-            report = study.report(store.with_suffix(".html"))
-        parts.append(Part(name, table, summary, report, not_run))
+        parts.append(Part(name, table, summary, not_run=not_run))
     if options["estimate"] and not parts:
         return code
+    if study is not None:
+        # Of all trials of the store, so once they have all been run.
+        report = study.report(store.with_suffix(".html"))
+        parts = [part if part.summary is None else replace(part, report=report) for part in parts]
     written = write_paper(parts, folder / f"{names[0] if len(names) == 1 else 'all'}-table.html", command=words)
     lines = [written.text, *([f"stopped: {stopped}"] if stopped else [])]
     if open_page:

@@ -4,7 +4,17 @@ from __future__ import annotations
 
 import numpy as np
 
-from wonderful_team.core.actions import Action, PickPlace, Push
+from wonderful_team.core.actions import (
+    GRIPPER_STATES,
+    Action,
+    Gripper,
+    MoveTo,
+    PickPlace,
+    Push,
+    RotateGripper,
+    Trajectory,
+)
+from wonderful_team.core.geometry import Pose
 from wonderful_team.core.protocols import Act, Decision, Done, Policy, Privileged, Situation
 from wonderful_team.core.values import Limits, PlannedAction
 from wonderful_team.errors import ConfigError
@@ -12,9 +22,16 @@ from wonderful_team.evals.names import CONTROLS, NO_MODEL, NO_OP, ORACLE, RANDOM
 from wonderful_team.images.keep_out import table_height_m
 from wonderful_team.images.relief import Relief
 
+MOST_ACTIONS = 80
+"""The oracle runs no more than these: what they have not solved it does not solve."""
+
 
 class OracleControl:
-    """Runs the simulator's own solution, asked for anew after every action for as long as something is left to do."""
+    """Runs the simulator's own solution, asked for anew after every pick and place or push, for as long as something is left to do.
+
+    An arm's moves and grips belong together: no single one gets anything done from which a new solution could start, so they
+    run as they were given.
+    """
 
     name = ORACLE
     chunks = True
@@ -25,10 +42,17 @@ class OracleControl:
 
     def decide(self, situation: Situation) -> Decision:
         actions = list(self._truth.oracle())
-        if not actions or situation.refused is not None or self._count >= 50:
+        if situation.refused is not None:
+            return Done("the oracle's actions were refused")
+        if not actions:
             return Done("the oracle has nothing left to do")
-        self._count += 1
-        return Act((planned(at_seen_height(actions[0], situation), self._count),))
+        if self._count >= MOST_ACTIONS:
+            return Done(f"the oracle has run {self._count} actions, and something is left to do")
+        now = actions[:1] if isinstance(actions[0], PickPlace | Push) else actions
+        first, self._count = self._count + 1, self._count + len(now)
+        return Act(
+            tuple(planned(at_seen_height(one, situation), number) for number, one in enumerate(now, start=first))
+        )
 
 
 class NoOpControl:
@@ -38,6 +62,10 @@ class NoOpControl:
 
     def decide(self, situation: Situation) -> Decision:
         return Done("the no-op control does nothing")
+
+
+RANDOM_KINDS = ("pick_place", "push", "move_to", "gripper", "rotate_gripper", "trajectory")
+"""What is drawn at random. Going home does nothing to a scene, and a base is not driven blindly."""
 
 
 class RandomControl:
@@ -52,9 +80,10 @@ class RandomControl:
     def decide(self, situation: Situation) -> Decision:
         if situation.executed or situation.refused is not None:
             return Done("the random control has acted")
-        kinds = [kind for kind in situation.vocabulary.kinds if kind in ("pick_place", "push")]
+        kinds = [kind for kind in situation.vocabulary.kinds if kind in RANDOM_KINDS]
         if not kinds:
-            return Done(f"the random control knows pick_place and push; this world runs {situation.vocabulary.kinds}")
+            known = ", ".join(RANDOM_KINDS)
+            return Done(f"the random control knows {known}; this world runs {', '.join(situation.vocabulary.kinds)}")
         chosen = [kinds[int(self._rng.integers(len(kinds)))] for _ in range(self._left)]
         actions = [at_seen_height(self._action(kind, situation.limits), situation) for kind in chosen]
         return Act(tuple(planned(action, number) for number, action in enumerate(actions, start=1)))
@@ -62,10 +91,18 @@ class RandomControl:
     def _action(self, kind: str, limits: Limits) -> Action:
         low, high = np.array(limits.low_m), np.array(limits.high_m)
         ends = self._rng.uniform(low + 0.02 * (high - low), high - 0.02 * (high - low), size=(2, 3))
+        turn = float(self._rng.uniform(-np.pi, np.pi))
+        match kind:
+            case "move_to":
+                return MoveTo(Pose.at(ends[0], turn))
+            case "gripper":
+                return Gripper(GRIPPER_STATES[int(self._rng.integers(len(GRIPPER_STATES)))])
+            case "rotate_gripper":
+                return RotateGripper(turn)
+            case "trajectory":
+                return Trajectory(ends)
         ends[:, 2] = np.clip(0.0, low[2], high[2])
-        if kind == "push":
-            return Push(ends[0], ends[1])
-        return PickPlace(ends[0], ends[1], float(self._rng.uniform(-np.pi, np.pi)))
+        return Push(ends[0], ends[1]) if kind == "push" else PickPlace(ends[0], ends[1], turn)
 
 
 def make_control(name: str, seed: int, truth: Privileged | None) -> Policy:

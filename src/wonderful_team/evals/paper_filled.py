@@ -71,7 +71,7 @@ def _measured(summary: Summary, one: Measure) -> str:
         if not n:
             continue
         low, high = wilson_interval(successes, n)
-        told = f"{100 * successes / n:g} % (n = {n}; {100 * low:.0f} to {100 * high:.0f})"
+        told = f"{round(100 * successes / n, 1):g} % (n = {n}; {100 * low:.0f} to {100 * high:.0f})"
         badges = f" [{', '.join(cell.badges)}]" if cell.badges else ""
         said.append((f"{cell.condition.model}: " if len(cells) > 1 else "") + told + badges)
     return "; ".join(said) or "not run yet"

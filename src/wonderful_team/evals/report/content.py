@@ -49,7 +49,7 @@ def page_content(summary: Summary, warnings: Sequence[str], baseline: str | None
         "with_paper": any(name.startswith("paper (") for name in head),
         "pair_head": tables.PAIR_HEAD,
         "pair_task_head": tables.PAIR_TASK_HEAD[2:],
-        "pairs": [_pair(one, summary, page) for one in summary.pairs(baseline)],
+        "pairs": _pairs(summary, baseline, page),
         "stages": _stage_table(summary),
         "failures": [_failures(one, summary, page) for one in summary.compared],
         "variant_head": tables.VARIANT_HEAD,
@@ -141,12 +141,17 @@ def _place(stage: str) -> tuple[int, str]:
     return (_ORDER.index(stage) if stage in _ORDER else len(_ORDER), stage)
 
 
-def _pair(one: Pair, summary: Summary, page: Path) -> dict[str, Any]:
+def _pairs(summary: Summary, baseline: str | None, page: Path) -> list[dict[str, Any]]:
+    # For all pairs at once: there is one for every two conditions, and each may name every trial.
     pages = {
         (row.spec.condition, row.spec.task, row.spec.seed, row.spec.repeat): link(row.result.page, page)
         for row in summary.rows
         if row.result is not None and row.result.page
     }
+    return [_pair(one, summary, pages) for one in summary.pairs(baseline)]
+
+
+def _pair(one: Pair, summary: Summary, pages: Mapping[tuple[Condition, str, int, int], str]) -> dict[str, Any]:
     listed = [
         {
             "scene": f"{task}#{seed}" + (f" repeat {repeat}" if repeat else ""),

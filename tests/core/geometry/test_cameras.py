@@ -166,6 +166,25 @@ def test_an_affine_camera_whose_rows_depend_is_refused(matrix: np.ndarray) -> No
         AffineCamera(matrix)
 
 
+@pytest.mark.parametrize("count", [1, 2, 17, 1000])
+@pytest.mark.parametrize(
+    "axes",
+    [
+        [(0, 600, 0, 320), (600, 0, 0, -150), (0, 0, -1, 1)],
+        [(480, 0, 0, 10), (0, -480, 0, 240), (0, 0, -1, 1.3)],
+        [(0, 600, 0, 320), (424, 0, -424, 7), (-0.7, 0, -0.7, 1.2)],
+    ],
+)
+def test_an_affine_camera_gives_the_same_metres_as_the_system_that_it_stands_for(
+    axes: list[tuple[float, ...]], count: int
+) -> None:
+    camera, rng = AffineCamera(np.array(axes)), np.random.default_rng(count)
+    pixels, depth = rng.uniform(0, 640, (count, 2)), rng.uniform(0.5, 2, count)
+    seen = np.column_stack([pixels, depth]) - camera.matrix[:, 3]
+    expected = np.linalg.solve(camera.matrix[:, :3], seen.T).T
+    assert camera.deproject(pixels, depth) == pytest.approx(expected, rel=1e-12, abs=1e-12)
+
+
 def test_an_affine_camera_that_looks_along_the_table_fixes_no_point_of_it() -> None:
     along = AffineCamera(np.array([[1.0, 0, 0, 0], [0, 0, 1, 0], [0, 1, 0, 0]]))
     with pytest.raises(ValueError, match="looks along the plane"):

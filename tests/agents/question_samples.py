@@ -276,6 +276,7 @@ SAMPLES: tuple[Question, ...] = (
             "marked view", Candidates(((5.0, 5.0), (20.0, 10.0)), "P"), Candidates(((40.0, 20.0),), "Q"), Grid(5, 5)
         ),
         ("pick_place", "push"),
+        ("put the spoon into the mug (ends at Q1 of mug)",),
     ),
 )
 

@@ -105,7 +105,9 @@ def test_changing_any_field_changes_what_is_shown(question: Question) -> None:
         before = getattr(question, item.name)
         other = replace(question, **{item.name: changed(before, item.name, question)})  # type: ignore[type-var]
         old, new = build(question), build(other)
-        assert (shown(old), old.pictures) != (shown(new), new.pictures), f"{item.name} is not shown"
+        # The form of the answer is sent too.
+        told = ((shown(sent), sent.pictures, sent.output) for sent in (old, new))
+        assert next(told) != next(told), f"{item.name} is not shown"
 
 
 @EVERY

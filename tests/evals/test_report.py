@@ -18,6 +18,7 @@ from wonderful_team.errors import ConfigError
 from wonderful_team.evals.leases import Owner
 from wonderful_team.evals.paper import paper_figure
 from wonderful_team.evals.report import latex_tables
+from wonderful_team.evals.report.latex import tex
 from wonderful_team.evals.report.page import read_stores, write_all
 from wonderful_team.evals.store import Store
 from wonderful_team.evals.study import run_study
@@ -99,6 +100,8 @@ def test_latex_tables_hold_the_same_figures_and_escape_what_latex_reads(store: P
     tables = latex_tables(summarise(rows, []))
     assert r"a\_b" in tables["conditions"]
     assert r"y.py:C $\cdot$ 50\%" in tables["conditions"]
+    # Without its name it is printed as a dash in LaTeX's first font encoding.
+    assert tex("nlap | truth") == r"nlap \textbar{} truth"
 
 
 def test_the_table_of_trials_has_a_line_for_each_with_its_condition(store: Path) -> None:

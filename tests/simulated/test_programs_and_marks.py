@@ -90,12 +90,28 @@ def test_other_words_and_other_views_are_refused(table: Set) -> None:
 
 
 def test_completed_is_what_truth_says_and_overlooked_by_the_profiles_rate(table: Set) -> None:
-    box = FoundBox("pink letter R", 1, 2, 3, 4, 5)
+    x, y = table.shown_box("pink letter R").centre
+    box = FoundBox("pink letter R", round(x), round(y), 3, 4, 5)
     view = table.scene.views[0]
     question = JudgeFromBoxes(table.world.instruction.text, WORDS, view.name, view.size_px, (box,), (box,))
     verdict = table.ask(question)
     assert (verdict.completed, verdict.summary) == (False, "not where it should be: pink letter R")
     assert table.ask(question, erring(table, overlooks=1.0)).completed
+    elsewhere = table.ask(replace(question, after=(replace(box, x=1, y=2),)))
+    assert (elsewhere.completed, elsewhere.summary) == (False, "not found where it could be: pink letter R")
+
+
+def test_a_program_is_not_written_from_words_that_say_what_no_picture_shows(table: Set) -> None:
+    question = program(table, "detect_object", "execute_trajectory", slot_words=WORDS)
+    blinded = tuple(
+        SlotWords(one.picture, one.words)
+        for one in table.ask(DescribePictures(table.scene.slots), blind(table)).pictures
+    )
+    other = (SlotWords("dragged_obj_1", "green star"), WORDS[1])
+    for words in (blinded, other):
+        with pytest.raises(NotUnderstoodError, match="nobody says what .*dragged_obj_1 really shows"):
+            table.ask(replace(question, slot_words=words))
+    assert table.ask(replace(question, slot_words=(SlotWords("dragged_obj_1", "an R in pink"), WORDS[1]))).code
 
 
 def motion(table: Set) -> ChooseMotion:

@@ -98,6 +98,9 @@ def test_a_plan_from_words_fails_where_the_words_do_not_say_what_it_needs(table:
         table.ask(listed(table, objects=()))
     with pytest.raises(NotUnderstoodError, match="which is not known"):
         table.ask(replace(listed(table), picture="another view"))
+    wrong = (SlotWords("dragged_obj_1", "nothing that was ever there"), SlotWords("base_obj", "red paisley pan"))
+    with pytest.raises(NotUnderstoodError, match="nobody says what dragged_obj_1 really shows"):
+        table.ask(listed(table, slot_words=wrong))
 
 
 def test_pictures_shown_beside_a_list_have_to_be_true(table: Set) -> None:

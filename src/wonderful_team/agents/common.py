@@ -38,7 +38,7 @@ EXAMPLES = """
   decide.
 """.strip()
 
-TARGETS = """
+LISTED = """
 How to write targets, where they are to be listed now
 - A target is one thing or one spot that has to be found in the main view. List each once, even when several subgoals
   need it, in order of use: T1, T2, and so on. "All" or "every" means one target for each thing you count.
@@ -54,11 +54,24 @@ How to write targets, where they are to be listed now
 - use: what its points serve for. pick: it is picked up. place: the middle of something is to come to lie there, carried or
   pushed (a bowl that receives something is an object with use place). push_start: where the front of the tool comes
   down for a push. push_end: where the front of the tool stops; for where the pushed thing's middle should end, use
-  place. grasp: a gripper closes on it. Empty for a thing that others are only placed beside, or that a helper function's
-  path is only led over.
+  place. grasp: a gripper closes on it.
+""".strip()
+"""For every method; what steps can say beside "at" a target is each method's own."""
+
+BESIDE = """
 - A thing that is moved beside another thing, or back to where it stood, needs no area of its own: steps can say
   "beside" and "origin".
 """.strip()
+
+TARGETS = f"""
+{LISTED} Empty for a thing that others are only placed beside, or that a helper function's
+  path is only led over.
+{BESIDE}
+""".strip()
+"""For the team."""
+
+PLAIN_GREY = "A plain grey thing in them stands for its shape, with any colour and pattern."
+"""For planners who are told in words what the instruction's pictures show."""
 
 
 def system_words(*sections: str) -> str:

@@ -20,7 +20,14 @@ from wonderful_team.contracts.locate_points import LocatePoints, Points
 from wonderful_team.contracts.move_box import BoxMove, MoveBox
 from wonderful_team.contracts.plan_directly import DirectPlan, PlanDirectly, PointedTarget, direct_plan_type, in_parts
 from wonderful_team.contracts.plan_from_list import ListedObject, ListedPlan, PlanFromList, SlotWords, listed_plan
-from wonderful_team.contracts.plans import ClarificationDraft, MoveDraft, PlanDraft, SubgoalDraft, TargetDraft
+from wonderful_team.contracts.plans import (
+    ClarificationDraft,
+    MoveDraft,
+    PlainPlan,
+    PlanDraft,
+    SubgoalDraft,
+    TargetDraft,
+)
 from wonderful_team.contracts.presence import EdgePresence, Presence, PresenceAnswer, Strip
 from wonderful_team.contracts.read_scene import ReadScene, RolePoint, SceneReading, SceneTarget
 from wonderful_team.contracts.read_turn import ReadTurn, TurnChoice
@@ -146,6 +153,7 @@ __all__ = [
     "PictureWords",
     "PlaceDraft",
     "PlanDirectly",
+    "PlainPlan",
     "PlanDraft",
     "PlanFromList",
     "PlanReview",

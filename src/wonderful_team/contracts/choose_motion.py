@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pydantic import Field, FiniteFloat
 
 from wonderful_team.contracts.shown import AnswerModel, Question, Reasoning
+from wonderful_team.core.later import later
 from wonderful_team.core.pictures import Candidates, Grid, Picture
 
 GRASPED, UNATTACHED = "P", "Q"
@@ -38,6 +39,7 @@ class ChooseMotion(Question):
         object_grasped, object_unattached: As the subtask names them; "" for none.
         view: The main view with a Candidates mark for each of the two (P and Q) and a Grid.
         step_kinds: What the robot can do.
+        earlier: What is done before this subtask and shows in no picture yet, a line each.
     """
 
     instruction: str
@@ -46,6 +48,7 @@ class ChooseMotion(Question):
     motion_direction: str
     view: Picture
     step_kinds: tuple[str, ...]
+    earlier: tuple[str, ...] = later(())
 
     def output(self) -> type[AnswerModel]:
         return MotionMarks

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Sequence
 from dataclasses import fields
-from typing import Any, Literal
+from typing import Any, Literal, TypeVar
 
 from pydantic import Field
 
@@ -112,6 +112,23 @@ class PlanDraft(AnswerModel):
         return tuple(draft.move.to_step(draft.id) for draft in self.subgoals if draft.move is not None)
 
 
+class PlainPlan(AnswerModel):
+    """Subgoals, and the targets that they need."""
+
+    reasoning: str = Reasoning
+    subgoals: list[GoalDraft] = Field(description="Empty only when the instruction is already fulfilled.")
+    targets: list[TargetDraft]
+
+    def to_subgoals(self) -> tuple[Subgoal, ...]:
+        return tuple(draft.to_subgoal() for draft in self.subgoals)
+
+    def to_targets(self) -> tuple[Target, ...]:
+        return tuple(draft.to_target() for draft in self.targets)
+
+
+Draft = TypeVar("Draft", PlanDraft, PlainPlan)
+
+
 def check_subgoals(subgoals: Sequence[GoalDraft], target_ids: Sequence[str] | None) -> None:
     """Raise ValueError when ids repeat, refer to nothing, or order themselves in a circle."""
     ids = [draft.id for draft in subgoals]
@@ -172,13 +189,13 @@ def _speaks_of(draft: TargetDraft, name: str) -> bool:
     return re.search(rf"(?<![\w-]){re.escape(name)}(?![\w-])", f"{draft.words} {draft.where}") is not None
 
 
-def settle_plan(draft: PlanDraft, slots: Sequence[ShownSlot], with_targets: bool) -> tuple[PlanDraft, tuple[str, ...]]:
+def settle_plan(draft: Draft, slots: Sequence[ShownSlot], with_targets: bool) -> tuple[Draft, tuple[str, ...]]:
     """A draft with its targets settled, and what was changed, in words.
 
     Raises:
         ValueError: The draft does not hang together.
     """
-    if draft.clarification is not None:
+    if isinstance(draft, PlanDraft) and draft.clarification is not None:
         return draft, ()
     fits(subgoals=len(draft.subgoals), targets=len(draft.targets))
     targets, repairs = settle_targets(draft.targets, slots)

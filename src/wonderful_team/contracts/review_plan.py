@@ -59,7 +59,7 @@ class SubgoalCheck(AnswerModel):
 
 
 class PlanReview(AnswerModel):
-    """Verification's word."""
+    """Whether the plan may run as it is."""
 
     reasoning: str = Reasoning
     approved: bool

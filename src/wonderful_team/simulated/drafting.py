@@ -11,6 +11,7 @@ from wonderful_team.contracts import (
     ClarificationDraft,
     DraftPlan,
     ExtractTargets,
+    PlainPlan,
     PlanDraft,
     PlanReview,
     PlanRevision,
@@ -41,12 +42,12 @@ SAME_ANGLE_DEG = 5.0
 BLIND = "one of the pictures of this task shows nothing that was ever there"
 
 
-def answer_draft(context: Context, question: DraftPlan) -> PlanDraft:
+def answer_draft(context: Context, question: DraftPlan) -> PlanDraft | PlainPlan:
     """The plan that truth asks for, when every picture that shows the task is true."""
     task = context.task(question.task)
     if task is None:
-        return blind_plan()
-    return plan_draft(task.plan, question.with_targets)
+        return question.in_form(blind_plan())
+    return question.in_form(plan_draft(task.plan, question.with_targets))
 
 
 def plan_draft(plan: Written, with_targets: bool) -> PlanDraft:

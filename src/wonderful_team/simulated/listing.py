@@ -16,6 +16,7 @@ from wonderful_team.contracts import (
     ShownSlot,
     ShownTask,
     SlotDescription,
+    SlotWords,
     listed_plan,
 )
 from wonderful_team.core.pictures import Picture, Point
@@ -23,6 +24,7 @@ from wonderful_team.core.values import PointRole
 from wonderful_team.errors import NotUnderstoodError
 from wonderful_team.images import whole
 from wonderful_team.images.cut import MARKED_SIDE_PX
+from wonderful_team.simulated.appearance import known, tokens
 from wonderful_team.simulated.context import Context
 from wonderful_team.simulated.draft import Meaning, Written
 from wonderful_team.simulated.places import place_of, point_of
@@ -51,6 +53,27 @@ def slot_words(context: Context, slot: ShownSlot) -> str:
     return "; ".join(lines) or "nothing that was ever there"
 
 
+def check_told(context: Context, slot_words: Sequence[SlotWords], shown: Sequence[str] = ()) -> None:
+    """Raises NotUnderstoodError where a picture of the instruction is not shown, and no words say what it really shows:
+    some word of each thing in it.
+    """
+    every = set() if context.instruction is None else set(context.instruction.slots)
+    missing = every - set(shown) - {one.slot for one in slot_words if _says(context, one)}
+    if missing:
+        raise NotUnderstoodError(f"nobody says what {', '.join(sorted(missing))} really shows")
+
+
+def _says(context: Context, told: SlotWords) -> bool:
+    slot = None if context.instruction is None else context.instruction.slots.get(told.slot)
+    view = None if slot is None else next(iter(slot.views.values()))
+    seen = None if view is None else context.see(whole(view, told.slot))
+    if seen is None:
+        return True
+    said = tokens(told.words)
+    shown = ((name, seen.thing(name)) for name in seen.names)
+    return all(known(said, name, thing, seen) > 0 for name, thing in shown if thing is not None)
+
+
 def answer_plan_from_list(context: Context, question: PlanFromList) -> ListedPlan:
     """The plan that truth asks for, with the coordinates that the list gives its things.
 
@@ -59,12 +82,10 @@ def answer_plan_from_list(context: Context, question: PlanFromList) -> ListedPla
     """
     seen = _main(context, question)
     plan, _ = context.plans(seen)
-    told = {one.slot for one in question.slot_words}
+    check_told(context, question.slot_words, [slot.name for slot in question.slots])
     points: dict[str, dict[str, Point]] = {}
     for draft in plan.targets:
         meaning = plan.meanings[draft.id]
-        if set(meaning.slots) - told:
-            raise NotUnderstoodError(f"nobody says what {', '.join(sorted(set(meaning.slots) - told))} shows")
         target = draft.to_target()
         points[draft.id] = {role: _at(meaning, role, seen, question.objects) for role in target.roles}
     return listed_plan(question, _parts(plan), points)

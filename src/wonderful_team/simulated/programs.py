@@ -26,7 +26,7 @@ from wonderful_team.contracts.shown import ShownSlot
 from wonderful_team.errors import NotFoundError, NotUnderstoodError
 from wonderful_team.simulated.context import Context
 from wonderful_team.simulated.draft import Meaning, Written
-from wonderful_team.simulated.listing import main_of, slot_words
+from wonderful_team.simulated.listing import check_told, main_of, slot_words
 from wonderful_team.simulated.places import place_of, point_of
 from wonderful_team.simulated.plan import moves_of
 from wonderful_team.simulated.seeing import Seen
@@ -52,9 +52,11 @@ def answer_write_program(context: Context, question: WriteProgram) -> Program:
     context.check_words(ShownTask(question.instruction, ()))
     seen = main_of(context, question.picture, question.size_px)
     plan, _ = context.plans(seen)
-    told = {one.slot for one in question.slot_words}
-    shown = None if question.has("execute_trajectory") else context.shown(context.things(seen))
-    moves = [_move(step, plan, seen, told, shown) for step in plan.steps]
+    by_words = question.has("execute_trajectory")
+    if by_words:
+        check_told(context, question.slot_words)
+    shown = None if by_words else context.shown(context.things(seen))
+    moves = [_move(step, plan, seen, shown) for step in plan.steps]
     return program_for(question, moves, f"{len(moves)} moves lead from this table to what is asked.")
 
 
@@ -70,15 +72,11 @@ def check_found(question: WriteProgram) -> None:
         raise NotFoundError(f"the last program failed: {said.removeprefix('error: ').splitlines()[0]}")
 
 
-def _move(
-    step: dict[str, object], plan: Written, seen: Seen, told: set[str], shown: Mapping[str, str] | None
-) -> ProgramMove:
+def _move(step: dict[str, object], plan: Written, seen: Seen, shown: Mapping[str, str] | None) -> ProgramMove:
     """One step as a move; `shown` names the picture of the instruction that shows a thing, for programs that can look by it."""
 
     def reference(name: object) -> Reference:
         meaning = plan.meanings[str(name)]
-        if shown is None and set(meaning.slots) - told:
-            raise NotUnderstoodError(f"nobody says what {', '.join(sorted(set(meaning.slots) - told))} shows")
         if shown is not None and meaning.thing is not None and meaning.thing in shown:
             return Reference(f"{{{shown[meaning.thing]}}}")
         if shown is not None and meaning.thing is None and meaning.slots and step["kind"] != "push":
@@ -108,13 +106,28 @@ def _reference(meaning: Meaning, seen: Seen, nearest: bool) -> Reference:
 
 
 def answer_judge_from_boxes(context: Context, question: JudgeFromBoxes) -> TaskVerdict:
-    """Completed when truth has nothing left to do. The boxes add nothing to that."""
+    """Completed when truth has nothing left to do and the boxes show it: each thing of a name that fits is found where it is."""
     context.check_words(ShownTask(question.instruction, ()))
+    seen = main_of(context, question.picture, question.size_px)
     left = moves_of(context.truth.oracle(), context.truth, context.instruction)
-    completed = context.truth.score().success is True or not left
+    lost = _not_found(question, seen)
+    completed = not lost and (context.truth.score().success is True or not left)
     if context.sampler is not None and context.sampler.draws(context.profile.overlooks, "boxes"):
         completed = not completed
     words = {name: thing.words for name, thing in context.truth.things().items()}
     open_ones = ", ".join(dict.fromkeys(words.get(move.thing, move.thing) for move in left)) or "the goal"
-    summary = "" if completed else f"not where it should be: {open_ones}"
+    missed = f"not found where it could be: {', '.join(lost)}" if lost else f"not where it should be: {open_ones}"
+    summary = "" if completed else missed
     return TaskVerdict(reasoning=summary or "everything is where it should be", completed=completed, summary=summary)
+
+
+def _not_found(question: JudgeFromBoxes, seen: Seen) -> list[str]:
+    """Names of things that show, and of which no box after the motions has its middle where the thing is."""
+    lost = []
+    for name in dict.fromkeys(one.name for one in (*question.before, *question.after)):
+        boxes = [seen.box(key) for key in seen.names if (thing := seen.thing(key)) is not None and thing.words == name]
+        true = [box for box in boxes if box is not None]
+        found = [(float(one.x), float(one.y)) for one in question.after if one.name == name]
+        if true and not any(box.contains(point) for box in true for point in found):
+            lost.append(name)
+    return lost

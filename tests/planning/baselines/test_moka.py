@@ -218,6 +218,14 @@ def test_a_turn_where_a_thing_stands(model: str, tmp_path: Path) -> None:
     assert marked(trial)["answer"]["parsed"]["target_keypoint"] == ""
 
 
+def test_what_an_earlier_subtask_does_is_told_where_the_picture_does_not_show_it(tmp_path: Path) -> None:
+    trial = run("moka", "same_shape", tmp_path, seed=911)
+    first, second = (words(one) for one in requests(trial) if one["contract"] == "ChooseMotion")
+    assert "Done before it" not in first
+    assert "Done before it, which the picture does not show yet:" in second
+    assert "(ends at Q1 of yellow and blue polka dot frame)" in second
+
+
 def test_offline_refuses_by_name_what_is_no_thing(tmp_path: Path) -> None:
     said = "put the red circle to the left of the blue square"
     made = decided("moka", replace(photo(tmp_path), instruction=Instruction(said)))

@@ -12,6 +12,7 @@ import pytest
 import wonderful_team as wt
 from tests.desk import read_record
 from tests.planning.baselines.runs import Listening, contracts, decided, photo, pictures, requests, run, words
+from wonderful_team.agents.common import PLAIN_GREY
 from wonderful_team.core.protocols import Act, GaveUp
 from wonderful_team.errors import ConfigError
 from wonderful_team.evals.paper import paper_figure
@@ -54,6 +55,11 @@ def test_rows_of_text_alone_hold_no_picture(row: Any) -> None:
     extraction = [request for request in requests(row) if request["contract"] == "ListObjects"]
     assert all(pictures(request)[0]["picture"] == "top view" for request in extraction)
     assert bool(extraction) == ("privileged" not in row.method)
+
+
+def test_every_row_is_told_that_a_plain_grey_example_stands_for_its_shape(row: Any) -> None:
+    assert PLAIN_GREY in words(planned(row))
+    assert ("A plain\n  grey example on white" in words(planned(row))) == bool(pictures(planned(row)))
 
 
 def test_every_row_has_one_worked_example_and_thinks_only_where_it_is_meant_to(row: Any) -> None:

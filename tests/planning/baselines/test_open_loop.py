@@ -33,6 +33,18 @@ def test_every_rival_says_what_it_is_and_has_no_member_of_the_team(name: str) ->
 
 
 @pytest.mark.parametrize("name", ON_PICTURES)
+def test_what_a_rival_is_asked_names_nothing_that_the_team_alone_has(name: str, tmp_path: Path) -> None:
+    model = Listening(wt.make_model("offline"))
+    decided(name, photo(tmp_path), model)
+    assert model.heard
+    for request in model.heard:
+        said = request.system + " ".join(part.text for part in request.parts if isinstance(part, Words))
+        said += json.dumps(request.output.model_json_schema())
+        for word in ("Supervisor", "Verification", "Manager", "Checker", "Mover", "Replanner", "helper function"):
+            assert word not in said, f"{request.contract} speaks of {word}"
+
+
+@pytest.mark.parametrize("name", ON_PICTURES)
 def test_a_photo_becomes_a_plan_in_pixels(name: str, tmp_path: Path) -> None:
     made = decided(name, photo(tmp_path))
     assert isinstance(made, Act)

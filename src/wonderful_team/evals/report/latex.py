@@ -110,6 +110,7 @@ _TEX = {
     "^": r"\textasciicircum{}",
     "<": r"$<$",
     ">": r"$>$",
+    "|": r"\textbar{}",
     "\\": r"\textbackslash{}",
 }
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from wonderful_team.contracts import DraftPlan, MoveDraft, PlanDraft, PlanRevision, RevisePlan, SubgoalDraft
+from wonderful_team.contracts import DraftPlan, MoveDraft, PlainPlan, PlanDraft, PlanRevision, RevisePlan, SubgoalDraft
 from wonderful_team.contracts.shown import ShownTask
 from wonderful_team.core.values import Target
 from wonderful_team.errors import UnsupportedQuestion, WonderfulTeamError
@@ -17,7 +17,7 @@ IN_PLACE = {"trace", "shake", "twist"}
 """Kinds of aims that nothing but their own kind of step carries out: a robot without it is told so before anything is looked for."""
 
 
-def answer_draft(question: DraftPlan) -> PlanDraft:
+def answer_draft(question: DraftPlan) -> PlanDraft | PlainPlan:
     """Read the instruction, look at the picture, write the plan."""
     plan, aims = draft(question.task, question.with_targets, question.advice)
     lacks = next((text for aim in aims.aims for text in lacking({aim.kind} & IN_PLACE, question.step_kinds)), "")
@@ -25,6 +25,8 @@ def answer_draft(question: DraftPlan) -> PlanDraft:
         raise UnsupportedQuestion(
             "offline", "DraftPlan", f"{lacks} is not among what this robot does: {', '.join(question.step_kinds)}"
         )
+    if question.plain:
+        return question.in_form(plan)
     return with_moves(plan, question.task, question.step_kinds) if question.with_targets else plan
 
 

@@ -13,7 +13,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-from wonderful_team.agents.common import ANSWER, DATA, EXAMPLES, INSTRUCTION, PICTURES, TARGETS, system_words
+from wonderful_team.agents.common import ANSWER, BESIDE, DATA, EXAMPLES, INSTRUCTION, LISTED, PICTURES, system_words
 from wonderful_team.agents.plan_drawn import plan_drawn
 from wonderful_team.agents.rendering import (
     ability_parts,
@@ -59,7 +59,8 @@ Write the whole plan: subgoals, targets with their points, and the robot's steps
 - A target that is not in the main view has no box and no points and is listed in absent. Do not guess.
 - No subgoals, targets and steps only when the main view shows that the instruction is already fulfilled.
 
-{TARGETS}
+{LISTED} Empty for a thing that others are only placed beside.
+{BESIDE}
 """
 
 CHECK = """

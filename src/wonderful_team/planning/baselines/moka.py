@@ -11,7 +11,8 @@ again; so is an answer that is no answer after the attempts that every method ha
 grounding; the paper counts this among the crashes too.
 Left open or changed, and what is done here:
 - Subtasks are asked for once (their program proposes and then merges), without the examples in context that they offer.
-- All subtasks are planned from the first picture, as the comparison is open loop; what an earlier one moves, later marks go along with.
+- All subtasks are planned from the first picture, as the comparison is open loop; what an earlier one moves, later marks go along with, and what
+  was done before is told in a line, where theirs looks again.
 - The angle is in degrees about the vertical. What they do with the point cloud (grasp sampling, depth of waypoints) is left to the code that all
   methods share, and a robot that only picks and places is sent from the grasp to where the gripper opens.
 - Where a detector gives no mask, its box is the mask.
@@ -62,6 +63,7 @@ def _render_motion(question: ChooseMotion) -> list[Part]:
     ]
     return [
         *words(*lines),
+        *listed("Done before it, which the picture does not show yet", question.earlier),
         *ability_parts(question.step_kinds),
         *picture_parts(question.view, "the main view with marks"),
     ]
@@ -139,6 +141,7 @@ class Moka(OpenLoop):
         busy = np.any([np.zeros(size[::-1], bool), *(one.mask_in(size) for one in found.values())], axis=0)
         path: ToolPath | None = None
         moved: dict[str, Point] = {}
+        earlier: list[str] = []
         for number, subtask in enumerate(planned.subtasks, start=1):
             held, other = (found.get(name.strip()) for name in (subtask.object_grasped, subtask.object_unattached))
             view = _marked(scene.views[0], size, held, other)
@@ -149,6 +152,7 @@ class Moka(OpenLoop):
                 subtask.motion_direction,
                 view,
                 kinds,
+                tuple(earlier),
             )
             answer = await self._readable(question, MARKER, "ground", f"G{number}")
             seed = f"{scene.observation.hash}|{self.attempt}|{number}"
@@ -159,6 +163,7 @@ class Moka(OpenLoop):
             )
             motions, carried = motion.path(*shifts)
             path.write(motions, subtask.instruction)
+            earlier.append(_done(subtask, answer.value))
             if carried is not None:
                 before = shifts[0] or (0.0, 0.0)
                 moved[subtask.object_grasped.strip()] = (before[0] + carried[0], before[1] + carried[1])
@@ -183,6 +188,14 @@ class Moka(OpenLoop):
         if not found:
             raise NotFoundError(f"the detector finds no {name}")
         return found[0]
+
+
+def _done(subtask: SubtaskDraft, marks: MotionMarks) -> str:
+    """An earlier subtask in words, with the mark or tile that it ends at."""
+    end = marks.post_contact_tile.strip() or marks.target_keypoint.strip()
+    other = subtask.object_unattached.strip()
+    of = f" of {other}" if other and not marks.post_contact_tile.strip() else ""
+    return subtask.instruction + (f" (ends at {end}{of})" if end else "")
 
 
 def _names(subtasks: Sequence[SubtaskDraft]) -> list[str]:

@@ -21,7 +21,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from wonderful_team.agents.common import ANSWER, DATA, INSTRUCTION, PICTURES, system_words
+from wonderful_team.agents.common import ANSWER, DATA, EXAMPLES, INSTRUCTION, PICTURES, PLAIN_GREY, system_words
 from wonderful_team.agents.rendering import (
     ability_parts,
     answer_in,
@@ -74,7 +74,7 @@ EXTRACTOR = role(
         """
 You put a scene into words for a planner who does not see it: what there is and where it is.
 """,
-        PICTURES,
+        PICTURES + "\n" + EXAMPLES,
         DATA,
         ANSWER,
     ),
@@ -132,6 +132,8 @@ def _render_plan(question: PlanFromList) -> list[Part]:
         ),
         *words("The user's instruction:", fenced("instruction", question.instruction)),
         *listed("What its names in braces stand for", [f"{{{one.slot}}}: {one.words}" for one in question.slot_words]),
+        *(words(PLAIN_GREY) if question.slot_words else []),
+        *(words(PICTURES + "\n" + EXAMPLES) if question.views else []),
         *view_parts("The scene now", question.views),
         *(words("Pictures of the instruction:") if question.slots else []),
         *slot_parts(question.slots),

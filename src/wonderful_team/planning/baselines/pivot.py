@@ -20,7 +20,7 @@ from typing import Literal
 
 import numpy as np
 
-from wonderful_team.agents.common import ANSWER, DATA, EXAMPLES, INSTRUCTION, PICTURES, TARGETS, system_words
+from wonderful_team.agents.common import ANSWER, DATA, EXAMPLES, INSTRUCTION, LISTED, PICTURES, system_words
 from wonderful_team.agents.rendering import (
     ability_parts,
     example_parts,
@@ -33,7 +33,7 @@ from wonderful_team.agents.rendering import (
 )
 from wonderful_team.agents.role import Ask, role
 from wonderful_team.agents.scene import SceneShown, show_views
-from wonderful_team.contracts import DraftPlan, MarkSelection, PlanDraft, SelectMarks, ShownSlot, StepList, WriteSteps
+from wonderful_team.contracts import DraftPlan, MarkSelection, PlainPlan, SelectMarks, ShownSlot, StepList, WriteSteps
 from wonderful_team.core.actions import At, PushStep, Step
 from wonderful_team.core.pictures import Candidates, Picture, Point
 from wonderful_team.core.together import together
@@ -46,7 +46,6 @@ from wonderful_team.core.values import (
     PointRole,
     Target,
 )
-from wonderful_team.errors import NeedsClarification
 from wonderful_team.models.client import ModelClient
 from wonderful_team.planning.baselines.open_loop import OpenLoop
 
@@ -80,13 +79,13 @@ show, and the targets that they need.
 - What is found of a target is a point, no outline. So a free spot beside a thing is a target of its own, of kind area.
 - No subgoals and targets only when the main view shows that the instruction is already fulfilled.
 
-{TARGETS}
+{LISTED}
+- A thing that goes back to where it stood needs no area of its own: steps can say "origin".
 """,
         lambda question: [
             *task_parts(question.task),
             *ability_parts(question.step_kinds),
             *listed("What went wrong before, to be avoided now", question.advice),
-            *(words("List targets too.") if question.with_targets else []),
         ],
     ),
     Ask(
@@ -203,13 +202,12 @@ class Pivot(OpenLoop):
     async def make_plan(self, scene: SceneShown, start: Plan, advice: tuple[str, ...]) -> Plan:
         """One plan; all its points at once."""
         kinds = tuple(kind for kind in scene.vocabulary.step_kinds if kind != "follow")
-        draft: PlanDraft = (await self.ask(DraftPlan(scene.task, kinds, True, advice), PLANNER, "plan")).value
-        if draft.clarification is not None:
-            raise NeedsClarification(draft.clarification.question, tuple(draft.clarification.choices))
+        question = DraftPlan(scene.task, kinds, True, advice, plain=True)
+        draft: PlainPlan = (await self.ask(question, PLANNER, "plan")).value
         subgoals, targets, steps = draft.to_subgoals(), draft.to_targets(), tuple[Step, ...]()
         if subgoals:
-            question = WriteSteps(scene.task, kinds, subgoals, targets)
-            written: StepList = (await self.ask(question, PLANNER, "act")).value
+            asked = WriteSteps(scene.task, kinds, subgoals, targets)
+            written: StepList = (await self.ask(asked, PLANNER, "act")).value
             steps = written.to_steps()
         view, seed = scene.views[0], scene.observation.hash
         found = await together(

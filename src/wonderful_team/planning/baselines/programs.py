@@ -12,6 +12,7 @@ from collections.abc import Awaitable, Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Literal, TypeAlias
 
+from wonderful_team.agents.common import PLAIN_GREY
 from wonderful_team.agents.rendering import ability_parts, fenced, listed, words
 from wonderful_team.agents.scene import SceneShown
 from wonderful_team.contracts import JudgeFromBoxes, WriteProgram
@@ -313,6 +314,7 @@ def task_words(question: WriteProgram | JudgeFromBoxes) -> list[Part]:
     return [
         *words("The user's instruction:", fenced("instruction", question.instruction)),
         *listed("What its names in braces stand for", [f"{{{one.slot}}}: {one.words}" for one in question.slot_words]),
+        *(words(PLAIN_GREY) if question.slot_words else []),
         *words(
             f'Positions are pixels of "{question.picture}", {width} wide and {height} high, from its top-left corner: x grows to the '
             "right, y grows downwards."

@@ -17,6 +17,7 @@ from wonderful_team.cli.app import run
 from wonderful_team.core.protocols import Event
 from wonderful_team.errors import ConfigError, FileNotWrittenError, MissingExtraError
 from wonderful_team.record import rerun_recording
+from wonderful_team.record.rerun_layout import layout, title
 from wonderful_team.record.rerun_recording import RERUN_NAME, RerunRecording
 
 needs_rerun = pytest.mark.skipif(
@@ -65,7 +66,9 @@ def test_pictures_plan_poses_and_words_are_read_back(tmp_path: Path) -> None:
     said = [row["text"][0] for row in held["/log/subgoals"]]
     assert said[0] == "G1: the cube stands behind the tower"
     assert len(held["/log/actions"]) == len(trial.reports)
-    assert [row["scalars"] for row in held["/robot/held_width_m"]] == [[pytest.approx(0.0391)]]
+    named, *measured = held["/robot/held_width_m"]
+    assert named["names"] == ["held width [m]"]
+    assert [row["scalars"] for row in measured] == [[pytest.approx(0.0391)]]
 
 
 @needs_rerun
@@ -89,7 +92,7 @@ def test_a_pinhole_stands_where_it_is(tmp_path: Path) -> None:
     assert held["/world/cameras/top"][0]["translation"][0] == pytest.approx(camera.T_base_cam.position_m, abs=1e-6)
     matrix = np.array(held["/world/cameras/top/image"][0]["image_from_camera"][0]).reshape(3, 3).T
     assert matrix == pytest.approx(camera.K)
-    assert "/world/seen/top" not in held
+    assert held["/world/seen/top"][0]["positions"], "in its own colours, not in those of a depth picture"
 
 
 @needs_rerun
@@ -194,3 +197,36 @@ def test_a_name_that_cannot_be_is_refused_before_anything_moves(tmp_path: Path, 
         wt.rollout(Carrying(), world, rerun=tmp_path / name, out=tmp_path / "runs")
     assert world.ran == 0
     assert not (tmp_path / "runs").exists()
+
+
+@needs_rerun
+def test_what_is_seen_in_space_ends_round_the_workspace(tmp_path: Path) -> None:
+    view = scene(looking_down(), Block(0.4, 0.0, 0.5, 0.1))
+    recording, limits = RerunRecording(), wt.Limits((0.4, 0.0, 0.0), (0.5, 0.1, 0.4))
+    recording.on_event(Event("run", "run", {"limits": limits}))
+    recording.on_event(Event("observe", "start", wt.Observation({"top": view})))
+    recording.write(tmp_path / "a.rrd")
+    points = np.array(rows(tmp_path / "a.rrd")["/world/seen/top"][0]["positions"])
+    assert len(points)
+    assert (points >= np.array(limits.low_m) - rerun_recording.ROUND_M - 1e-6).all()
+    assert (points <= np.array(limits.high_m) + rerun_recording.ROUND_M + 1e-6).all()
+
+
+@needs_rerun
+def test_the_viewer_opens_with_space_pictures_words_and_a_plot_for_every_unit(tmp_path: Path) -> None:
+    measured = ["opening_m", "force_n", "yaw_rad", "holding"]
+    made = layout({"front": "world/cameras/front/image", "top": "world/cameras/top/image"}, "top", measured, None)
+    upper, lower = made.root_container.contents
+    space, beside = upper.contents
+    assert "- /world/cameras/top/image/depth" in space.contents
+    assert [view.name for view in beside.contents] == ["instruction", "top", "front"]
+    log, lengths, others = lower.contents
+    assert (log.name, lengths.name) == ("what happened", "robot, in m")
+    assert [plot.name for plot in others.contents] == ["robot, in N", "robot, in rad", "robot, yes = 1"]
+
+
+@pytest.mark.parametrize(
+    ("name", "words"), [("held_width_m", "held width [m]"), ("force_n", "force [N]"), ("holding", "holding")]
+)
+def test_a_curve_says_its_unit(name: str, words: str) -> None:
+    assert title(name) == words

@@ -32,6 +32,7 @@ from wonderful_team.core.values import (
     View,
 )
 from wonderful_team.errors import ConfigError, FileNotWrittenError, MissingExtraError
+from wonderful_team.record.rerun_layout import layout, title
 from wonderful_team.redaction import redact
 
 RERUN_NAME = "recording.rrd"
@@ -42,6 +43,11 @@ DEPTH_UNITS = ((10_000.0, 6.5), (1_000.0, 65.0))
 """Depth is kept in 16 bits: so many units of a metre as far as so many metres."""
 MOST_SEEN = 20_000
 """Most points of one view in space."""
+ROUND_M, SEEN_M, PLANE_M = 0.3, 0.002, 0.12
+"""How far round the workspace what is seen is kept, how large a point of it is, and how far from a camera its picture stands [m]."""
+BOUNDS = (140, 140, 140)
+COLOURS = ((255, 210, 63), (86, 204, 242), (111, 207, 151), (242, 153, 74), (235, 130, 235), (235, 87, 87))
+"""Of the targets' boxes, and of their words."""
 PLANNED, MEASURED, LEAST = (47, 164, 224), (255, 106, 26), (179, 38, 30)
 _PART = "--rerun"
 
@@ -79,6 +85,9 @@ class RerunRecording:
         self._bytes = self._stream.binary_stream()
         self._step = 0
         self._seen, self._main = "", ""
+        self._views: dict[str, str] = {}
+        self._numbers: set[str] = set()
+        self._limits: Limits | None = None
         self._measured: list[Array] = []
         self._broken: Exception | None = None
         self._handlers: dict[str, Callable[[Event], None]] = {
@@ -111,6 +120,8 @@ class RerunRecording:
         Raises:
             FileNotWrittenError: The file cannot be written, or the recording broke off; what there is of it is then written.
         """
+        if self._views:
+            self._stream.send_blueprint(layout(self._views, self._main, self._numbers, self._limits))
         self._stream.flush()
         content = self._bytes.read(flush=True)
         self._stream.disconnect()
@@ -127,8 +138,16 @@ class RerunRecording:
         if isinstance(task, Instruction):
             self._log("instruction", self._rr.TextDocument(redact(task.plain_text)), static=True)
         if isinstance(limits, Limits) and max(map(abs, (*limits.low_m, *limits.high_m))) < 50:
+            self._limits = limits
             low, high = np.array(limits.low_m), np.array(limits.high_m)
-            box = self._rr.Boxes3D(mins=[low], sizes=[high - low], labels=["workspace"], show_labels=False)
+            box = self._rr.Boxes3D(
+                mins=[low],
+                sizes=[high - low],
+                colors=[BOUNDS],
+                fill_mode="MajorWireframe",
+                labels=["workspace"],
+                show_labels=False,
+            )
             self._log("world/workspace", box, static=True)
 
     def _on_observe(self, event: Event) -> None:
@@ -136,9 +155,7 @@ class RerunRecording:
         if observation.hash == self._seen:
             return
         self._seen = observation.hash
-        if not self._main:
-            self._main = observation.main.id
-            self._lay_out(observation)
+        self._main = self._main or observation.main.id
         for view in observation.views.values():
             self._keep_view(view)
         robot = observation.robot
@@ -158,15 +175,17 @@ class RerunRecording:
         corners = [(item.box.x0, item.box.y0, item.box.width, item.box.height) for item in boxes.values() if item.box]
         labels = [redact(f"{name} {item.target.words}") for name, item in boxes.items()]
         image = self._image(self._main)
-        self._log(
-            f"{image}/targets", self._rr.Boxes2D(array=corners, array_format=self._rr.Box2DFormat.XYWH, labels=labels)
-        )
+        colours = [COLOURS[k % len(COLOURS)] for k in range(len(boxes))]
+        form = self._rr.Box2DFormat.XYWH
+        self._log(f"{image}/targets", self._rr.Boxes2D(array=corners, array_format=form, labels=labels, colors=colours))
         points = [
             (f"{name} {role}", point) for name, item in plan.grounded.items() for role, point in item.points.items()
         ]
+        # Where a point belongs its box says; its own words, in the same place, would hide both.
+        where, names = [point for _, point in points], [name for name, _ in points]
         self._log(
             f"{image}/points",
-            self._rr.Points2D([point for _, point in points], labels=[name for name, _ in points], radii=3.0),
+            self._rr.Points2D(where, labels=names, show_labels=False, colors=[MEASURED], radii=3.0),
         )
 
     def _on_gate(self, event: Event) -> None:
@@ -180,13 +199,21 @@ class RerunRecording:
         strips = [profile.points_m for profile in profiles]
         lines = self._rr.LineStrips3D(strips, labels=names, colors=[PLANNED], radii=0.002, show_labels=False)
         self._log("world/plan/path", lines)
-        marks, said = [], []
+        marks, said, least = [], [], list[tuple[float, int]]()
         for profile in profiles:
             if profile.nearest is not None and profile.clearance_m is not None:
                 above = np.array([*profile.points_m[profile.nearest][:2], profile.low_m[profile.nearest]])
                 marks.append([above, above - (0.0, 0.0, profile.clearance_m)])
-                said.append(f"{1000 * profile.clearance_m:.0f} mm")
-        self._log("world/plan/clearance", self._rr.LineStrips3D(marks, labels=said, colors=[LEAST], radii=0.001))
+                least.append((profile.clearance_m, len(said)))
+                said.append(f"{round(1000 * profile.clearance_m)} mm (action {profile.action + 1})")
+        lines = self._rr.LineStrips3D(marks, labels=said, colors=[LEAST], radii=0.001, show_labels=False)
+        self._log("world/plan/clearance", lines)
+        if least:
+            _, number = min(least)
+            line = self._rr.LineStrips3D(
+                [marks[number]], labels=[f"least clearance {said[number]}"], colors=[LEAST], radii=0.0015
+            )
+            self._log("world/plan/least_clearance", line)
 
     def _on_execute(self, event: Event) -> None:
         planned, report = event.content
@@ -208,6 +235,9 @@ class RerunRecording:
             self._keep_tool(tool[0], float(yaw) if isinstance(yaw, int | float) else None)
         for name, value in report.measured.items():
             if isinstance(value, int | float) and math.isfinite(value):
+                if name not in self._numbers:
+                    self._numbers.add(name)
+                    self._log(f"robot/{name}", self._rr.SeriesLines(names=title(name)), static=True)
                 self._log(f"robot/{name}", self._rr.Scalars(float(value)))
 
     def _on_verdicts(self, event: Event) -> None:
@@ -237,6 +267,7 @@ class RerunRecording:
 
     def _keep_view(self, view: View) -> None:
         entity, camera = self._image(view.id), view.camera
+        self._views[view.id] = entity
         width, height = view.size_px
         if isinstance(camera, PinholeCamera):
             pose: Pose = camera.T_base_cam
@@ -244,9 +275,11 @@ class RerunRecording:
             turned = self._rr.Quaternion(xyzw=(x, y, z, w))
             stands = self._rr.Transform3D(translation=pose.position_m, quaternion=turned)
             self._log(f"world/cameras/{view.id}", stands)
-            self._log(entity, self._rr.Pinhole(image_from_camera=camera.K, resolution=(width, height)))
-        elif view.depth_m is not None and camera is not None and not isinstance(camera, PlanarCamera):
-            # Rerun knows no other cameras than pinholes: what this one sees stands in space as points.
+            pinhole = self._rr.Pinhole(
+                image_from_camera=camera.K, resolution=(width, height), image_plane_distance=PLANE_M
+            )
+            self._log(entity, pinhole)
+        if view.depth_m is not None and camera is not None and not isinstance(camera, PlanarCamera):
             self._log(f"world/seen/{view.id}", self._points(view))
         self._log(f"{entity}/rgb", self._rr.Image(view.rgb).compress(jpeg_quality=JPEG_QUALITY))
         if view.depth_m is not None:
@@ -261,7 +294,12 @@ class RerunRecording:
         thinned[::stride, ::stride] = True
         rows, columns = np.nonzero(thinned & np.isfinite(view.depth_m) & (view.depth_m > 0))
         points = view.camera.deproject(np.column_stack([columns, rows]) + 0.5, view.depth_m[rows, columns])
-        return self._rr.Points3D(points, colors=view.rgb[rows, columns], radii=0.001)
+        if self._limits is not None:
+            # A camera that looks aslant sees floor and walls for metres behind the table.
+            low, high = np.array(self._limits.low_m) - ROUND_M, np.array(self._limits.high_m) + ROUND_M
+            near = ((points >= low) & (points <= high)).all(axis=1)
+            points, rows, columns = points[near], rows[near], columns[near]
+        return self._rr.Points3D(points, colors=view.rgb[rows, columns], radii=SEEN_M)
 
     def _depth(self, depth_m: Array) -> Any:
         """As a PNG of 16 bits, 0 where it is not known."""
@@ -280,16 +318,6 @@ class RerunRecording:
         if len(self._measured) > 1:
             lines = self._rr.LineStrips3D([np.array(self._measured)], colors=[MEASURED], radii=0.001)
             self._log("world/robot/measured", lines)
-
-    def _lay_out(self, observation: Observation) -> None:
-        """What the viewer shows first: space beside the pictures, words below."""
-        import rerun.blueprint as rrb
-
-        pictures = [rrb.Spatial2DView(origin=self._image(view.id), name=view.id) for view in observation.views.values()]
-        upper = rrb.Horizontal(rrb.Spatial3DView(origin="world", name="space"), rrb.Vertical(*pictures))
-        self._stream.send_blueprint(
-            rrb.Blueprint(rrb.Vertical(upper, rrb.TextLogView(origin="log"), row_shares=[3, 1]))
-        )
 
 
 def _positions(value: Any) -> Array | None:

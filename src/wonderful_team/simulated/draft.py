@@ -27,12 +27,14 @@ class Meaning:
         thing: Name of the thing; None for an area.
         at_m: Middle of the area; None for a thing.
         size_m: Side of the area.
+        on: What the area is a part of, such as an open box; None for the table.
         slots: Pictures of the instruction that must be seen to know it.
     """
 
     thing: str | None = None
     at_m: tuple[float, float] | None = None
     size_m: float = 0.1
+    on: str | None = None
     slots: tuple[str, ...] = ()
 
 
@@ -187,7 +189,7 @@ def _place(plan: Written, move: Put, words: Names, sizes_m: Mapping[str, float],
         meaning = Meaning(at_m=to.at_m, size_m=size, slots=(to.slot,))
         said = f"to its place in {{{to.slot}}}"
         return plan.target("area", f"place of the {name} in {{{to.slot}}}", meaning, "place"), said
-    meaning = Meaning(at_m=to.at_m, size_m=size)
+    meaning = Meaning(at_m=to.at_m, size_m=size, on=to.thing)
     if to.how == "start":
         return plan.target("area", f"place where the {name} stood at the very start", meaning, "place"), (
             "back to where it stood at the very start"

@@ -38,9 +38,9 @@ def place_of(meaning: Meaning, seen: Seen) -> Place | None:
     if meaning.at_m is None:
         return None
     x, y = meaning.at_m
-    half = meaning.size_m / 2
-    corners = [seen.project(np.array([x + dx, y + dy, 0.0])) for dx in (-half, half) for dy in (-half, half)]
-    centre = seen.project(np.array([x, y, 0.0]))
+    half, z = meaning.size_m / 2, _shows_at_m(meaning, seen)
+    corners = [seen.project(np.array([x + dx, y + dy, z])) for dx in (-half, half) for dy in (-half, half)]
+    centre = seen.project(np.array([x, y, z]))
     if centre is None or not seen.inside(centre):
         return None
     box = Box.bounding([corner for corner in corners if corner is not None])
@@ -55,5 +55,17 @@ def point_of(place: Place, role: PointRole, seen: Seen) -> Point:
         point = seen.centre(meaning.thing) if role in ("place", "push_end") else seen.grasp(meaning.thing)
         return point if point is not None and seen.inside(point) else place.box.centre
     assert meaning.at_m is not None  # place_of gives no place without it
-    point = seen.project(np.array([*meaning.at_m, 0.0]))
+    point = seen.project(np.array([*meaning.at_m, _shows_at_m(meaning, seen)]))
     return place.box.centre if point is None else point
+
+
+def _shows_at_m(meaning: Meaning, seen: Seen) -> float:
+    """At which height an area shows [m]: that of its floor, but where something lies on the rim of what it is a part of, the rim's.
+
+    A camera that is no orthographic one sees the two at different pixels, and what is pointed at is what shows.
+    """
+    container = None if meaning.on is None else seen.thing(meaning.on)
+    if container is None or meaning.at_m is None:
+        return 0.0
+    point = seen.project(np.array([*meaning.at_m, container.height_m]))
+    return 0.0 if point is None or seen.at(point) in (None, meaning.on) else container.height_m

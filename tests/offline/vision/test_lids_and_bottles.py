@@ -12,7 +12,7 @@ from wonderful_team.offline.eyes import Eyes
 from wonderful_team.offline.goals.clearing import closed_by
 from wonderful_team.offline.language import describe
 from wonderful_team.offline.vision import see
-from wonderful_team.offline.vision.kinds import part_on
+from wonderful_team.offline.vision.kinds import is_kind_here, part_on
 
 AT = (200.0, 160.0)
 
@@ -120,3 +120,12 @@ def test_a_block_in_the_notch_of_an_angle_is_no_part_of_it() -> None:
     angle = max(things, key=lambda thing: thing.box.area)
     assert len(things) == 2
     assert not angle.holds((205.0, 150.0))
+
+
+@pytest.mark.parametrize("load", [YELLOW, RED])
+def test_a_lid_on_the_table_is_no_box_but_a_tray_with_a_load_is(load: tuple[int, int, int]) -> None:
+    drawn = Drawing().add(box_shape(AT, 130, 130), plain(YELLOW), height_m=0.008)
+    drawn.add(box_shape(AT, 60, 30), plain(load), height_m=0.038)
+    scene = see(drawn.picture(depth=True))
+    plate = max(scene.things, key=lambda thing: thing.area_px)
+    assert is_kind_here(plate, "container", scene) == (load == RED)

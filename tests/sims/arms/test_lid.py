@@ -14,10 +14,14 @@ from tests.sims.arms.needed import needs_arms
 from tests.sims.arms.playing import by_team
 from wonderful_team.core.actions import Gripper, Home, MoveTo
 from wonderful_team.core.geometry import Pose
+from wonderful_team.core.pictures import Frame, Picture
 from wonderful_team.sims.arms import ArmWorld, make_world
 from wonderful_team.sims.arms.lid import ClosedBox
 from wonderful_team.sims.tabletop.engine import mj
 from wonderful_team.sims.tabletop.moving import put_body
+from wonderful_team.simulated.draft import Meaning
+from wonderful_team.simulated.places import place_of, point_of
+from wonderful_team.simulated.seeing import Eyes
 
 pytestmark = needs_arms
 IN_BOX, ON_LID, AGAINST_RIM = (0.0, 0.0, 0.006), (0.03, 0.04, 0.066), (0.0, 0.13, 0.0)
@@ -192,3 +196,31 @@ def test_offline_takes_off_what_closes_the_box_though_no_word_speaks_of_it() -> 
         "put the yellow block",
     ]
     assert plan.subgoals[1].after == ("G1",)
+
+
+def test_a_block_that_leans_in_the_box_is_taken_by_its_middle(world: ArmWorld) -> None:
+    work = opened(world)
+    name = work.wanted[0].name
+    c, s = math.cos(math.radians(25)), math.sin(math.radians(25))
+    T = np.eye(4)
+    T[:3, :3], T[:3, 3] = [[c, 0, s], [0, 1, 0], [-s, 0, c]], box_m(world) + (-0.02, 0.05, 0.03)
+    set_down(world, name, (), Pose.from_matrix(T))
+    poses = world._table.poses()
+    assert not work.score(poses).success
+    middle = poses[name].apply([(0.0, 0.0, work.wanted[0].body.height_m / 2)])[0]
+    first = next(action for action in world.privileged.oracle() if isinstance(action, MoveTo))
+    assert first.pose.position_m[:2] == pytest.approx(middle[:2], abs=0.002)
+
+
+def test_a_place_under_the_lid_is_pointed_at_where_the_lid_shows(world: ArmWorld) -> None:
+    view = world.observe().main
+    assert view.camera is not None
+    assert view.depth_m is not None
+    seen = Eyes(world.privileged).see(Picture("top", view.rgb, Frame.whole("top", view.size_px), view.depth_m))
+    assert seen is not None
+    at_m = box_m(world)[:2] + (0.0, 0.05)
+    place = place_of(Meaning(at_m=(float(at_m[0]), float(at_m[1])), on="box"), seen)
+    assert place is not None
+    x, y = point_of(place, "place", seen)
+    there = view.camera.deproject([(x, y)], [view.depth_m[int(y), int(x)]])[0]
+    assert there[:2] == pytest.approx(at_m, abs=0.002)

@@ -145,6 +145,8 @@ def _higher(part: Thing, thing: Thing) -> bool:
     return part.height_m is not None and thing.height_m is not None and part.height_m > thing.height_m + HIGHER_M
 
 
+LOW_M, SAME_COLOUR = 0.02, 0.5
+"""What lies on the table no higher than this may be a lid without its box [m]; from which share of colour in common a part is one with it."""
 HIGHER_M = 0.01
 """What stands up from a thing is at least so much higher [m]."""
 
@@ -168,6 +170,15 @@ def _is_lid(thing: Thing, scene: Scene) -> bool:
     return part_on(thing, scene) is not None and (thing.on is not None or not is_round(thing))
 
 
+def _lies_aside(thing: Thing, scene: Scene) -> bool:
+    """Whether a thing is a lid that was put down on the table: low, and its handle of its own colour, as no tray's load is."""
+    part = part_on(thing, scene)
+    if part is None or is_round(thing) or (thing.height_m or 0.0) > LOW_M:
+        return False
+    one, other = thing.look.memberships, part.look.memberships
+    return sum(min(one[name], other[name]) for name in one.keys() & other.keys()) > SAME_COLOUR
+
+
 def is_kind_here(thing: Thing, noun: str, scene: Scene) -> bool:
     """Whether a thing is of a kind beside what else is there: next to a bowl, a block of a tenth of its size is no bowl."""
     if noun in ("bottle", "cap"):
@@ -175,6 +186,8 @@ def is_kind_here(thing: Thing, noun: str, scene: Scene) -> bool:
     if noun == "lid":
         return _is_lid(thing, scene)
     if noun == "container" and thing.on is not None and (_is_lid(thing, scene) or _is_bottom(thing, scene)):
+        return False
+    if noun == "container" and _lies_aside(thing, scene):
         return False
     sizes = [other.area_px for other in (scene.things if noun == "container" else scene.objects)] or [thing.area_px]
     if noun == "container":

@@ -9,6 +9,7 @@ import numpy as np
 
 from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.offline.vision.background import room_distance
+from wonderful_team.offline.vision.depth import steady
 from wonderful_team.offline.vision.fitting import least_squares
 
 _FLOOR = np.array([1.7, 1.3, 1.3])
@@ -88,7 +89,8 @@ def find_table(lab: Array, valid: Array, depth_m: Array | None = None) -> Table:
         noise = 1.4826 * np.median(np.abs(height_m[flat])) if flat.any() else 0.0
         if (spread >= NO_TABLE).all():  # noise over a depth of something else: nothing is seen
             known = np.zeros_like(known)
-        raised = known & valid & (np.nan_to_num(height_m) > max(RAISED_M, 4.0 * float(noise)))
+        # What is as low as a plate is not to be in parts raised and in parts not.
+        raised = known & valid & (np.nan_to_num(height_m) > RAISED_M + 3.0 * float(noise))
     return Table(surface, spread, distance, stands_out, height_m, raised, clean)
 
 
@@ -169,6 +171,7 @@ def height_above_table(depth_m: Array, valid: Array) -> Array | None:
     Works for pinhole cameras (where the inverse depth of a plane is linear in the pixel) and for parallel ones
     (where the depth is), whichever fits better; the height is measured along the optical axis.
     """
+    depth_m = steady(depth_m)
     known = np.isfinite(depth_m) & (depth_m > 0) & valid
     if known.sum() < 50:
         return None

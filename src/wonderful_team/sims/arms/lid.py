@@ -23,6 +23,7 @@ from wonderful_team.sims.arms.model import BuiltArm, upright
 from wonderful_team.sims.arms.oracle import arm_actions, grasp_yaw
 from wonderful_team.sims.arms.robot import Robot
 from wonderful_team.sims.arms.scene import ROOM_M
+from wonderful_team.sims.arms.scoring import lying
 from wonderful_team.sims.tabletop.goals import Poses, footprint_of, off_table
 from wonderful_team.sims.tabletop.model import Thing
 from wonderful_team.sims.tabletop.oracle import grasp_point
@@ -193,7 +194,10 @@ class ClosedBox:
         """What is in the way goes aside, the lid too; then what is wanted goes in. [] when it is done, or lost."""
         if self.pushed or upright(poses[self.box.name].quaternion_wxyz) > LEANS_RAD or self.score(poses).success:
             return []
-        believed, actions = dict(poses), list[Action]()
+        # What leans over is taken by its middle: where it would be held if it stood shows something else.
+        fallen = {t.name for t in (*self.wanted, *self.others) if upright(poses[t.name].quaternion_wxyz) > LEANS_RAD}
+        believed = {**poses, **{name: pose for name, pose in lying(poses, self.things).items() if name in fallen}}
+        actions = list[Action]()
         asides = [t for t in (*self.wanted, *self.others) if self.is_over(t.name, poses)]
         asides = [t for t in asides if t not in self.wanted or not self.is_in(t.name, poses)]
         lid_aside = self.is_over(self.lid.name, poses) or corners_m(self.lid, poses[self.lid.name])[:, 2].min() > FLAT_M

@@ -199,7 +199,7 @@ class RerunRecording:
         strips = [profile.points_m for profile in profiles]
         lines = self._rr.LineStrips3D(strips, labels=names, colors=[PLANNED], radii=0.002, show_labels=False)
         self._log("world/plan/path", lines)
-        marks, said, least = [], [], list[tuple[float, int]]()
+        marks, said, least = [], list[str](), list[tuple[float, int]]()
         for profile in profiles:
             if profile.nearest is not None and profile.clearance_m is not None:
                 above = np.array([*profile.points_m[profile.nearest][:2], profile.low_m[profile.nearest]])

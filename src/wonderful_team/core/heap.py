@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+import gc
 import os
 from functools import cache
 from pathlib import Path
@@ -22,13 +23,13 @@ def give_back_free_memory() -> bool:
 class Growth:
     """When free memory is given back in a process that does one piece of work after another.
 
-    Looking through the heap after each takes time, and so does getting the pages again; only what it has grown by is worth that.
+    Looking through objects and heap after each takes time, and so does getting the pages again; only what it has grown by is worth that.
 
     Args:
         most_bytes: What the process may grow by in between.
     """
 
-    def __init__(self, most_bytes: int = 64_000_000) -> None:
+    def __init__(self, most_bytes: int = 200_000_000) -> None:
         self._most = most_bytes
         self._left = 0
 
@@ -37,6 +38,8 @@ class Growth:
         held = _held_bytes()
         if held is not None and held - self._left < self._most:
             return False
+        # A piece of work ends with its objects in circles: their pictures are free only once those are found.
+        gc.collect()
         done = give_back_free_memory()
         self._left = _held_bytes() or 0
         return done

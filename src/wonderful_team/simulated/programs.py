@@ -106,7 +106,7 @@ def _reference(meaning: Meaning, seen: Seen, nearest: bool) -> Reference:
 
 
 def answer_judge_from_boxes(context: Context, question: JudgeFromBoxes) -> TaskVerdict:
-    """Completed when truth has nothing left to do and the boxes show it: each thing of a name that fits is found where it is."""
+    """Completed when truth has nothing left to do and no box speaks against it."""
     context.check_words(ShownTask(question.instruction, ()))
     seen = main_of(context, question.picture, question.size_px)
     left = moves_of(context.truth.oracle(), context.truth, context.instruction)
@@ -122,12 +122,17 @@ def answer_judge_from_boxes(context: Context, question: JudgeFromBoxes) -> TaskV
 
 
 def _not_found(question: JudgeFromBoxes, seen: Seen) -> list[str]:
-    """Names of things that show, and of which no box after the motions has its middle where the thing is."""
+    """Names of things that show, and whose boxes after the motions all lie elsewhere.
+
+    A thing that has no box any more while others have one may be out of the detector's sight where it was put, as in a container;
+    where nothing has one, nobody can say where anything is.
+    """
     lost = []
     for name in dict.fromkeys(one.name for one in (*question.before, *question.after)):
         boxes = [seen.box(key) for key in seen.names if (thing := seen.thing(key)) is not None and thing.words == name]
         true = [box for box in boxes if box is not None]
         found = [(float(one.x), float(one.y)) for one in question.after if one.name == name]
-        if true and not any(box.contains(point) for box in true for point in found):
+        nowhere = not found and question.after
+        if true and not nowhere and not any(box.contains(point) for box in true for point in found):
             lost.append(name)
     return lost

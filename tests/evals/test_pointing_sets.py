@@ -74,7 +74,7 @@ def refspatial(folder: Path) -> Path:
         write(folder / split / "image" / "0.png", picture((30, 40)))
         write(folder / split / "mask" / "0.png", mask((30, 40)))
         entry = {
-            "id": 0, "object": "disc", "prompt": "Please point out the red disc.", "suffix": FORM, "category": split.lower(),
+            "id": 0, "object": "the red disc", "prompt": "Please point out the red disc.", "suffix": FORM, "category": split.lower(),
             "rgb_path": "image/0.png", "mask_path": "mask/0.png", "step": 1,
         }  # fmt: skip
         (folder / split / "question.json").write_text(json.dumps([entry]), encoding="utf-8")
@@ -126,6 +126,7 @@ def test_refspatial_is_read_part_by_part(tmp_path: Path, capsys: pytest.CaptureF
     suites = set_suites(["pointing"], folder, None)
     assert [suite.name.rpartition("/")[2] for suite in suites] == ["Location", "Placement"]
     assert [scenes_of(suite.name)[0].kind for suite in suites] == ["object", "area"]
+    assert {scenes_of(suite.name)[0].words for suite in suites} == {"the red disc"}
     told = bench(capsys, tmp_path, "pointing", "--set", str(folder), "--method", f"{tmp_path}/mine.py:Redmost")
     assert told["conditions"][0]["successes"] == 2
     assert len(set_suites(["pointing"], folder / "Location", None)) == 1

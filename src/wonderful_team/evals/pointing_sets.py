@@ -4,7 +4,8 @@ Formats, as published (no copy of a set was at hand; the readers were tested on 
 where2place: Yuan et al. 2024, RoboPoint, arXiv:2406.10721, huggingface.co/datasets/wentao-yuan/where2place: `point_questions.jsonl` with a
 line for each question (`image`, `text`), `images/`, `masks/NN.jpg` by the line's number from 00 on, white where a point is right.
 refspatial: Zhou et al. 2025, RoboRefer, arXiv:2506.04308, huggingface.co/datasets/BAAI/RefSpatial-Bench: folders `Location`, `Placement`
-and `Unseen`, each with `question.json` (a list of entries with `prompt`, `rgb_path`, `mask_path`), `image/` and `mask/`.
+and `Unseen`, each with `question.json` (a list of entries with `object`, the target's description; `prompt`, the sentence around it; `rgb_path`,
+`mask_path`), `image/` and `mask/`. We ask for what `object` describes; for the whole sentence where an entry has none.
 coco: `photos` has it. Every box is a question of its own.
 Followed: a point counts that lies in the mask. Left out: these sets let several points be given and take the mean; here one is asked for.
 """
@@ -94,6 +95,7 @@ class _Where2Place(BaseModel):
 class _RefSpatial(BaseModel):
     model_config = ConfigDict(extra="ignore")
     id: int
+    object: str = ""
     prompt: str = Field(min_length=1)
     rgb_path: str | None = None
     mask_path: str | None = None
@@ -127,9 +129,8 @@ def _refspatial(path: Path) -> tuple[PointingScene, ...]:
         one = _checked(_RefSpatial, entry, f"{file}, entry {number}")
         picture = _there(path, one.rgb_path or f"image/{one.id}.png")
         mask = _there(path, one.mask_path or f"mask/{one.id}.png")
-        scenes.append(
-            PointingScene(picture, one.prompt.strip(), mask, kind="object" if path.name == "Location" else "area")
-        )
+        words = one.object.strip() or one.prompt.strip()
+        scenes.append(PointingScene(picture, words, mask, kind="object" if path.name == "Location" else "area"))
     return _some(scenes, file)
 
 

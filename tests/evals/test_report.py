@@ -141,6 +141,17 @@ def _row(method: str, seed: int, outcome: str, model: str = "m", task: str = "to
     return Row(TrialSpec(task, seed, condition), TrialRow(outcome, calls=1))  # type: ignore[arg-type]
 
 
+def test_no_method_is_called_the_best_of_those_run_on_other_tasks() -> None:
+    asked = [{"methods": list("abcd"), "models": ["m"]}]
+    rows = [_row(name, seed, "success" if name < "c" else "failure") for name in "abcd" for seed in (1000, 1001)]
+    assert summarise(rows, asked).headline()[0].startswith("Of 4 compared")
+    rows.append(_row("d", 1000, "success", task="toy/b"))
+    told = summarise(rows, asked).headline()
+    assert told[0] == "4 were run, not all on the same tasks: none of them is the best of all."
+    assert len(told) > 1
+    assert not any("no data" in one for one in told)
+
+
 def test_errors_are_not_failures_and_more_than_two_percent_of_them_warn() -> None:
     asked = [{"methods": ["a"], "models": ["m"]}]
     rows = [_row("a", seed, "success") for seed in range(1000, 1050)]

@@ -215,6 +215,11 @@ class Summary:
         main = set(self.main)
         pairs = [one for one in self.pairs(baseline) if one.first in main]
         if len(pairs) > SENTENCES and baseline is None:
+            tasks = {frozenset(row.spec.task for row in self.rows if row.spec.condition == one) for one in self.main}
+            if len(tasks) > 1:
+                lead = f"{len(self.main)} were run, not all on the same tasks: none of them is the best of all."
+                most = sorted((one for one in pairs if one.n), key=lambda one: -one.n)
+                return [lead, *(one.sentence() for one in most[:SENTENCES])]
             best = max(self.main, key=lambda one: self.cell(one).rate.share or 0.0)
             as_good = sum(self.cell(one).rate.share == self.cell(best).rate.share for one in self.main) - 1
             others = f", and {as_good} others succeed as often" if as_good else ""

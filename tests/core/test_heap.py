@@ -1,31 +1,84 @@
-"""Memory between two pieces of work: what went round in circles is given back too."""
+"""Free memory goes back to the system where glibc is, and nothing happens where it is not."""
 
 from __future__ import annotations
 
+import ctypes
 import gc
 import weakref
 
-from wonderful_team.core.heap import Growth
+from wonderful_team.core import heap
+
+
+def test_it_tells_whether_there_was_a_way():
+    known = hasattr(ctypes.CDLL(None), "gnu_get_libc_version")
+    heap.give_back_free_memory()
+    assert (heap._malloc_trim() is not None) is known
+
+
+def test_without_glibc_nothing_happens(monkeypatch):
+    class Other:
+        pass
+
+    heap._malloc_trim.cache_clear()
+    monkeypatch.setattr(heap.ctypes, "CDLL", lambda name: Other())
+    try:
+        assert heap.give_back_free_memory() is False
+    finally:
+        heap._malloc_trim.cache_clear()
+
+
+def test_memory_is_given_back_once_a_process_has_grown(monkeypatch):
+    held, given = [100], []
+    monkeypatch.setattr(heap, "_held_bytes", lambda: held[0])
+
+    def give_back():
+        given.append(held[0])
+        held[0] -= 20
+        return True
+
+    monkeypatch.setattr(heap, "give_back_free_memory", give_back)
+    growth = heap.Growth(50)
+    assert growth.give_back(), "what was there before counts as grown"
+    for now in (85, 110, 129):
+        held[0] = now
+        assert not growth.give_back()
+    held[0] = 130
+    assert growth.give_back()
+    held[0] = 159
+    assert not growth.give_back()
+    assert given == [100, 130]
+
+
+def test_where_the_system_does_not_say_memory_is_given_back_each_time(monkeypatch):
+    given = []
+    monkeypatch.setattr(heap, "_held_bytes", lambda: None)
+    monkeypatch.setattr(heap, "give_back_free_memory", lambda: bool(given.append(1)) or True)
+    growth = heap.Growth()
+    assert growth.give_back()
+    assert growth.give_back()
+    assert len(given) == 2
+
+
+def test_what_is_held_is_a_number_of_bytes_where_it_is_known():
+    held = heap._held_bytes()
+    assert held is None or held > 1_000_000
 
 
 class Held:
     """Something that holds itself, as the objects of a trial do."""
 
-    def __init__(self, size: int) -> None:
-        self.me, self.data = self, bytes(size)
+    def __init__(self):
+        self.me = self
 
 
-def test_circles_are_found_once_the_process_has_grown() -> None:
+def test_what_went_round_in_circles_is_given_back_too_once_a_process_has_grown():
     gc.disable()
     try:
-        growth = Growth(most_bytes=1)
-        lost = weakref.ref(Held(1_000_000))
-        assert lost() is not None
-        growth.give_back()
+        lost = weakref.ref(Held())
+        little = heap.Growth(10**15)
+        little.give_back()
+        assert lost() is not None, "too little to look for"
+        heap.Growth(1).give_back()
         assert lost() is None
-        little = Growth(most_bytes=10**12)
-        kept = weakref.ref(Held(1_000))
-        assert little.give_back() is False
-        assert kept() is not None, "too little to look for"
     finally:
         gc.enable()

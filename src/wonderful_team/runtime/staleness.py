@@ -168,7 +168,7 @@ def staleness_checks(
             )
         )
     checks.append(_age(then, now, max_age_s))
-    same = then.hash == now.hash
+    same = then.shows_the_same_as(now)
     checks.append(GateCheck(None, "scene", True, "the same picture" if same else "changed somewhere", "regions decide"))
     checks += [_region_check(then.main, now.main, region, same, expected_change) for region in regions]
     return checks
@@ -178,7 +178,7 @@ def _age(then: Observation, now: Observation, max_age_s: float | None) -> GateCh
     age_s = now.main.time_s - then.main.time_s
     if max_age_s is None:
         return GateCheck(None, "picture age", True, f"{age_s:.1f} s", "no limit")
-    ok = age_s <= max_age_s and (age_s >= 0 or then.hash == now.hash)
+    ok = age_s <= max_age_s and (age_s >= 0 or then.shows_the_same_as(now))
     return GateCheck(None, "picture age", ok, f"{age_s:.1f} s", f"0 to {max_age_s:.0f} s", f"{max_age_s - age_s:.1f} s")
 
 

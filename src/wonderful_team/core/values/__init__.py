@@ -6,7 +6,7 @@ from wonderful_team.core.values.detection import Detection, DetectorRun, mask_fr
 from wonderful_team.core.values.function import FunctionBox, HelperFunction
 from wonderful_team.core.values.ground_truth import GroundTruthView, TrueThing
 from wonderful_team.core.values.limits import NO_WORKSPACE, Fingers, KeepOut, Limits
-from wonderful_team.core.values.observation import Instruction, Observation, RobotState, Slot, SlotKind, View
+from wonderful_team.core.values.observation import Instruction, LaterView, Observation, RobotState, Slot, SlotKind, View
 from wonderful_team.core.values.plan import (
     Alike,
     Critique,
@@ -56,6 +56,7 @@ __all__ = [
     "Instruction",
     "Fingers",
     "KeepOut",
+    "LaterView",
     "Limits",
     "MAX_ACTIONS",
     "MAX_FUNCTIONS",

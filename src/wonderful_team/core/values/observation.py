@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+import threading
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from types import MappingProxyType
 from typing import Literal, TypeAlias
+
+import numpy as np
 
 from wonderful_team.core.geometry import Camera
 from wonderful_team.core.geometry.arrays import Array
@@ -52,6 +55,57 @@ class View:
     def hash(self) -> str:
         return picture_hash(self.rgb)
 
+    def without_depth(self) -> View:
+        """The same picture, for those who read no depth."""
+        return replace(self, depth_m=None)
+
+
+class LaterView(View):
+    """A view of a simulator that is drawn when its pixels are first asked for: many are never looked at.
+
+    Args:
+        size_px: Width, height of what `draw` gives.
+        draw: Gives rgb and depth_m of `View` as they were at `time_s`, whenever it is called; called once at most.
+    """
+
+    def __init__(
+        self,
+        id: str,
+        camera_name: str,
+        time_s: float,
+        size_px: tuple[int, int],
+        draw: Callable[[], tuple[Array, Array | None]],
+        camera: Camera | None = None,
+    ) -> None:
+        given = {"id": id, "camera_name": camera_name, "time_s": time_s, "camera": camera}
+        self.__dict__.update(given, _size_px=size_px, _draw=draw, _pixels=None, _lock=threading.Lock())
+
+    @property
+    def size_px(self) -> tuple[int, int]:
+        size: tuple[int, int] = self.__dict__["_size_px"]
+        return size
+
+    @property
+    def rgb(self) -> Array:
+        return self._drawn()[0]
+
+    @property
+    def depth_m(self) -> Array | None:
+        return self._drawn()[1]
+
+    def without_depth(self) -> View:
+        return LaterView(self.id, self.camera_name, self.time_s, self.size_px, lambda: (self.rgb, None), self.camera)
+
+    def _drawn(self) -> tuple[Array, Array | None]:
+        own = self.__dict__
+        with own["_lock"]:
+            if own["_pixels"] is None:
+                rgb, depth_m = own["_draw"]()
+                rgb = checked_rgb(rgb)
+                own["_pixels"], own["_draw"] = (rgb, checked_depth(depth_m, rgb.shape[:2])), None
+            pixels: tuple[Array, Array | None] = own["_pixels"]
+            return pixels
+
 
 @dataclass(frozen=True, eq=False)
 class RobotState:
@@ -83,6 +137,13 @@ class Observation:
     def hash(self) -> str:
         """SHA-256 over the pixels of all views, in order: 64 hex digits."""
         return hashlib.sha256("".join(pixels_hash(view.rgb) for view in self.views.values()).encode()).hexdigest()
+
+    def shows_the_same_as(self, other: Observation) -> bool:
+        """Whether all views hold the same pixels, as two equal hashes say; the main views are compared first."""
+        mine, theirs = tuple(self.views.values()), tuple(other.views.values())
+        if len(mine) != len(theirs):
+            return False
+        return all(a is b or np.array_equal(a.rgb, b.rgb) for a, b in zip(mine, theirs, strict=True))
 
     @cached_property
     def short_hash(self) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from typing import Any
@@ -24,7 +24,6 @@ from wonderful_team.sims.tabletop.engine import mj
 from wonderful_team.sims.tabletop.goals import Poses, footprint_of
 from wonderful_team.sims.tabletop.model import TIMESTEP_S, Thing
 from wonderful_team.sims.tabletop.registering import TabletopTask, filled
-from wonderful_team.sims.tabletop.renderer import Drawn
 from wonderful_team.sims.tabletop.rules import Rules
 from wonderful_team.sims.tabletop.seeds import generator
 from wonderful_team.sims.tabletop.simulated_table import SimulatedTable
@@ -185,13 +184,14 @@ class ArmTable(SimulatedTable):
         ]
         return max(under)[1] if under else None
 
-    def look(self, camera: str) -> Drawn:
-        """A picture of the table as its camera sees it: the depth sensor has its faults."""
+    def look(self, camera: str) -> Callable[[], tuple[Array, Array]]:
+        """Drawn at once, since ink and noise depend on when; the depth sensor has its faults."""
         drawn = self.draw(camera)
-        if not self.asked.depth:
-            return drawn
-        self._looks += 1
-        return Drawn(drawn.rgb, sensed(drawn.depth_m, self.asked.depth, generator(self.seed, "depth", self._looks)))
+        depth_m = drawn.depth_m
+        if self.asked.depth:
+            self._looks += 1
+            depth_m = sensed(depth_m, self.asked.depth, generator(self.seed, "depth", self._looks))
+        return lambda: (drawn.rgb, depth_m)
 
     @cached_property
     def _instruction(self) -> Instruction:

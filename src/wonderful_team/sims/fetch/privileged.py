@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -189,7 +189,7 @@ class FetchTruth:
             owners = [self._owner(str(geom), LID_NAME in things) for geom in said["names"]]
             shown = arrays["geoms"]
             masks = {name: np.isin(shown, [k for k, owner in enumerate(owners) if owner == name]) for name in things}
-            self._sights[key] = GroundTruthView(replace(observation.views[camera], depth_m=None), masks, things)
+            self._sights[key] = GroundTruthView(observation.views[camera].without_depth(), masks, things)
         return self._sights[key]
 
     def _owner(self, geom: str, lid_is_off: bool) -> str:

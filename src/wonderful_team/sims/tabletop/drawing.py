@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from wonderful_team.sims.tabletop.kept_pictures import KeepingRenderer
 from wonderful_team.sims.tabletop.model import BuiltModel
 from wonderful_team.sims.tabletop.renderer import Renderer
 
@@ -13,6 +14,13 @@ def open_renderer(built: BuiltModel, wanted: str | None = None) -> tuple[Rendere
         built: What is to be drawn.
         wanted: None for the best that works, or "rays" for ray casting.
     """
+    renderer, notes = _working_renderer(built, wanted)
+    if built.same_as is None or built.decorate is not None:
+        return renderer, notes  # what is drawn beside the bodies is not told by their poses
+    return KeepingRenderer(renderer, built.same_as), notes
+
+
+def _working_renderer(built: BuiltModel, wanted: str | None) -> tuple[Renderer, tuple[str, ...]]:
     from wonderful_team.sims.tabletop.drawing_rays import RayRenderer
 
     if wanted == "rays":

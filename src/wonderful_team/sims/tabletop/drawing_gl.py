@@ -85,13 +85,13 @@ class OpenGLRenderer:
 
     def __init__(self, built: BuiltModel) -> None:
         self._built = built
-        _THREAD.run(self._open)
+        _THREAD.run(_THREAD.ensure_context)
         self.name = _THREAD.name
-        # A world that nobody closed gives its memory back on the right thread, too.
-        self._give_back = weakref.finalize(self, _THREAD.free_later, self._context)
+        self._context: Any = None
+        self._give_back: Callable[[], object] = lambda: None
 
     def _open(self) -> None:
-        _THREAD.ensure_context()
+        """Hand the model to the graphics card, which takes milliseconds: once something of it is drawn."""
         model = self._built.model
         strokes = 0 if self._built.decorate is None else MOST_STROKES
         self._scene = mj.MjvScene(model, maxgeom=int(model.ngeom) + SPARE_GEOMS + strokes)
@@ -104,12 +104,14 @@ class OpenGLRenderer:
         self._context = mj.MjrContext(model, mj.mjtFontScale.mjFONTSCALE_100)
         mj.mjr_setBuffer(mj.mjtFramebuffer.mjFB_OFFSCREEN, self._context)
         self._viewport = mj.MjrRect(0, 0, int(model.vis.global_.offwidth), int(model.vis.global_.offheight))
+        # A world that nobody closed gives its memory back on the right thread, too.
+        self._give_back = weakref.finalize(self, _THREAD.free_later, self._context)
 
     def draw(self, state: Any, camera: str, *, alone: bool = False) -> Drawn:
-        return _THREAD.run(lambda: self._render(state, camera, _GROUPS[alone]))
+        return self._run(lambda: self._render(state, camera, _GROUPS[alone]))
 
     def colours(self, state: Any, camera: str, *, alone: bool = False) -> Array:
-        return _THREAD.run(lambda: self._colours(state, camera, _GROUPS[alone]))
+        return self._run(lambda: self._colours(state, camera, _GROUPS[alone]))
 
     def bodies(self, state: Any, camera: str) -> Array:
         def work() -> Array:
@@ -121,13 +123,21 @@ class OpenGLRenderer:
                 self._scene.flags[mj.mjtRndFlag.mjRND_SEGMENT] = 0
                 self._scene.flags[mj.mjtRndFlag.mjRND_IDCOLOR] = 0
             segment = coded.astype(np.int64) @ np.array([1, 256, 65536]) - 1
-            bodies = np.zeros(self._scene.ngeom + 1, dtype=np.int64)
+            bodies = np.zeros(self._scene.ngeom + 1, dtype=np.int32)
             for geom in self._scene.geoms[: self._scene.ngeom]:
                 if geom.objtype == mj.mjtObj.mjOBJ_GEOM:
                     bodies[geom.segid] = self._built.model.geom_bodyid[geom.objid]
             return bodies[np.where((segment >= 0) & (segment < self._scene.ngeom), segment, -1)]
 
-        return _THREAD.run(work)
+        return self._run(work)
+
+    def _run(self, work: Callable[[], T]) -> T:
+        def when_open() -> T:
+            if self._context is None:
+                self._open()
+            return work()
+
+        return _THREAD.run(when_open)
 
     def _render(self, state: Any, camera: str, groups: tuple[int, ...]) -> Drawn:
         self._shade(state, camera, groups)

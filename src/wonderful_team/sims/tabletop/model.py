@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import hashlib
 import math
+import pickle
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal, TypeAlias
@@ -70,6 +72,7 @@ class BuiltModel:
         look: How it is lit and from where it is seen.
         tool: What the robot holds: a suction cup, which needs no body of its own, a spatula, or the gripper of an arm.
         decorate: Adds what no body shows, such as ink, to MuJoCo's visual scene before it is drawn.
+        same_as: Digest of all that the model was made from; None where that is not known.
     """
 
     model: Any
@@ -78,6 +81,7 @@ class BuiltModel:
     look: Look
     tool: ToolName = "suction"
     decorate: Callable[[Any], None] | None = None
+    same_as: str | None = None
 
     @property
     def lenses(self) -> dict[str, Lens]:
@@ -123,7 +127,8 @@ def build(
     covers = covers_of(model, things)
     if look.table_cover is not None:
         covers[int(mj.mj_name2id(model, mj.mjtObj.mjOBJ_GEOM, "see table"))] = (look.table_cover, 1.0)
-    return BuiltModel(model, tuple(things), covers, look, tool)
+    made_from = hashlib.sha256(pickle.dumps((tuple(things), size_px, tool, look))).hexdigest()
+    return BuiltModel(model, tuple(things), covers, look, tool, same_as=made_from)
 
 
 def _set_options(spec: Any, size_px: tuple[int, int], look: Look) -> None:

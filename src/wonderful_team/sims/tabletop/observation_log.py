@@ -9,7 +9,7 @@ from __future__ import annotations
 import threading
 from collections import deque
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Protocol, TypeVar
 
 import numpy as np
@@ -110,7 +110,7 @@ class ObservationLog:
     def _sight(self, view: View, state: Snapshot) -> GroundTruthView:
         table, camera = self._table, view.camera_name
         return GroundTruthView(
-            replace(view, depth_m=None),
+            view.without_depth(),
             Lazily(lambda: self._drawn(lambda: table.masks_at(state, camera))),
             Lazily(lambda: true_things(table.things, table.poses_at(state))),
         )

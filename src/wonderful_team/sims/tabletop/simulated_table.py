@@ -21,6 +21,12 @@ from wonderful_team.sims.tabletop.moving import put_body
 from wonderful_team.sims.tabletop.registering import TabletopTask
 from wonderful_team.sims.tabletop.renderer import Drawn, Renderer
 
+DRAWN_FROM = (
+    *("qpos", "mocap_pos", "mocap_quat", "xpos", "xquat", "xmat", "xipos", "ximat", "geom_xpos", "geom_xmat"),
+    *("site_xpos", "site_xmat", "cam_xpos", "cam_xmat", "light_xpos", "light_xdir"),
+)
+"""What MuJoCo keeps of poses: all that a picture of bodies depends on."""
+
 
 @dataclass(frozen=True, eq=False)
 class Snapshot:
@@ -123,9 +129,33 @@ class SimulatedTable(ABC):
         """A picture of the table as it stands now."""
         return self.renderer().draw(self._state, camera)
 
-    def look(self, camera: str) -> Drawn:
-        """The same as its camera sees it."""
-        return self.draw(camera)
+    def look(self, camera: str) -> Callable[[], tuple[Array, Array]]:
+        """Colours and depth that a camera sees now, drawn when they are asked for.
+
+        Whatever has moved by then, and even once the table is closed.
+
+        Raises:
+            ConfigError: The table is closed.
+        """
+        self.renderer()
+        state = self._still()
+        return lambda: self._drawn_from(state, camera)
+
+    def _drawn_from(self, state: Any, camera: str) -> tuple[Array, Array]:
+        renderer = open_renderer(self.built, self._wanted_renderer)[0] if self.closed else self.renderer()
+        try:
+            drawn = renderer.draw(state, camera)
+        finally:
+            if self.closed:
+                renderer.close()
+        return drawn.rgb, drawn.depth_m
+
+    def _still(self) -> Any:
+        """The state as it is drawn now, to the last bit: poses worked out again differ by rounding."""
+        still, now = mj.MjData(self.built.model), self._state
+        for name in DRAWN_FROM:
+            getattr(still, name)[:] = getattr(now, name)
+        return still
 
     def film(self, each: Callable[[], None] | None, every_s: float) -> None:
         """Call `each` about every `every_s` of simulated time while something is moved; None stops it."""

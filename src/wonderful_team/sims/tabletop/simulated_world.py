@@ -8,7 +8,7 @@ from functools import cached_property
 from typing import Any, Generic, TypeVar
 
 from wonderful_team.core.geometry.arrays import Array
-from wonderful_team.core.values import Instruction, Observation, RobotState, View
+from wonderful_team.core.values import Instruction, LaterView, Observation, RobotState
 from wonderful_team.sims.tabletop.cameras import CAMERA_NAMES
 from wonderful_team.sims.tabletop.simulated_table import SimulatedTable, Snapshot
 from wonderful_team.sims.tabletop.truth import TableTruth
@@ -58,8 +58,8 @@ class SimulatedWorld(ABC, Generic[TableKind, TruthKind]):
                 return seen
         views = {}
         for name in CAMERA_NAMES:
-            drawn = table.look(name)
-            views[name] = View(name, name, self.time_s, drawn.rgb, drawn.depth_m, table.built.lenses[name].camera)
+            lens = table.built.lenses[name]
+            views[name] = LaterView(name, name, self.time_s, lens.size_px, table.look(name), lens.camera)
         observation = Observation(views, self._robot())
         self.privileged.saw(observation)
         self._seen = (at, observation)

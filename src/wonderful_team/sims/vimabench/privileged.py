@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -117,5 +117,5 @@ class VimaTruth:
             said, pictures = self._simulator.ask(what, camera=view.camera_name, **which)
             bodies = pictures["bodies"]
             masks = {str(name): np.asarray(bodies == int(body)) for body, name in said["names"].items()}
-            self._sights[key] = GroundTruthView(replace(view, depth_m=None), masks)
+            self._sights[key] = GroundTruthView(view.without_depth(), masks)
         return self._sights[key]

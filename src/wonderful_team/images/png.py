@@ -1,15 +1,15 @@
 """PNG files, quickly: a picture is encoded for every request, so time counts more than the last kilobyte.
 
-One filter for the whole picture (each row minus the row above), and zlib's two fast strategies: runs for drawings and
-simulators, Huffman codes alone for photos with noise. Twice as fast as a general encoder, and smaller than its fast setting.
+One filter for the whole picture (each row minus the row above), and ISA-L's fastest level: twice as fast as zlib's fast
+strategies for the grain of a photo, six times for a simulator's even colours.
 """
 
 from __future__ import annotations
 
 import struct
-import zlib
 
 import numpy as np
+from isal import isal_zlib
 
 from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.pictures import checked_rgb
@@ -17,7 +17,7 @@ from wonderful_team.core.pictures import checked_rgb
 _SIGNATURE = b"\x89PNG\r\n\x1a\n"
 _UP = 2  # filter type 2 of the PNG specification: the byte above is subtracted
 _TRUECOLOUR_8 = (8, 2, 0, 0, 0)  # bits, colour type, and the only compression, filter and interlace methods
-_RUNS_FROM = 0.3  # share of unchanged bytes from which runs are worth looking for
+_LEVEL = 1  # 0 is as fast and sixty per cent larger for a photo, 2 slower and no smaller
 
 
 def fast_png(rgb: Array) -> bytes:
@@ -33,13 +33,10 @@ def fast_png(rgb: Array) -> bytes:
     filtered[:, 0] = _UP
     filtered[0, 1:] = rows[0]
     np.subtract(rows[1:], rows[:-1], out=filtered[1:, 1:])
-    sample = filtered[:: max(1, height // 32)]
-    runs = np.count_nonzero(sample) < (1 - _RUNS_FROM) * sample.size
-    packer = zlib.compressobj(1, zlib.DEFLATED, 15, 9, zlib.Z_RLE if runs else zlib.Z_HUFFMAN_ONLY)
-    packed = packer.compress(filtered.data) + packer.flush()
+    packed = isal_zlib.compress(filtered.data, _LEVEL)
     header = struct.pack(">IIBBBBB", width, height, *_TRUECOLOUR_8)
     return _SIGNATURE + _chunk(b"IHDR", header) + _chunk(b"IDAT", packed) + _chunk(b"IEND", b"")
 
 
 def _chunk(kind: bytes, body: bytes) -> bytes:
-    return struct.pack(">I", len(body)) + kind + body + struct.pack(">I", zlib.crc32(body, zlib.crc32(kind)))
+    return struct.pack(">I", len(body)) + kind + body + struct.pack(">I", isal_zlib.crc32(body, isal_zlib.crc32(kind)))

@@ -3,58 +3,25 @@
 from __future__ import annotations
 
 import hashlib
-import threading
-from collections import OrderedDict
 from collections.abc import Callable, Hashable
-from typing import Any, TypeVar
+from typing import Any, TypeAlias
 
 from wonderful_team.core.geometry.arrays import Array
+from wonderful_team.core.kept import Kept
 from wonderful_team.sims.tabletop.renderer import Drawn, Renderer
 
 MOST_BYTES = 64_000_000
 """Some six scenes of 640 x 320 pixels: the trials of one scene follow each other."""
-Kept = TypeVar("Kept", Array, Drawn)
+Drawing: TypeAlias = tuple[Array, ...]
+"""Read-only."""
 
 
-class KeptPictures:
-    """Read-only pictures by what they show, the longest unused given up first; safe to share between threads."""
-
-    def __init__(self, most_bytes: int = MOST_BYTES) -> None:
-        self._most = most_bytes
-        self._held: OrderedDict[Hashable, Any] = OrderedDict()
-        self._bytes = 0
-        self._lock = threading.Lock()
-
-    def get(self, key: Hashable, draw: Callable[[], Kept]) -> Kept:
-        """What is kept under a key, drawn if it is not."""
-        with self._lock:
-            if key in self._held:
-                self._held.move_to_end(key)
-                kept: Kept = self._held[key]
-                return kept
-        # Not under the lock: drawing takes milliseconds, and twice does no harm.
-        drawn = draw()
-        for array in _arrays(drawn):
-            array.setflags(write=False)
-        with self._lock:
-            self._forget(key)
-            self._held[key] = drawn
-            self._bytes += _size(drawn)
-            while self._bytes > self._most:
-                self._forget(next(iter(self._held)))
-        return drawn
-
-    @property
-    def held_bytes(self) -> int:
-        """Memory of all pictures."""
-        return self._bytes
-
-    def _forget(self, key: Hashable) -> None:
-        if key in self._held:
-            self._bytes -= _size(self._held.pop(key))
+def kept_pictures(most_bytes: int = MOST_BYTES) -> Kept[Hashable, Drawing]:
+    """Room for pictures, by what they show."""
+    return Kept(most_bytes, lambda drawing: sum(array.nbytes for array in drawing))
 
 
-_KEPT = KeptPictures()
+_KEPT = kept_pictures()
 
 
 class KeepingRenderer:
@@ -65,32 +32,35 @@ class KeepingRenderer:
         model: Says which model that is: two with the same words draw the same.
     """
 
-    def __init__(self, renderer: Renderer, model: str, kept: KeptPictures = _KEPT) -> None:
+    def __init__(self, renderer: Renderer, model: str, kept: Kept[Hashable, Drawing] = _KEPT) -> None:
         self._renderer, self._model, self._kept = renderer, model, kept
         self.name = renderer.name
 
     def draw(self, state: Any, camera: str, *, alone: bool = False) -> Drawn:
-        key = self._key(state, camera, f"draw {alone}")
-        return self._kept.get(key, lambda: self._renderer.draw(state, camera, alone=alone))
+        def work() -> Drawing:
+            drawn = self._renderer.draw(state, camera, alone=alone)
+            return drawn.rgb, drawn.depth_m
+
+        return Drawn(*self._get(state, camera, f"draw {alone}", work))
 
     def colours(self, state: Any, camera: str, *, alone: bool = False) -> Array:
-        key = self._key(state, camera, f"colours {alone}")
-        return self._kept.get(key, lambda: self._renderer.colours(state, camera, alone=alone))
+        return self._get(
+            state, camera, f"colours {alone}", lambda: (self._renderer.colours(state, camera, alone=alone),)
+        )[0]
 
     def bodies(self, state: Any, camera: str) -> Array:
-        return self._kept.get(self._key(state, camera, "bodies"), lambda: self._renderer.bodies(state, camera))
+        return self._get(state, camera, "bodies", lambda: (self._renderer.bodies(state, camera),))[0]
 
     def close(self) -> None:
         self._renderer.close()
 
-    def _key(self, state: Any, camera: str, what: str) -> Hashable:
+    def _get(self, state: Any, camera: str, what: str, draw: Callable[[], Drawing]) -> Drawing:
         poses = hashlib.sha256(state.geom_xpos.tobytes() + state.geom_xmat.tobytes()).digest()
-        return self._model, self.name, camera, what, poses
-
-
-def _arrays(drawn: Array | Drawn) -> tuple[Array, ...]:
-    return (drawn.rgb, drawn.depth_m) if isinstance(drawn, Drawn) else (drawn,)
-
-
-def _size(drawn: Array | Drawn) -> int:
-    return sum(array.nbytes for array in _arrays(drawn))
+        key = (self._model, self.name, camera, what, poses)
+        drawn = self._kept.get(key)
+        if drawn is None:
+            drawn = draw()
+            for array in drawn:
+                array.setflags(write=False)
+            drawn = self._kept.keep(key, drawn)
+        return drawn

@@ -123,6 +123,28 @@ def kept_trial_s(quick: bool) -> str:
         return f"{(time.process_time() - before) / len(specs):.2f} s ({solved}/{len(specs)} solved)"
 
 
+def settings_trial_s(quick: bool) -> str:
+    """CPU of a trial where nine settings run on each scene in turn, as a study orders them: 81 trials, or 324."""
+    from wonderful_team.api.trial import run_trial
+    from wonderful_team.evals.suites import ABLATED
+    from wonderful_team.evals.trials import Condition, RunSettings, TrialSpec
+
+    methods = ("team", "team:paper", *(f"team:s{number}" for number in range(1, 8)))
+    specs = [
+        TrialSpec(f"tabletop/{task}", seed, Condition(method, "simulated:perfect"))
+        for seed in range(700000, 700001 if quick else 700004)
+        for task in ABLATED
+        for method in methods
+    ]
+    with tempfile.TemporaryDirectory() as out:
+        settings = RunSettings(record="none", out=Path(out))
+        for method in methods[:2]:
+            run_trial(TrialSpec("tabletop/rotate", 1, Condition(method, "simulated:perfect")), settings)
+        before = time.process_time()
+        solved = sum(run_trial(spec, settings).outcome == "success" for spec in specs)
+        return f"{(time.process_time() - before) / len(specs):.2f} s ({solved}/{len(specs)} solved)"
+
+
 def opening_s(quick: bool) -> str:
     """CPU of opening a study's store by the study, which checks all of it, and by each of its workers."""
     from benchmarks.store_growth import made_up
@@ -159,11 +181,13 @@ def blocks_s(count: int, quick: bool) -> str:
     import wonderful_team as wt
 
     with tempfile.TemporaryDirectory() as out:
+        start = time.process_time()
+        wt.Team(model="offline", out=out).plan(blocks(1)[::-1].copy(), "put the red block into the blue bowl")
         before = time.process_time()
         made = wt.Team(model="offline", out=out).plan(blocks(count), "put every red block into the blue bowl")
         seconds = time.process_time() - before
     picked = {str(getattr(step.step, "pick", "")) for step in made.plan.actions}
-    return f"{seconds:.1f} s ({made.plan.status}, {len(picked)} picked)"
+    return f"{seconds:.1f} s, after {before - start:.1f} s to load ({made.plan.status}, {len(picked)} picked)"
 
 
 def blocks(count: int) -> Any:
@@ -209,10 +233,17 @@ def record_ms(quick: bool) -> str:
 
 
 def ray_ratio(quick: bool) -> str:
-    """Two Ray workers against two processes; wall time, so the one row that an idle machine matters for."""
+    """Two Ray workers against two processes; wall time, so that an idle machine matters."""
     from benchmarks.ray_speed import compare
 
     return compare(2 if quick else 6, 24 if quick else 60)
+
+
+def cores_ratio(quick: bool) -> str:
+    """Two processes against one; wall time too."""
+    from benchmarks.ray_speed import compare_cores
+
+    return compare_cores(2 if quick else 6, 24 if quick else 60)
 
 
 ROWS = (
@@ -225,11 +256,13 @@ ROWS = (
     Row("oracle episode, CPU", "50 ms", oracle_ms),
     Row("simulated:perfect trial, CPU", "0.18 s", lambda quick: trial_s("simulated:perfect", quick)),
     Row("simulated:perfect trial, records of failures, CPU", "-", kept_trial_s),
+    Row("simulated:perfect trial, nine settings on a scene, CPU", "0.18 s", settings_trial_s),
     Row("opening a store, by the study / by each worker", "-", opening_s),
     Row("offline, 20 red blocks into the bowl, CPU", "4 s", lambda quick: blocks_s(20, quick)),
     Row("offline, 50 red blocks into the bowl, CPU", "12 s", lambda quick: blocks_s(50, quick)),
     Row("one more request in a record", "constant", record_ms),
     Row("Ray, two workers, start not counted / --jobs 2", "0.95", ray_ratio),
+    Row("two workers / one, start not counted", "1.9", cores_ratio),
 )
 
 

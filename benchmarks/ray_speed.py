@@ -1,4 +1,4 @@
-"""Two Ray workers against `--jobs 2` on the same trials of this machine, in turn; the start of either is not counted.
+"""Two Ray workers against `--jobs 2`, and that against `--jobs 1`, on the same trials of this machine, in turn; no start is counted.
 
     python -m benchmarks.ray_speed                 # 4 alternations of 40 trials
     python -m benchmarks.ray_speed --rounds 8 --trials 80
@@ -12,13 +12,17 @@ from __future__ import annotations
 import argparse
 import contextlib
 import importlib.util
+import multiprocessing
 import os
 import statistics
 import tempfile
 import threading
 import time
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
+
+import numpy as np
 
 from wonderful_team.api.study import Study
 from wonderful_team.evals.store import Store
@@ -49,13 +53,13 @@ def descendants_cpu_s() -> float:
     return sum(sum(stats[pid][10:14]) for pid in ours if pid in stats) / os.sysconf("SC_CLK_TCK")
 
 
-def course(ray: str | None, trials: int, folder: Path) -> Course:
+def course(ray: str | None, trials: int, folder: Path, jobs: int = 2) -> Course:
     """Run a study and look at its store from beside."""
     store, marks = folder / f"{ray}-{time.monotonic_ns()}.db", [(time.monotonic(), 0.0, 0)]
     first = 300000
     study = Study(
         TASKS, models="simulated:perfect", seeds=range(first, first + trials // len(TASKS)), store=store, controls=(),
-        record="none", jobs=2, ray=ray,
+        record="none", jobs=jobs, ray=ray,
     )  # fmt: skip
     over = threading.Event()
 
@@ -101,6 +105,49 @@ def compare(rounds: int, trials: int) -> str:
     )
 
 
+def compare_cores(rounds: int, trials: int) -> str:
+    """Two workers against one, in turn; beside it what two processes get of this machine's cores and of its memory."""
+    rates, machine = [], []
+    with tempfile.TemporaryDirectory() as name:
+        for turn in range(rounds):
+            order = (1, 2) if turn % 2 == 0 else (2, 1)
+            found = {jobs: course(None, trials, Path(name), jobs).per_minute for jobs in order}
+            rates.append(found[2] / found[1])
+            machine.append(tuple(_two_to_one(work) for work in (_counting, _copying)))
+    rates.sort()
+    counting, copying = (statistics.median(column) for column in zip(*machine, strict=True))
+    return (
+        f"{statistics.median(rates):.2f} ({rates[0]:.2f}-{rates[-1]:.2f}, n = {rounds}); of this machine, two processes that count "
+        f"{counting:.2f}, that copy memory {copying:.2f}"
+    )
+
+
+def _two_to_one(work: Callable[[], None]) -> float:
+    """How much more two processes get done than one in the same time."""
+    seconds = []
+    for count in (1, 2):
+        processes = [multiprocessing.get_context("fork").Process(target=work) for _ in range(count)]
+        started = time.perf_counter()
+        for process in processes:
+            process.start()
+        for process in processes:
+            process.join()
+        seconds.append(time.perf_counter() - started)
+    return 2 * seconds[0] / seconds[1]
+
+
+def _counting() -> None:
+    total = 0
+    for number in range(20_000_000):
+        total = (total * 31 + number) & 0xFFFFFFFF
+
+
+def _copying() -> None:
+    values = np.ones(4_000_000, np.float32)
+    for _ in range(400):
+        values = values * np.float32(1.0001)
+
+
 def main() -> None:
     """Measure and print."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -109,6 +156,7 @@ def main() -> None:
     options = parser.parse_args()
     print(f"load {os.getloadavg()[0]:.1f} on {os.cpu_count()} cores")
     print(f"Ray / --jobs 2, trials a minute: {compare(options.rounds, options.trials)}")
+    print(f"--jobs 2 / --jobs 1, trials a minute: {compare_cores(options.rounds, options.trials)}")
 
 
 if __name__ == "__main__":

@@ -236,7 +236,11 @@ class TeamPolicy:
             if turn < self.config.bounds.returns:
                 session.warn("; ".join(told) + " The plan goes back to the Supervisor.")
         assert failed is not None
-        raise failed
+        try:
+            raise failed
+        finally:
+            # An error holds this frame: they would hold each other in a circle, with all that was seen.
+            failed = None
 
     def _not_approved(self, state: PlanState) -> bool:
         """Whether a plan ends here, because nothing may run that Verification did not approve."""

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from functools import partial
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -60,7 +59,7 @@ class Course:
         self._let_go = np.zeros(0, dtype=np.int64)
         # How the tool was turned when it closed, and how the last move has turned it.
         self._held_yaw_rad = self._yaw_rad = 0.0
-        self._due: Callable[[], None] | None = None
+        self._due: tuple[str, Array | None, float, Array, Array, float] | None = None
 
     def next(self, planned: PlannedAction, tool_m: Array | None) -> Stage:
         """The stage of the next action, after which the scene is as that action should leave it.
@@ -72,7 +71,7 @@ class Course:
         # What the last action leaves is worked out when another one comes: after the last nobody asks.
         due, self._due = self._due, None
         if due is not None:
-            due()
+            self._move(*due)
         action, step = planned.action, planned.step
         motion = Stay() if action is None else action.motion(tool_m)
         if isinstance(motion, Carry):
@@ -106,7 +105,7 @@ class Course:
         put = self._put("" if place is None else place.target)
         taken = self._taken(name, place.target, way.end_m) if isinstance(place, At) else ""
         stage = Stage(way, self._relief, own, carried, meant, level, stated, back, taken, put, self._support(own, base))
-        self._due = partial(self._move, name, own, base, way.start_m, way.end_m, way.yaw_rad)
+        self._due = (name, own, base, way.start_m, way.end_m, way.yaw_rad)
         self._lies_at[name] = place.target if isinstance(place, At) else ""
         return stage
 
@@ -177,7 +176,7 @@ class Course:
             along = (self._relief.xyz_m[own, :2] - way.start_m[:2]) @ (along_m / length)
             shift = np.append(along_m / length * max(0.0, length - float(along.min())), 0.0)
             at_m = np.append(way.start_m[:2], base)
-            self._due = partial(self._move, name, own, base, at_m, at_m + shift, 0.0)
+            self._due = (name, own, base, at_m, at_m + shift, 0.0)
         return stage
 
     def _returns(self, name: str, way: Carry) -> bool:

@@ -8,7 +8,7 @@ from __future__ import annotations
 import weakref
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 
 import cv2
 import numpy as np
@@ -189,9 +189,20 @@ class Eyes:
                 found, least = sight, apart
             if least == 0.0:
                 break
-        forget = weakref.ref(picture.rgb, lambda _: self._known.pop(key, None))
-        self._known[key] = _Known(forget, picture.frame, found, observation_log[0])
+        pixels = weakref.ref(picture.rgb, partial(_forget, weakref.ref(self), key))
+        self._known[key] = _Known(pixels, picture.frame, found, observation_log[0])
         return found
+
+    def forget(self, key: int) -> None:
+        """A picture's pixels are gone."""
+        self._known.pop(key, None)
+
+
+def _forget(eyes: weakref.ref[Eyes], key: int, _: object) -> None:
+    # Not the eyes themselves: they would hold each other in a circle, with all that was seen.
+    known = eyes()
+    if known is not None:
+        known.forget(key)
 
 
 def _alike(one: GroundTruthView, other: GroundTruthView) -> bool:

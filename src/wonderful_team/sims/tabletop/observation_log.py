@@ -108,10 +108,11 @@ class ObservationLog:
         return tuple(look.observation_log[view_id] for look in reversed(self._looks) if view_id in look.observation_log)
 
     def _sight(self, view: View, state: Snapshot) -> GroundTruthView:
-        table, camera = self._table, view.camera_name
+        # Nothing that is handed out holds the log, which holds it: pictures in a circle stay until the collector comes by.
+        table, camera, lock = self._table, view.camera_name, self._lock
         return GroundTruthView(
             view.without_depth(),
-            Lazily(lambda: self._drawn(lambda: table.masks_at(state, camera))),
+            Lazily(lambda: _alone(lock, lambda: table.masks_at(state, camera))),
             Lazily(lambda: true_things(table.things, table.poses_at(state))),
         )
 
@@ -126,17 +127,18 @@ class ObservationLog:
             return self._slots
 
     def _slot_sight(self, name: str, view: View) -> GroundTruthView:
-        table = self._table
+        table, lock = self._table, self._lock
         return GroundTruthView(
             view,
-            Lazily(lambda: self._drawn(lambda: table.slot_masks(name, view.camera_name))),
+            Lazily(lambda: _alone(lock, lambda: table.slot_masks(name, view.camera_name))),
             Lazily(lambda: {thing.name: true_thing(thing, pose) for thing, pose in table.slot_stands(name)}),
         )
 
-    def _drawn(self, draw: Callable[[], Mapping[str, Array]]) -> Mapping[str, Array]:
-        """One drawing at a time: all pictures of an instruction are set up in the same state."""
-        with self._lock:
-            return draw()
+
+def _alone(lock: threading.RLock, draw: Callable[[], Mapping[str, Array]]) -> Mapping[str, Array]:
+    """One drawing at a time: all pictures of an instruction are set up in the same state."""
+    with lock:
+        return draw()
 
 
 def true_things(things: Mapping[str, Thing], poses: Mapping[str, Pose]) -> dict[str, TrueThing]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any, Protocol
 
@@ -43,6 +43,15 @@ class Snapshot:
             and np.array_equal(self.mocap_pos, other.mocap_pos)
             and np.array_equal(self.mocap_quat, other.mocap_quat)
         )
+
+
+def poses_of(built: BuiltModel, names: Iterable[str], state: Any) -> Poses:
+    """Where some things stand in a state."""
+    found = {}
+    for name in names:
+        body = built.body_id(name)
+        found[name] = Pose(state.xpos[body].copy(), state.xquat[body].copy())
+    return found
 
 
 class Mover(Protocol):
@@ -105,11 +114,7 @@ class SimulatedTable(ABC):
         return self._poses(self._state)
 
     def _poses(self, state: Any) -> Poses:
-        found = {}
-        for name in self.things:
-            body = self.built.body_id(name)
-            found[name] = Pose(state.xpos[body].copy(), state.xquat[body].copy())
-        return found
+        return poses_of(self.built, self.things, state)
 
     def put(self, name: str, position_m: Array, yaw_rad: float) -> None:
         """Set a thing down elsewhere, upright, and let everything come to rest."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any
 
 from wonderful_team.core.actions import PickPlace, Push
@@ -21,7 +21,7 @@ from wonderful_team.sims.tabletop.options import Tiers
 from wonderful_team.sims.tabletop.registering import TabletopTask, filled
 from wonderful_team.sims.tabletop.rules import Rules
 from wonderful_team.sims.tabletop.showing import Studio
-from wonderful_team.sims.tabletop.simulated_table import SimulatedTable
+from wonderful_team.sims.tabletop.simulated_table import SimulatedTable, poses_of
 from wonderful_team.sims.tabletop.spatula import Spatula
 from wonderful_team.sims.tabletop.suction import Picked, Suction
 
@@ -66,7 +66,7 @@ class Table(SimulatedTable):
         self._state = mj.MjData(self.built.model)
         mj.mj_forward(self.built.model, self._state)
         self.tool: Suction | Spatula = (
-            Spatula(self.built, self._state, self.poses)
+            Spatula(self.built, self._state, partial(poses_of, self.built, tuple(self.things), self._state))
             if self.built.tool == "spatula"
             else Suction(self.built, self._state)
         )

@@ -37,7 +37,7 @@ def test_memory_is_given_back_once_a_process_has_grown(monkeypatch):
         return True
 
     monkeypatch.setattr(heap, "give_back_free_memory", give_back)
-    growth = heap.Growth(50)
+    growth = heap.Growth(50, apart_s=0.0)
     assert growth.give_back(), "what was there before counts as grown"
     for now in (85, 110, 129):
         held[0] = now
@@ -47,6 +47,22 @@ def test_memory_is_given_back_once_a_process_has_grown(monkeypatch):
     held[0] = 159
     assert not growth.give_back()
     assert given == [100, 130]
+
+
+def test_what_each_piece_of_work_needs_again_is_not_given_back_after_each(monkeypatch):
+    held, given, clock_s = [100], [], [0.0]
+    monkeypatch.setattr(heap, "_held_bytes", lambda: held[0])
+    monkeypatch.setattr(heap.time, "process_time", lambda: clock_s[0])
+    monkeypatch.setattr(heap, "give_back_free_memory", lambda: bool(given.append(held[0])) or True)
+    growth = heap.Growth(50, apart_s=5.0)
+    assert growth.give_back()
+    held[0], clock_s[0] = 200, 4.9
+    assert not growth.give_back(), "grown enough, and too soon"
+    held[0] = 250
+    assert growth.give_back(), "three times as much does not wait"
+    held[0], clock_s[0] = 300, 9.9
+    assert growth.give_back()
+    assert given == [100, 250, 300]
 
 
 def test_where_the_system_does_not_say_memory_is_given_back_each_time(monkeypatch):
@@ -82,3 +98,15 @@ def test_what_went_round_in_circles_is_given_back_too_once_a_process_has_grown()
         assert lost() is None
     finally:
         gc.enable()
+
+
+def test_only_a_process_of_its_own_sets_aside_what_is_there_after_its_first_piece_of_work():
+    before = gc.get_freeze_count()
+    heap.Growth().give_back()
+    assert gc.get_freeze_count() == before
+    try:
+        own = heap.Growth(own_process=True)
+        own.give_back()
+        assert gc.get_freeze_count() > before
+    finally:
+        gc.unfreeze()

@@ -5,6 +5,7 @@ from __future__ import annotations
 import ctypes
 import gc
 import os
+import time
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -23,26 +24,37 @@ def give_back_free_memory() -> bool:
 class Growth:
     """When free memory is given back in a process that does one piece of work after another.
 
-    Looking through objects and heap after each takes time, and so does getting the pages again; only what it has grown by is worth that.
+    Getting the pages again takes time, more than giving them back: only what the process has grown by is worth that, and not
+    after every few pieces of work that each need as much again.
 
     Args:
         most_bytes: What the process may grow by in between.
+        apart_s: So much processor time lies in between at least [s], unless it has grown three times as much.
+        own_process: Whether the process does nothing else: then what its first piece of work leaves behind, modules and
+            caches, is not looked through again, which takes longest.
     """
 
-    def __init__(self, most_bytes: int = 200_000_000) -> None:
-        self._most = most_bytes
+    def __init__(self, most_bytes: int = 200_000_000, apart_s: float = 5.0, own_process: bool = False) -> None:
+        self._most, self._apart_s, self._own_process = most_bytes, apart_s, own_process
         self._left = 0
+        self._last_s: float | None = None
 
     def give_back(self) -> bool:
         """Give free memory back if the process has grown; whether it was worth it and there was a way."""
         held = _held_bytes()
-        if held is not None and held - self._left < self._most:
+        if held is not None and not self._is_due(held - self._left):
             return False
-        # A piece of work ends with its objects in circles: their pictures are free only once those are found.
+        # A piece of work may end with objects in circles: their pictures are free only once those are found.
         gc.collect()
+        if self._own_process and self._last_s is None:
+            gc.freeze()
         done = give_back_free_memory()
-        self._left = _held_bytes() or 0
+        self._left, self._last_s = _held_bytes() or 0, time.process_time()
         return done
+
+    def _is_due(self, grown_bytes: int) -> bool:
+        recent = self._last_s is not None and time.process_time() - self._last_s < self._apart_s
+        return grown_bytes >= (3 if recent else 1) * self._most
 
 
 def _held_bytes() -> int | None:

@@ -30,7 +30,7 @@ from wonderful_team.redaction import redact_streams
 
 DECIDING = ("numpy", "mujoco", "opencv-python-headless", "scikit-image", "shapely")
 """Packages on whose version the last bit of a result depends."""
-_GROWTH = Growth()
+_GROWTH = Growth(own_process=True)
 """Of this worker, over its trials."""
 
 

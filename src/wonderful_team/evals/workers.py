@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import multiprocessing
 import os
 import signal
 import sqlite3
@@ -30,7 +31,7 @@ from wonderful_team.redaction import redacted_streams
 KEPT = "what ended before is kept; the same command goes on"
 LATE = "cut by the limit on time"
 """Why an attempt was discarded that the command had no time left for."""
-_GROWTH = Growth()
+_GROWTH = Growth(own_process=multiprocessing.parent_process() is not None)
 """Of this worker, over its trials."""
 POLL_S = 0.2
 """How long a worker waits before it looks again for a trial that another process holds [s]."""

@@ -102,10 +102,10 @@ def test_what_went_round_in_circles_is_given_back_too_once_a_process_has_grown()
 
 def test_only_a_process_of_its_own_sets_aside_what_is_there_after_its_first_piece_of_work():
     before = gc.get_freeze_count()
-    heap.Growth().give_back()
+    heap.Growth(1).give_back()
     assert gc.get_freeze_count() == before
     try:
-        own = heap.Growth(own_process=True)
+        own = heap.Growth(1, own_process=True)
         own.give_back()
         assert gc.get_freeze_count() > before
     finally:

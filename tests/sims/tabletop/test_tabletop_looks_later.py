@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import threading
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -189,3 +190,15 @@ def test_a_look_without_depth_draws_nothing_until_it_is_read() -> None:
     assert plain.rgb is view.rgb
     assert isinstance(View("top", "top", 0.0, view.rgb).without_depth(), View)
     assert count == [1]
+
+
+def test_a_look_can_be_changed_like_any_view() -> None:
+    world = make_world("rotate", 47)
+    seen = world.observe().main
+    dark = replace(seen, rgb=np.zeros_like(seen.rgb))
+    assert type(dark) is View
+    assert not dark.rgb.any()
+    assert dark.depth_m is seen.depth_m
+    assert dark.camera is seen.camera
+    assert (dark.id, dark.time_s) == (seen.id, seen.time_s)
+    world.close()

@@ -8,7 +8,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from types import MappingProxyType
-from typing import Literal, TypeAlias
+from typing import Any, Literal, TypeAlias
 
 import numpy as np
 
@@ -67,6 +67,10 @@ class LaterView(View):
         size_px: Width, height of what `draw` gives.
         draw: Gives rgb and depth_m of `View` as they were at `time_s`, whenever it is called; called once at most.
     """
+
+    def __new__(cls, *args: Any, **fields: Any) -> Any:
+        # `dataclasses.replace` hands over the fields of a view: what it makes has its pixels.
+        return View(**fields) if "rgb" in fields else super().__new__(cls)
 
     def __init__(
         self,

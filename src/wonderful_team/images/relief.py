@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import threading
 import weakref
 from collections import deque
@@ -11,7 +12,7 @@ from typing import Any
 import cv2
 import numpy as np
 import shapely
-from shapely import MultiPoint
+from shapely import LineString, MultiPoint
 
 from wonderful_team.core.geometry import Box, PlanarCamera
 from wonderful_team.core.geometry.arrays import Array
@@ -25,6 +26,10 @@ STEP_M = 0.006
 """Neighbouring parts of one surface differ by less than this in height [m]."""
 AROUND_M = 0.35
 """How far round a point one thing may reach [m]."""
+_QUAD_SEGS = 16
+"""Sides of a quarter circle."""
+_SURELY_INSIDE = 0.99 * math.cos(math.pi / (4 * _QUAD_SEGS))
+"""So near to the middle, as a share of the radius, the sides of such a circle are farther out."""
 _FINEST_M = 0.004
 """Finest cells that heights are looked up in [m]."""
 
@@ -88,6 +93,24 @@ class Relief:
         low_x, low_y, high_x, high_y = region.bounds
         found = np.asarray((x >= low_x) & (x <= high_x) & (y >= low_y) & (y <= high_y))
         found[found] = shapely.contains_xy(region, x[found], y[found])
+        return found
+
+    def along(self, start_m: Array, end_m: Array, reach_m: float) -> Array:
+        """Which points lie within reach of a straight way over the table, shape (N,) bool: those inside `round_way`."""
+        way = round_way(start_m, end_m, reach_m)
+        low_x, low_y, high_x, high_y = way.bounds
+        x, y = self.xyz_m[:, 0], self.xyz_m[:, 1]
+        found = np.asarray((x >= low_x) & (x <= high_x) & (y >= low_y) & (y <= high_y))
+        # The shape is asked about its rim alone, where its corners stand on the circle and its sides lie a little inside.
+        x, y = x[found], y[found]
+        along_x, along_y = (float(one) for one in end_m[:2] - start_m[:2])
+        x_off, y_off = x - start_m[0], y - start_m[1]
+        share = np.clip((x_off * along_x + y_off * along_y) / (along_x**2 + along_y**2), 0.0, 1.0)
+        apart2 = ((x_off - share * along_x) ** 2 + (y_off - share * along_y) ** 2) / reach_m**2
+        inside = apart2 <= _SURELY_INSIDE**2
+        rim = ~inside & (apart2 <= 1 + 1e-9)
+        inside[rim] = shapely.contains_xy(way, x[rim], y[rim])
+        found[found] = inside
         return found
 
     def near(self, xy_m: Array, radius_m: float) -> Array:
@@ -160,6 +183,11 @@ _UNKNOWN = object()
 _lock = threading.Lock()
 _latest: deque[tuple[weakref.ref[View], Relief | None]] = deque(maxlen=2)
 """Of the last views asked about: the gate and what follows an execution look at the same one several times."""
+
+
+def round_way(start_m: Array, end_m: Array, reach_m: float) -> Any:
+    """The shape of all that lies within reach of a straight way over the table; the way has a length."""
+    return LineString([start_m[:2], end_m[:2]]).buffer(reach_m, quad_segs=_QUAD_SEGS)
 
 
 def outline(xy_m: Array, spacing_m: float) -> Any:

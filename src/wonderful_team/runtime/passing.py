@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 import shapely
-from shapely import LineString, Point
+from shapely import Point
 
 from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.motions import Carry, Reach, Slide
@@ -124,10 +124,9 @@ def _over(
         return Piece(start, end, check, hanging_m)
     flat = float(np.linalg.norm(end[:2] - start[:2]))
     if flat > UPRIGHT_M:
-        covers = LineString([start[:2], end[:2]]).buffer(reach_m)
+        found = relief.along(start, end, reach_m)
     else:
-        covers = _disc(end, reach_m) if upright is None else upright
-    found = relief.inside(covers)
+        found = relief.inside(_disc(end, reach_m) if upright is None else upright)
     if own is not None:
         found &= ~own
     points = relief.xyz_m[found]

@@ -111,7 +111,7 @@ def test_absent_goes_back_to_the_supervisor_who_may_describe_it_anew():
     plan = plan_with(model, TeamConfig(mode="lean"))
     assert plan.status == "planned"
     advice = asked(model, "DraftPlan")[1].question.advice
-    assert advice == ("T1 (the first thing) was not found in the picture.",)
+    assert advice == ("T1 (the first thing) was not found in the picture: the Manager says it is not in the picture.",)
 
 
 def test_absent_for_good_is_not_found_and_names_the_target():

@@ -231,7 +231,7 @@ class TeamPolicy:
                 if not absent:
                     return plan
                 failed, last = NotFoundError(endings.not_found(absent)), None
-                told = tuple(f"{item.target.id} ({item.target.words}) was not found in the picture." for item in absent)
+                told = tuple(endings.told_not_found(item) for item in absent)
             advice = (*asked, *told)
             if turn < self.config.bounds.returns:
                 session.warn("; ".join(told) + " The plan goes back to the Supervisor.")

@@ -48,7 +48,32 @@ def test_what_follows_from_the_papers_own_table_stands_beside_what_it_prints() -
     team = dict(zip(head, lines[0], strict=True))
     assert team["paper: as printed"].startswith("91.25 %")
     assert team["paper: as it follows"].startswith("92.08 %")
-    assert team["ours: as printed"] == "not run"
+    assert team["ours: mean of the four groups"] == "not run"
+
+
+def test_a_mean_of_tasks_says_whose_it_is_how_sure_and_where_the_answers_came_from() -> None:
+    def rows(model: str, wins: int, replans: int = 0) -> list[Row]:
+        condition = Condition("team:paper", model, replans=replans)
+        return [
+            Row(
+                TrialSpec(task, 1000 + n, condition),
+                TrialRow("success" if n < wins else "failure", "plan", provenance=("simulated",)),
+            )
+            for task in PAPER_TABLES["training-based"].suites
+            for n in range(10)
+        ]
+
+    def cell(*told: list[Row]) -> str:
+        found = [row for some in told for row in some]
+        conditions = tuple(dict.fromkeys(row.spec.condition for row in found))
+        head, lines = filled(PAPER_TABLES["training-based"], Summary(tuple(found), (), conditions, ()))
+        return dict(zip(head, lines[0], strict=True))["ours: mean of the four groups"]
+
+    assert cell(rows("simulated:a", 5)) == "50.00 % (n = 10 a task; 40 to 60) [SIMULATED]"
+    # Each model's own, never their mean; what else sets two apart is told too, and what was only begun is left out.
+    assert cell(rows("a", 5), rows("b", 10), rows("a", 0, replans=3), rows("c", 1)[:20]).split("; ")[::2] == [
+        "a: 50.00 % (n = 10 a task", "b: 100.00 % (n = 10 a task", "a · 3 replans: 0.00 % (n = 10 a task",
+    ]  # fmt: skip
 
 
 def test_a_table_runs_and_stands_beside_the_papers(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
@@ -131,9 +156,11 @@ def test_rivals_stand_beside_the_papers_figures_of_them(capsys: pytest.CaptureFi
     found = told(capsys, "training-based", *words, "--method", "instruct2act", "--folder", str(tmp_path))
     table = found["tables"]["training-based"]
     lines = {line[0]: dict(zip(table["head"], line, strict=True)) for line in table["lines"]}
-    assert lines["Instruct2Act"]["ours: as printed"].endswith("(n = 1 a task)")
+    ours = lines["Instruct2Act"]["ours: mean of the four groups"]
+    assert "(n = 1 a task; " in ours
+    assert ours.endswith("[SIMULATED]")
     assert lines["Instruct2Act"]["paper: as printed"].startswith("79.67 %")
-    assert lines["team"]["ours: as printed"] == "not run yet"
+    assert lines["team"]["ours: mean of the four groups"] == "not run yet"
 
 
 def test_a_method_that_the_table_lacks_is_told_those_that_it_has(

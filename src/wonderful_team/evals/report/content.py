@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import textwrap
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from itertools import zip_longest
@@ -25,6 +26,8 @@ from wonderful_team.images.thumbnail import run_thumbnail
 
 EXAMPLES = 3
 GALLERY = 24
+LONGEST_REASON = 90
+"""Characters of a reason below a picture."""
 MOST_OPEN = 12
 """So many pairs are written out one below the other; more are folded up."""
 MOST_LINES = 40
@@ -229,6 +232,7 @@ def _gallery(summary: Summary, page: Path) -> list[dict[str, Any]]:
             "label": row.spec.condition.label,
             "outcome": row.result.outcome,
             "stage": f"at {row.result.stage}" if row.result.stage else "",
+            "reason": textwrap.shorten(row.result.reason, LONGEST_REASON, placeholder=" …"),
         }
         for row in turns[:GALLERY]
         if row.result is not None

@@ -13,6 +13,7 @@ from wonderful_team import registry
 from wonderful_team.api.known_suites import known_suites
 from wonderful_team.cli.app import run
 from wonderful_team.errors import ConfigError
+from wonderful_team.evals.paper_also import with_methods
 from wonderful_team.evals.paper_filled import filled
 from wonderful_team.evals.paper_tables import PAPER_TABLES
 from wonderful_team.evals.summary import Summary
@@ -200,3 +201,49 @@ def test_variations_of_an_implicit_goal_are_counted_together() -> None:
     line = dict(zip(head, next(line for line in lines if line[0] == "fruit_placement"), strict=True))
     assert line["ours: team"].startswith("75 % (n = 4;")
     assert line["paper: team:paper"].startswith("100 % (n = 8;")
+
+
+def test_a_method_of_ones_own_stands_in_a_table_beside_the_others(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    own = tmp_path / "mine.py"
+    own.write_text(
+        "import wonderful_team as wt\n\n\nclass Waiting:\n    name = 'waiting'\n\n"
+        "    def decide(self, situation):\n        return wt.Done('nothing')\n",
+        encoding="utf-8",
+    )
+    words = (
+        "pivot",
+        "--also",
+        f"{own}:Waiting,moka",
+        "--method",
+        "team:paper",
+        "--model",
+        "simulated:perfect",
+        "--jobs",
+        "1",
+    )
+    quick = ("--seeds", "1000:1001", "--no-control", "all", "--record", "none", "--folder", str(tmp_path / "out"))
+    table = told(capsys, *words, *quick)["tables"]["pivot"]
+    line = dict(zip(table["head"], table["lines"][0], strict=True))
+    assert line["ours: mine.py:Waiting"].startswith("0 % (n = 1;")
+    assert line["ours: moka"].startswith("100 % (n = 1;")
+    assert (line["ours: pivot"], line["paper: pivot"]) == ("not run yet", "30 % (n = 10; 11 to 60)")
+    assert run(["paper", "pivot", "--also", "nobody", *quick]) == 2
+
+
+def test_a_method_more_is_a_column_or_a_line_as_the_table_has_them() -> None:
+    for name in ("vima17", "subgoals", "boxes", "moka", "fetch", "training-based"):
+        head, lines = filled(PAPER_TABLES[name], None)
+        more_head, more = filled(
+            with_methods(PAPER_TABLES[name], ["my/mine.py:Mine", PAPER_TABLES[name].methods[0]]), None
+        )
+        new = [column for column in more_head if column not in head]
+        if name in ("moka", "fetch", "training-based"):
+            assert not new
+            assert [line[0] for line in more] == [*(line[0] for line in lines), "mine.py:Mine"], name
+            assert set(more[-1][1:]) == {"not run", "-"}
+        else:
+            assert all(column.startswith("ours: mine.py:Mine") for column in new)
+            assert len(new) == (2 if name == "subgoals" else 1), name
+            assert [line[: len(head)] for line in more] == lines

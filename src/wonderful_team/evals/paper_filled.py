@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from wonderful_team.core.intervals import mean_interval, wilson_interval
+from wonderful_team.core.text import counted
 from wonderful_team.evals.paper_tables import Measure, PaperCell, PaperTable
 from wonderful_team.evals.summary import Cell, Summary
 from wonderful_team.evals.trials import Condition
@@ -84,6 +85,7 @@ def _measured(summary: Summary, one: Measure) -> str:
     for cell in _cells(summary, one):
         successes, n = _counted(cell, one)
         if not n:
+            told.append((cell.condition, f"no data ({counted(cell.count('error'), 'error')})"))
             continue
         low, high = wilson_interval(successes, n)
         said = f"{round(100 * successes / n, 1):g} % (n = {n}; {100 * low:.0f} to {100 * high:.0f})"

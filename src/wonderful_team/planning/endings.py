@@ -41,7 +41,7 @@ def not_found(absent: Sequence[GroundedTarget]) -> str:
 
 def told_not_found(item: GroundedTarget) -> str:
     """The same of one target, with why, for whoever plans again."""
-    why = one_line(item.history[-1].text) if item.history else ""
+    why = one_line(item.history[-1].text).rstrip(".") if item.history else ""
     return f"{item.target.id} ({item.target.words}) was not found in the picture{f': {why}' if why else ''}."
 
 

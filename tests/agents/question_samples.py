@@ -194,6 +194,7 @@ SAMPLES: tuple[Question, ...] = (
             ),
         ),
         ("the star was too small",),
+        ("Tool: a pen, 3 mm wide.",),
     ),
     ReviewPath(
         SUBGOALS[0],

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from typing import Any
+
 import pytest
 
 from tests.agents.question_samples import SAMPLES
@@ -26,10 +29,8 @@ RULES = [
     ("manager.ReadScene.md", "push_end: where the front of the tool stops"),
     ("manager.ChoosePoint.md", "push_end: where the front of the tool stops"),
     ("supervisor.DraftPlan.md", "push_end: where the front of the tool stops"),
-    ("supervisor.WriteSteps.md", "it is where the front of the tool stops"),
     ("supervisor.WriteSteps.md", "The middle of the thing that is moved lands there, wherever it is picked"),
     ("supervisor.WriteSteps.md", "A target that an earlier step moved means the place where it then lies"),
-    ("supervisor.WriteSteps.md", "contact surface: the tool is lowered"),
     ("verification.ReviewSteps.md", "The thing's middle lands at the place, wherever it is picked"),
     ("supervisor.DraftPlan.md", '"any" means one of your choice'),
     ("supervisor.DraftPlan.md", "a place must be free by the time something goes there"),
@@ -38,13 +39,11 @@ RULES = [
         "supervisor.DraftPlan.md",
         "How things are turned there counts too, unless what is known of the robot says otherwise",
     ),
-    ("supervisor.DraftPlan.md", "what a second push of it needs is a guess until there is a new picture"),
     ("verification.ReviewPlan.md", "Several things that go into one container may lie on each other"),
     ("verification.ReviewPlan.md", "taken until a later subgoal clears it"),
     ("supervisor.DraftPlan.md", "on what an earlier subgoal moved, where it then lies"),
     ("supervisor.DraftPlan.md", "stay where they are, also when a picture of what is wanted leaves them out"),
     ("supervisor.DraftPlan.md", "Going back to how things were takes back what was moved out of the way, too"),
-    ("supervisor.DraftPlan.md", "A second push needs no start of its own"),
     ("supervisor.DraftPlan.md", "or that a helper function's path is only led over"),
     ("checker.JudgeBoxes.md", "A lid or a thing that covers a place now is no reason against it"),
     ("checker.JudgeBox.md", "push_start: beside the target, clear of it; of an area, inside it"),
@@ -56,6 +55,28 @@ RULES = [
     ),
     ("checker.JudgeRevision.md", "what is still wrong with the box that is kept"),
 ]
+
+
+KINDS = [
+    ("DraftPlan", "push", "what a second push of it needs is a guess until there is a new picture"),
+    ("DraftPlan", "push", "A second push needs no start of its own"),
+    ("RevisePlan", "push", "what it must keep away from"),
+    ("WriteSteps", "push", "it is where the front of the tool stops"),
+    ("WriteSteps", "close", "What is screwed on is gripped tightly and turned before it is lifted"),
+    ("WriteSteps", "follow", "contact surface: the tool is lowered"),
+]
+
+
+@pytest.mark.parametrize(("contract", "kind", "rule"), KINDS)
+def test_rules_for_a_kind_of_step_are_told_of_robots_that_have_it_alone(contract: str, kind: str, rule: str) -> None:
+    sample: Any = next(one for one in SAMPLES if one.contract == contract)
+
+    def told(*kinds: str) -> str:
+        asked = build(replace(sample, step_kinds=kinds))
+        return asked.system + "".join(getattr(part, "text", "") for part in asked.parts)
+
+    assert rule in told("pick_place", kind)
+    assert rule not in told("pick_place")
 
 
 @pytest.mark.parametrize(("file", "rule"), RULES)

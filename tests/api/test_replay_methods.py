@@ -209,3 +209,14 @@ def test_a_branch_names_the_detector_that_is_not_there(named, recorded, tmp_path
         branch(folder, "ground", "offline", out=tmp_path)
     made = branch(folder, "ground", "simulated:perfect", out=tmp_path, detector="classical")
     assert made.outcome == "success"
+
+
+@pytest.mark.parametrize("method", ["team", "direct"])
+def test_a_trial_that_looked_again_replays_and_its_page_says_why(method, tmp_path):
+    trial = in_world(method, tmp_path, "simulated:perfect:missed=1")
+    assert [plan.status for plan in trial.plans] == ["not_found", "not_found"]
+    assert (trial.outcome, trial.stage) == ("failure", "grounding")
+    record = read_record(trial.folder)
+    assert [one.get("again") for one in record["planner"]["decisions"]] == [True, True]
+    assert "could not be made ready: " in trial.page.read_text(encoding="utf-8")
+    assert replay(trial.folder).same

@@ -13,6 +13,7 @@ from wonderful_team import registry
 from wonderful_team.api.known_suites import known_suites
 from wonderful_team.cli.app import run
 from wonderful_team.errors import ConfigError
+from wonderful_team.evals.paper_also import with_methods
 from wonderful_team.evals.paper_filled import filled
 from wonderful_team.evals.paper_tables import PAPER_TABLES
 from wonderful_team.evals.summary import Summary
@@ -48,7 +49,32 @@ def test_what_follows_from_the_papers_own_table_stands_beside_what_it_prints() -
     team = dict(zip(head, lines[0], strict=True))
     assert team["paper: as printed"].startswith("91.25 %")
     assert team["paper: as it follows"].startswith("92.08 %")
-    assert team["ours: as printed"] == "not run"
+    assert team["ours: mean of the four groups"] == "not run"
+
+
+def test_a_mean_of_tasks_says_whose_it_is_how_sure_and_where_the_answers_came_from() -> None:
+    def rows(model: str, wins: int, replans: int = 0) -> list[Row]:
+        condition = Condition("team:paper", model, replans=replans)
+        return [
+            Row(
+                TrialSpec(task, 1000 + n, condition),
+                TrialRow("success" if n < wins else "failure", "plan", provenance=("simulated",)),
+            )
+            for task in PAPER_TABLES["training-based"].suites
+            for n in range(10)
+        ]
+
+    def cell(*told: list[Row]) -> str:
+        found = [row for some in told for row in some]
+        conditions = tuple(dict.fromkeys(row.spec.condition for row in found))
+        head, lines = filled(PAPER_TABLES["training-based"], Summary(tuple(found), (), conditions, ()))
+        return dict(zip(head, lines[0], strict=True))["ours: mean of the four groups"]
+
+    assert cell(rows("simulated:a", 5)) == "50.00 % (n = 10 a task; 40 to 60) [SIMULATED]"
+    # Each model's own, never their mean; what else sets two apart is told too, and what was only begun is left out.
+    assert cell(rows("a", 5), rows("b", 10), rows("a", 0, replans=3), rows("c", 1)[:20]).split("; ")[::2] == [
+        "a: 50.00 % (n = 10 a task", "b: 100.00 % (n = 10 a task", "a · 3 replans: 0.00 % (n = 10 a task",
+    ]  # fmt: skip
 
 
 def test_a_table_runs_and_stands_beside_the_papers(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
@@ -131,9 +157,11 @@ def test_rivals_stand_beside_the_papers_figures_of_them(capsys: pytest.CaptureFi
     found = told(capsys, "training-based", *words, "--method", "instruct2act", "--folder", str(tmp_path))
     table = found["tables"]["training-based"]
     lines = {line[0]: dict(zip(table["head"], line, strict=True)) for line in table["lines"]}
-    assert lines["Instruct2Act"]["ours: as printed"].endswith("(n = 1 a task)")
+    ours = lines["Instruct2Act"]["ours: mean of the four groups"]
+    assert "(n = 1 a task; " in ours
+    assert ours.endswith("[SIMULATED]")
     assert lines["Instruct2Act"]["paper: as printed"].startswith("79.67 %")
-    assert lines["team"]["ours: as printed"] == "not run yet"
+    assert lines["team"]["ours: mean of the four groups"] == "not run yet"
 
 
 def test_a_method_that_the_table_lacks_is_told_those_that_it_has(
@@ -173,3 +201,49 @@ def test_variations_of_an_implicit_goal_are_counted_together() -> None:
     line = dict(zip(head, next(line for line in lines if line[0] == "fruit_placement"), strict=True))
     assert line["ours: team"].startswith("75 % (n = 4;")
     assert line["paper: team:paper"].startswith("100 % (n = 8;")
+
+
+def test_a_method_of_ones_own_stands_in_a_table_beside_the_others(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    own = tmp_path / "mine.py"
+    own.write_text(
+        "import wonderful_team as wt\n\n\nclass Waiting:\n    name = 'waiting'\n\n"
+        "    def decide(self, situation):\n        return wt.Done('nothing')\n",
+        encoding="utf-8",
+    )
+    words = (
+        "pivot",
+        "--also",
+        f"{own}:Waiting,moka",
+        "--method",
+        "team:paper",
+        "--model",
+        "simulated:perfect",
+        "--jobs",
+        "1",
+    )
+    quick = ("--seeds", "1000:1001", "--no-control", "all", "--record", "none", "--folder", str(tmp_path / "out"))
+    table = told(capsys, *words, *quick)["tables"]["pivot"]
+    line = dict(zip(table["head"], table["lines"][0], strict=True))
+    assert line["ours: mine.py:Waiting"].startswith("0 % (n = 1;")
+    assert line["ours: moka"].startswith("100 % (n = 1;")
+    assert (line["ours: pivot"], line["paper: pivot"]) == ("not run yet", "30 % (n = 10; 11 to 60)")
+    assert run(["paper", "pivot", "--also", "nobody", *quick]) == 2
+
+
+def test_a_method_more_is_a_column_or_a_line_as_the_table_has_them() -> None:
+    for name in ("vima17", "subgoals", "boxes", "moka", "fetch", "training-based"):
+        head, lines = filled(PAPER_TABLES[name], None)
+        more_head, more = filled(
+            with_methods(PAPER_TABLES[name], ["my/mine.py:Mine", PAPER_TABLES[name].methods[0]]), None
+        )
+        new = [column for column in more_head if column not in head]
+        if name in ("moka", "fetch", "training-based"):
+            assert not new
+            assert [line[0] for line in more] == [*(line[0] for line in lines), "mine.py:Mine"], name
+            assert set(more[-1][1:]) == {"not run", "-"}
+        else:
+            assert all(column.startswith("ours: mine.py:Mine") for column in new)
+            assert len(new) == (2 if name == "subgoals" else 1), name
+            assert [line[: len(head)] for line in more] == lines

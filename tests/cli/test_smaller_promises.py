@@ -7,6 +7,7 @@ import json
 import shlex
 import sys
 import threading
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -14,6 +15,8 @@ import pytest
 import wonderful_team as wt
 from wonderful_team.cli import run_summary
 from wonderful_team.cli.app import run
+from wonderful_team.cli.wording import trial_word
+from wonderful_team.core.values import Verdict
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 DESK = str(EXAMPLES / "desk.png")
@@ -23,6 +26,15 @@ WORDS = "put the red block into the blue bowl"
 def test_an_own_world_ends_with_the_teams_own_judgement(capsys):
     assert run(["run", f"{EXAMPLES}/own_world.py:TileDesk"]) == 0
     assert capsys.readouterr().out.startswith("DONE, as the team judges (no scorer)  ")
+
+
+def test_a_plan_is_judged_by_its_own_subgoals(tmp_path):
+    trial = wt.rollout(wt.Team(out=tmp_path), f"{EXAMPLES}/own_world.py:TileDesk", replans=1)
+    (mine,) = {verdict.subgoal for verdict in trial.verdicts}
+    earlier = replace(trial, verdicts=(Verdict("G7", "not_done"), *trial.verdicts))
+    assert trial_word(earlier).startswith("DONE"), "an earlier plan had a G7; this one has not"
+    assert trial_word(replace(trial, verdicts=(*trial.verdicts, Verdict(mine, "undone")))) == "UNSCORED"
+    assert trial_word(replace(trial, verdicts=(Verdict("G7", "done"),))) == "UNSCORED"
 
 
 def test_what_nobody_judged_is_not_done(capsys):

@@ -169,7 +169,7 @@ RIGHT["PlanFromList"] = {
         {"id": "T1", "kind": "object", "words": "striped mug", "points": [{"use": "pick", "x": 12, "y": 31}]},
         {"id": "T2", "kind": "object", "words": "tray", "points": [{"use": "place", "x": 50, "y": 20}]},
     ],
-    "steps": RIGHT["PlanDirectly"]["steps"],
+    "steps": [step | {"place": {"target": "T2", "how": "at"}} for step in RIGHT["PlanDirectly"]["steps"]],
 }
 RIGHT["DescribePictures"] = {"pictures": [{"picture": "base_obj", "words": "a tray"}]}
 RIGHT["WriteProgram"] = {"reasoning": "", "code": "open_gripper()"}

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import json
 import math
 from dataclasses import replace
 from typing import Any
 
 import pytest
 
+from tests.agents.question_samples import SAMPLES
 from tests.contracts.right_answers import PLAN, QUESTION, changed, judged, subgoal, target
+from wonderful_team.contracts import Question
 from wonderful_team.core.actions import Beside, FollowStep, MoveStep, OriginOf, PickPlaceStep
 from wonderful_team.core.values import MAX_ACTIONS, MAX_SUBGOALS, MAX_TARGETS
 
@@ -180,3 +183,27 @@ def test_what_a_target_is_for_is_said_once() -> None:
     answer: Any = judged(QUESTION["DraftPlan"], changed("DraftPlan", {"targets.0.use": ["pick", "grasp", "pick"]}))[0]
     first, second = answer.to_targets()
     assert (first.use, first.source, second.source) == (("pick", "grasp"), "slot", "scene")
+
+
+def _offered(question: Question) -> str:
+    return json.dumps(question.output().model_json_schema())
+
+
+def test_a_planner_is_offered_nothing_that_its_method_has_no_use_for() -> None:
+    sample: dict[str, Any] = {one.contract: one for one in SAMPLES}
+    # Without outlines nothing has a side: neither in a plan from a list nor in steps of points alone. Who answers so all the same is read.
+    assert '"beside"' in _offered(sample["WriteSteps"])
+    alone = replace(sample["WriteSteps"], outlines=False)
+    assert '"beside"' not in _offered(alone) + _offered(sample["PlanFromList"])
+    place = {"target": "T1", "how": "beside", "side": "left"}
+    step = {"subgoal": "G1", "kind": "pick_place", "pick": "T2", "place": place, "rotate_deg": 0.0}
+    read: Any = replace(alone, step_kinds=("pick_place",)).output().model_validate({"reasoning": "", "steps": [step]})
+    assert read.to_steps()[0].place == Beside("T1", "left")
+    # No boxes are drawn when a plan is checked alone.
+    assert "wrong_box" in _offered(sample["ReviewSteps"])
+    assert "wrong_box" not in _offered(sample["ReviewPlan"])
+
+
+def test_who_plans_directly_says_what_there_is_before_the_steps_that_name_it() -> None:
+    schema = next(one for one in SAMPLES if one.contract == "PlanDirectly").output().model_json_schema()
+    assert list(schema["properties"]) == ["reasoning", "subgoals", "targets", "absent", "steps"]

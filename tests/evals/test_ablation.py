@@ -47,6 +47,8 @@ def test_effects_and_moves_are_those_counted_by_hand() -> None:
     rows = [ended("team", 1000 + n, stage) for n, stage in enumerate(with_)]
     rows += [ended("team:-verification", 1000 + n, stage) for n, stage in enumerate(without)]
     rows += [ended("team:-verification", 1010, "crash", outcome="error"), ended("direct", 1000, "plan")]
+    # Of the whole team more was run: it does not count beside what was run of both.
+    rows += [ended("team", 1010, None), *(ended("team", 2000 + n, "gate") for n in range(5))]
     (found,) = ablations(summarise(rows, []))
     (effect,) = found.effects
     assert effect.label == "Verification"
@@ -56,6 +58,7 @@ def test_effects_and_moves_are_those_counted_by_hand() -> None:
     assert effect_lines(found)[0][:4] == ("Verification", "team", "team:-verification", "+40.0")
     head, lines = end_lines(found)
     shown = dict(zip(head, lines[1], strict=True))
+    assert (found.shared, lines[0][-1], lines[1][-1]) == (11, "11", "11")
     assert shown["planning"] == "4 (+3)"
     assert shown["grounding"] == "2 (+1)"
     assert shown["not scored"] == "1 (+1)"

@@ -82,6 +82,44 @@ def test_a_wrong_scorer_and_wrong_units_are_caught(tmp_path: Path, capsys: pytes
     assert any("doing nothing succeeds" in text for text in json.loads(capsys.readouterr().out)["result"]["warnings"])
 
 
+REFUSED = """
+import wonderful_team as wt
+
+
+class Careless:
+    name = "careless"
+    made = 0
+
+    def __init__(self):
+        Careless.made += 1
+        self.far = {far}
+
+    def decide(self, situation):
+        if situation.refused is not None or situation.executed:
+            return wt.Done("tried once")
+        high = situation.limits.high_m
+        step = wt.PickPlaceStep("G1", pick="it", place=wt.At("there"))
+        if not self.far:
+            return wt.Done("nothing")
+        return wt.Act((wt.PlannedAction(step, wt.PickPlace([high[0] + 1.0, 0.0, 0.0], [high[0] + 2.0, 0.0, 0.0])),))
+"""
+
+
+def test_a_plan_that_the_gate_refuses_now_and_then_is_told_and_is_nothing_wrong(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = tmp_path / "careless.py"
+    file.write_text(REFUSED.format(far="Careless.made % 2"), encoding="utf-8")
+    assert run(["check", f"{file}:Careless", "--seeds", "6"]) == 0, capsys.readouterr().out
+    said = capsys.readouterr().out
+    assert "note  the gate refused a plan in " in said
+    assert said.rstrip().endswith("checked: nothing wrong")
+    always = tmp_path / "always.py"
+    always.write_text(REFUSED.format(far="True"), encoding="utf-8")
+    assert run(["check", f"{always}:Careless", "--seeds", "2"]) == 1
+    assert "BAD   the gate refused a plan in every trial: " in capsys.readouterr().out
+
+
 @pytest.mark.parametrize(
     ("kind", "name", "seeds"),
     [

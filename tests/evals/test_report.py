@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import re
 import sqlite3
+import warnings
 from dataclasses import replace
 from math import comb
 from pathlib import Path
@@ -18,8 +19,10 @@ from wonderful_team.errors import ConfigError
 from wonderful_team.evals.leases import Owner
 from wonderful_team.evals.paper import paper_figure
 from wonderful_team.evals.report import latex_tables
+from wonderful_team.evals.report.content import page_content
 from wonderful_team.evals.report.latex import tex
 from wonderful_team.evals.report.page import read_stores, write_all
+from wonderful_team.evals.report.plots import cost_plot, rate_plot
 from wonderful_team.evals.store import Store
 from wonderful_team.evals.study import run_study
 from wonderful_team.evals.summary import Cell, summarise
@@ -150,6 +153,26 @@ def test_no_method_is_called_the_best_of_those_run_on_other_tasks() -> None:
     assert told[0] == "4 were run, not all on the same tasks: none of them is the best of all."
     assert len(told) > 1
     assert not any("no data" in one for one in told)
+
+
+def test_a_page_of_many_methods_can_be_read(tmp_path: Path) -> None:
+    names = ["nlap:privileged:no-cot", *(f"a-method-with-a-rather-long-name-{n}" for n in range(8))]
+    model = "simulated:a-profile-with-a-long-name-too"
+    rows = [_row(name, seed, "success", model) for name in names for seed in (1000, 1001)]
+    rows += [_row(name, 1000, "failure", model, task=f"toy/{name[-1]}") for name in ("b", "c")]
+    asked = [
+        {"methods": [*names, "b", "c"], "models": [model], "suites": ["toy/a"], "protocols": ["p"], "controls": []}
+    ]
+    summary = summarise(rows, [{**asked[0], "repeats": 1, "notes": [], "shard": [1, 1]}] * 2)
+    with warnings.catch_warnings():
+        # Labels that leave no room for figures are a warning of matplotlib's.
+        warnings.simplefilter("error")
+        plot = rate_plot(summary)
+        cost_plot(summary)
+    assert "nlap:privileged:no-cot · PRIVILEGED (2/2)" in plot
+    assert f"success with {model} [%]," in plot, "whose figures they are stands at the axis, once"
+    content = page_content(summary, [], None, tmp_path / "p.html")
+    assert (len(content["pairs"]), content["apart"]) == (36, 19), "what shares no scene is counted, not compared"
 
 
 def test_errors_are_not_failures_and_more_than_two_percent_of_them_warn() -> None:

@@ -106,6 +106,15 @@ def test_the_picture_limit_is_found_also_when_pictures_are_dropped_in_silence(
     assert found == expected
 
 
+@pytest.mark.parametrize("seed", range(4))
+def test_a_model_that_errs_now_and_then_is_not_a_service_with_a_limit(seed: int) -> None:
+    with WireServer(OddEyes(misses=0.15, wild=0.1, seed=seed), LOCAL) as server:
+        bench = bench_of(server)
+        profile = Profile("mine", f"{server.url}/v1#x")
+        found = asyncio.run(closing(bench, picture_limit(bench, profile, 8, 0, lambda line: None)))
+    assert found == (8, False)
+
+
 @pytest.mark.parametrize(
     ("brain", "rule", "expected"),
     [(OddEyes(), "enforced", "enforced"), (OddEyes(obeys=True), "enforced", "ignored"),
@@ -179,6 +188,7 @@ def test_full_measures_errors_with_counts_and_intervals() -> None:
     found, _ = probed(eyes, options=Options(most_pictures=1, full=True, synthetic=5))
     errors = found.profile.errors
     assert errors is not None
+    assert replace(found.profile, name="mine").line.endswith("; its errors: simulated:mine)")
     assert errors.scenes[0].kind == "synthetic"
     assert errors.scenes[0].seeds == [1000, 1001, 1002, 1003, 1004]
     assert errors.detection.missed.n == 30

@@ -101,7 +101,9 @@ def test_a_doubted_box_is_looked_for_anew_and_one_that_is_not_there_goes_back_to
         DraftPlan=[draft(subgoal("G1")), draft(subgoal("G1"), words="the thing on the left")],
     )  # fmt: skip
     assert plan_with(model, LEAN).status == "planned"
-    assert asked(model, "DraftPlan")[1].question.advice == ("T1 (the first thing) was not found in the picture.",)
+    assert asked(model, "DraftPlan")[1].question.advice == (
+        "T1 (the first thing) was not found in the picture: 3 of 3 samples say it is not there.",
+    )
 
 
 @pytest.mark.parametrize("strict", [False, True])

@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
+import asyncio
 import re
+from dataclasses import replace
 
 import pytest
 
 from tests.planning.helpers import Tape, asked, draft, plan_with, scripted, subgoal
-from wonderful_team.planning import Bounds, TeamConfig
+from tests.planning.rounds import photo
+from wonderful_team.core.actions import PICK_PLACE
+from wonderful_team.core.protocols import Act, GaveUp, Situation
+from wonderful_team.core.values import NO_WORKSPACE, Instruction
+from wonderful_team.planning import Bounds, TeamConfig, TeamPolicy
 
 REVISE = {"reasoning": "", "decision": "revise", "problem": "too far right", "wrong_points": []}
 REJECT = {"reasoning": "", "decision": "reject", "problem": "another thing", "wrong_points": []}
@@ -111,7 +117,36 @@ def test_absent_goes_back_to_the_supervisor_who_may_describe_it_anew():
     plan = plan_with(model, TeamConfig(mode="lean"))
     assert plan.status == "planned"
     advice = asked(model, "DraftPlan")[1].question.advice
-    assert advice == ("T1 (the first thing) was not found in the picture.",)
+    assert advice == ("T1 (the first thing) was not found in the picture: the Manager says it is not in the picture.",)
+
+
+def test_what_was_not_found_is_looked_for_once_more_where_a_replan_is_left():
+    def seen(request):
+        late = len(asked(model, "ReadScene")) > 1
+        point = {"role": "pick", "point": {"x": 50, "y": 50}}
+        found = {"found": True, "box": {"x0": 10, "y0": 10, "x1": 90, "y1": 90}}
+        absent = {"found": False, "box": None, "points": []}
+        targets = [
+            {"id": t.id, **(found | {"points": [point | {"role": r} for r in t.roles]} if late else absent)}
+            for t in request.question.targets
+        ]
+        return {"reasoning": "", "targets": targets}
+
+    model = scripted(ReadScene=seen, LocatePoints=NOT_HERE)
+    team = TeamPolicy(model, TeamConfig(mode="lean"))
+    told = Instruction("put the first thing into the second thing")
+    now = Situation(photo(), told, PICK_PLACE, NO_WORKSPACE, attempt=0, replans_left=1)
+    first = asyncio.run(team.decide(now))
+    assert isinstance(first, GaveUp)
+    assert first.again
+    second = asyncio.run(team.decide(replace(now, attempt=1)))
+    assert isinstance(second, Act)
+    assert second.plan is not None
+    assert second.plan.parent == first.plan.id
+    advice = asked(model, "DraftPlan")[-1].question.advice
+    assert advice == (
+        "The last plan could not be made ready: T1 not found: the first thing; T2 not found: the second thing.",
+    )
 
 
 def test_absent_for_good_is_not_found_and_names_the_target():

@@ -143,13 +143,23 @@ class Choosy(Finding):
         return super().detect(rgb, words)
 
 
+def test_a_thing_whose_part_is_left_out_is_looked_for_anew() -> None:
+    whole = draft(subgoal("G1"))
+    part = {**whole, "targets": [whole["targets"][0] | {"part": "its lid"}, *whole["targets"][1:]]}
+    model = scripted(DraftPlan=[part, whole], WriteSteps=one_step_each)
+    assert plan_by(Finding(box(FIRST, 50, 60), box(SECOND, 400, 300)), model).status == "planned"
+
+
 def test_words_that_a_detector_refuses_leave_the_others_found_and_go_back_to_the_supervisor() -> None:
     drafts = iter([draft(subgoal("G1"), words="gizmo"), draft(subgoal("G1"))])
     model = scripted(DraftPlan=lambda request: next(drafts), WriteSteps=one_step_each)
     tape = Tape()
     plan = plan_by(Choosy(box(FIRST, 50, 60), box(SECOND, 400, 300)), model, tape=tape)
     assert plan.status == "planned", plan.message
-    assert "T1 (gizmo) was not found" in tape.warnings
+    assert "T1 (gizmo) was not found in the picture: I do not know: gizmo." in tape.warnings
+    assert asked(model, "DraftPlan")[1].question.advice[0].endswith("I do not know: gizmo."), (
+        "who names it anew is told why"
+    )
     looks = [event.content for event in tape.kinds("detector")]
     assert [(run.words, run.refused) for run in looks] == [
         (("gizmo", SECOND), "I do not know: gizmo"),

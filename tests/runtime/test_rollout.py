@@ -8,7 +8,7 @@ from dataclasses import replace
 import pytest
 
 from tests.runtime.runtime_fakes import Listener, MovesPolicy, SquaresTruth, SquaresWorld, make_plan
-from wonderful_team.core.protocols import Act, GaveUp, Score
+from wonderful_team.core.protocols import Act, Done, GaveUp, Score
 from wonderful_team.core.values import GateReport, Usage
 from wonderful_team.errors import (
     BudgetReached,
@@ -91,6 +91,47 @@ def test_refused_plans_are_replanned_so_often_and_no_more(replans):
     trial = rollout(policy, SquaresWorld(), replans=replans)
     assert (trial.outcome, trial.stage, len(trial.plans)) == ("failure", "gate", 1)
     assert [asked.replans_left for asked in policy.asked] == [replans, *range(replans, 0, -1)]
+
+
+class Blinking:
+    """Finds nothing so many times, then moves what it should."""
+
+    name = "blinking"
+
+    def __init__(self, blinks, again=True):
+        self.blinks, self.again, self.asked = blinks, again, []
+
+    def decide(self, situation):
+        self.asked.append(situation)
+        if situation.executed:
+            return Done("moved")
+        plan = make_plan(situation.observation, [(RED, UP)])
+        if len(self.asked) <= self.blinks:
+            lost = replace(plan, status="not_found", message=f"blink {len(self.asked)}", actions=())
+            return GaveUp(lost.message, "grounding", lost, again=self.again)
+        return Act(plan.actions, plan)
+
+
+def test_what_a_new_look_may_mend_is_planned_again_while_replans_are_left():
+    world, listener = SquaresWorld(), Listener()
+    policy = Blinking(2)
+    trial = rollout(policy, world, replans=3, scorer=goal(world), subscribers=[listener])
+    assert trial.outcome == "success"
+    asked = [(s.attempt, s.replans_left, len(s.executed), s.refused) for s in policy.asked]
+    assert asked == [(0, 3, 0, None), (1, 3, 0, None), (2, 2, 0, None), (3, 1, 1, None)]
+    assert [plan.status for plan in trial.plans] == ["not_found", "not_found", "planned"]
+    looks = [event.name for event in listener.events if event.kind == "observe"]
+    assert looks[:3] == ["start", "attempt 1", "attempt 2"], "with a new picture each time"
+
+
+@pytest.mark.parametrize("replans", [0, 1, 3])
+def test_plans_that_find_nothing_are_made_so_often_and_no_more(replans):
+    policy = Blinking(9)
+    trial = rollout(policy, SquaresWorld(), replans=replans)
+    assert (trial.outcome, trial.stage, trial.reason) == ("failure", "grounding", f"blink {replans + 1}")
+    assert len(trial.plans) == len(policy.asked) == replans + 1
+    final = Blinking(9, again=False)
+    assert len(rollout(final, SquaresWorld(), replans=replans).plans) == len(final.asked) == 1
 
 
 def test_an_object_nudged_between_two_actions_stops_the_second_one():

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from dataclasses import replace
 from typing import Any
 
@@ -63,6 +64,18 @@ def test_a_trajectory_is_written_after_a_look_and_takes_of_several_the_nearest_t
     hint = then.partition("nearest(detect_object('pink letter R'), ")[2].partition(")")[0]
     assert math.dist(tuple(float(part) for part in hint.split(", ")), (x, y)) < 30
     assert "task_completed()" in then
+
+
+def test_a_program_names_another_thing_as_the_profile_says_and_the_same_in_every_round(table: Set) -> None:
+    question = program(table, "detect_object", "execute_trajectory", slot_words=WORDS)
+    model = erring(table, wrong_thing=1.0)
+    first = table.ask(question, model).code
+    looked_for = re.findall(r"'([^']+)'", first.partition("[")[2].partition("]")[0])
+    assert [one != right for one, right in zip(looked_for, ("pink letter R", "red paisley pan"), strict=True)] == [
+        True
+    ] * 2
+    then = table.ask(replace(question, rounds=(ProgramRound(first, "1 found: it [{'x': 1}]"),)), model).code
+    assert re.findall(r"nearest\(detect_object\('([^']+)'\)", then) == looked_for
 
 
 def test_what_the_detector_does_not_find_is_not_moved_and_a_failed_program_is_not_written_again(table: Set) -> None:

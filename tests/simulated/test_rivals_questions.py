@@ -93,6 +93,21 @@ def test_a_plan_from_words_takes_the_lists_coordinates(table: Set) -> None:
     assert not hasattr(table.ask(listed(table, thoughts=False)), "thoughts")
 
 
+def test_a_plan_from_words_takes_another_line_as_often_as_the_profile_says(table: Set) -> None:
+    question = listed(table)
+
+    def taken(**errors: Any) -> list[tuple[float, float]]:
+        return [(one.points[0].x, one.points[0].y) for one in table.ask(question, erring(table, **errors)).targets]
+
+    right, lines = taken(), {(float(item.x), float(item.y)) for item in question.objects}
+    wrong = taken(wrong_thing=1.0)
+    assert set(wrong) <= lines
+    assert all(one != other for one, other in zip(wrong, right, strict=True))
+    pairs = [pair for seed in range(60) for pair in zip(taken(wrong_thing=0.3, seed=seed), right, strict=True)]
+    # 120 draws: four standard deviations.
+    assert sum(one != other for one, other in pairs) / len(pairs) == pytest.approx(0.3, abs=0.17)
+
+
 def test_a_plan_from_words_fails_where_the_words_do_not_say_what_it_needs(table: Set) -> None:
     with pytest.raises(NotUnderstoodError, match="the list names no 'pink letter R'; it names nothing"):
         table.ask(listed(table, objects=()))

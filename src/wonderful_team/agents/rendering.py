@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import Literal
 
 from wonderful_team.contracts import ShownSlot, ShownTask
 from wonderful_team.core.actions import STEPS
@@ -339,6 +340,13 @@ def ability_parts(step_kinds: Sequence[str]) -> list[Part]:
     return listed(
         "What the robot can do, and nothing else", [f"{kind}: {STEPS[kind].words.does}" for kind in step_kinds]
     )
+
+
+def rule_parts(step_kinds: Sequence[str], use: Literal["planned", "written"]) -> list[Part]:
+    """What has to be known of this robot's kinds of step to plan for them, or to write them."""
+    rules = {kind: getattr(STEPS[kind].words, use) for kind in step_kinds}
+    title = {"planned": "Plans for these", "written": "How these are written"}[use]
+    return listed(title, [f"{kind}: {rule}" for kind, rule in rules.items() if rule])
 
 
 def function_parts(lines: Sequence[str]) -> list[Part]:

@@ -16,6 +16,7 @@ from wonderful_team.agents.rendering import (
     function_parts,
     listed,
     picture_parts,
+    rule_parts,
     subgoal_parts,
     subgoal_words,
     target_parts,
@@ -65,9 +66,6 @@ How to write the plan
 - An object's picture in the instruction shows what to look for. A picture of a scene, a frame or a before and after
   pair shows an arrangement or a motion to reproduce: work out from it which thing goes where. How things are turned there
   counts too, unless what is known of the robot says otherwise; state a turn in degrees and its direction.
-- A subgoal that pushes says where the thing should end and what it must keep away from. Where friction leaves a thing is
-  not certain: what a second push of it needs is a guess until there is a new picture, so give it room. A second push
-  needs no start of its own: code computes it, behind the thing where the first push should leave it.
 - after: only the subgoals without which this one cannot be reached. function: null, unless a subgoal needs a path of
   its own shape, such as a circle, a zigzag or up and down, and the robot can follow paths; then say what is to be computed, and
   whether the tool touches the surface on it.
@@ -118,15 +116,8 @@ id and give no coordinates.
 - A place is "at" a target (the point chosen on it), "beside" a target (then give the side, as the main view shows it),
   or the "origin" of a target (where it stood at the start; for putting things back). The middle of the thing that is
   moved lands there, wherever it is picked. A target that an earlier step moved means the place where it then lies.
-- push: start is the thing to be pushed. end is where its middle should arrive; only at a target with a push_end point, it
-  is where the front of the tool stops.
 - rotate_deg: only what the instruction or its pictures state; clockwise seen from above is positive, anticlockwise
   negative; 0 when nothing is said.
-- With a gripper: open, move above, move at, close, move clear, then move above the place, move at, open, move clear. What is
-  screwed on is gripped tightly and turned before it is lifted; without room for the whole turn: open, turn back, grip again.
-- A subgoal with a helper function is carried out with a follow step that names it. contact surface: the tool is lowered
-  to the surface at the first point and lifted after the last, as for drawing or wiping; air: it stays clear, with what it
-  holds, as for shaking.
 - If Verification asked about the last version, repair what it found and keep the rest.
 """
 
@@ -164,6 +155,7 @@ def _render_draft(question: DraftPlan) -> list[Part]:
     return [
         *task_parts(question.task),
         *ability_parts(question.step_kinds),
+        *rule_parts(question.step_kinds, "planned"),
         *listed(BEFORE, question.advice),
         *function_parts(question.functions),
         *_targets_wanted(question.with_targets),
@@ -174,6 +166,7 @@ def _render_revise(question: RevisePlan) -> list[Part]:
     return [
         *task_parts(question.task),
         *ability_parts(question.step_kinds),
+        *rule_parts(question.step_kinds, "planned"),
         *subgoal_parts(question.subgoals, "Your plan"),
         *target_parts(question.targets),
         *_doubt_parts(question.doubt),
@@ -207,6 +200,7 @@ def _render_steps(question: WriteSteps) -> list[Part]:
     return [
         *task_parts(question.task),
         *ability_parts(question.step_kinds),
+        *rule_parts(question.step_kinds, "written"),
         *subgoal_parts(question.subgoals),
         *target_parts(question.targets),
         *listed("Subgoals with a helper function to follow", question.functions),
@@ -222,6 +216,7 @@ def _render_function(question: WriteFunction) -> list[Part]:
         *words(f"Subgoal {subgoal_words(question.subgoal)}"),
         *picture_parts(question.view, "the main view"),
         *listed("boxes, as (x0, y0, x1, y1) in pixels of this picture", boxes, "none"),
+        *listed("What is known of the robot and its place", question.facts),
         *words(f"At most {question.max_points} points."),
         *(words(f"In the air, up is from 0 to {question.most_up_m:.2f} m.") if question.most_up_m else []),
         *_earlier_parts(question),

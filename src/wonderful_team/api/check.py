@@ -139,11 +139,17 @@ def _check_thinking(kind: str, name: str, seeds: Sequence[int], findings: Findin
         f"{len(broken)} of {counted(len(results), 'trial')} broke: {broken[0].reason if broken else ''}",
     )
     refused = [one for one in results if one.stage == "gate"]
-    findings.add(
-        not refused,
-        "the gate admitted its actions",
-        f"the gate refused {len(refused)} of {len(results)}: {refused[0].reason if refused else ''}",
-    )
+    if refused and len(refused) < len(results):
+        # It is there to refuse: a trial is lost by it, as by any other mistake, and nothing is wrong with the code.
+        findings.notes.append(
+            f"the gate refused a plan in {len(refused)} of {counted(len(results), 'trial')}, such as: {refused[0].reason}"
+        )
+    else:
+        findings.add(
+            not refused,
+            "the gate admitted its actions",
+            f"the gate refused a plan in every trial: {refused[0].reason if refused else ''}",
+        )
     scored = [one for one in results if one.outcome in ("success", "failure")]
     won = sum(one.outcome == "success" for one in scored)
     findings.notes.append(

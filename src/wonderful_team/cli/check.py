@@ -25,7 +25,7 @@ def command(name: str, seeds: int | None, sheet: Path | None, as_json: bool) -> 
     """Check FILE.py:NAME.
 
     A world or task: shapes and units, the same scene for the same seed, the oracle succeeds, doing nothing and random
-    actions do not, a contact sheet. A method or model: it loads, runs without an error, and the gate admits its actions.
+    actions do not, a contact sheet. A method or model: it loads, runs without an error, and the gate does not refuse it every time.
     A detector: what it returns fits the picture and the words, twice the same, and it finds nothing in an empty picture.
     """
     from wonderful_team.api.check import check

@@ -25,7 +25,9 @@ OWN = ("suites", "methods", "store", "open_page", "photo_set", "set_format")
 SHARED = [option for option in bench.command.params if option.name not in OWN]
 
 
-def _command(table: str | None, folder: Path, open_page: bool, only: tuple[str, ...], **options: Any) -> int:
+def _command(
+    table: str | None, folder: Path, open_page: bool, only: tuple[str, ...], also: tuple[str, ...], **options: Any
+) -> int:
     """List the paper's tables; or run what TABLE needs (what ended stays, and the same command resumes) and print ours beside the paper's."""
     from wonderful_team.errors import UnknownNameError
     from wonderful_team.evals.paper_tables import PAPER_TABLES
@@ -42,7 +44,7 @@ def _command(table: str | None, folder: Path, open_page: bool, only: tuple[str, 
         if method not in known:
             raise UnknownNameError(f"method of {table}", method, known)
     with limited(options["max_seconds"]):
-        return _run(names, folder, open_page, {**options, "only": named})
+        return _run(names, folder, open_page, {**options, "only": named, "also": split_names(also)})
 
 
 def _list(as_json: bool) -> int:
@@ -65,6 +67,7 @@ def _list(as_json: bool) -> int:
 def _run(names: list[str], folder: Path, open_page: bool, options: dict[str, Any]) -> int:
     from wonderful_team.api.study import Study
     from wonderful_team.cli.run_summary import shown_path
+    from wonderful_team.evals.paper_also import with_methods
     from wonderful_team.evals.paper_tables import PAPER_TABLES
     from wonderful_team.evals.report.paper_page import Part, write_paper
 
@@ -75,9 +78,9 @@ def _run(names: list[str], folder: Path, open_page: bool, options: dict[str, Any
     store = folder / "paper.db"
     make_private_folder(folder)
     for name in names:
-        table = PAPER_TABLES[name]
+        table = with_methods(PAPER_TABLES[name], options["also"])
         summary = None
-        not_run = _missing(table, options["only"]) if len(names) > 1 else ""
+        not_run = _missing(table, () if options["also"] else options["only"]) if len(names) > 1 else ""
         if not_run:
             click.echo(f"{name}: not run: {not_run}", err=True)
         elif table.suites and not stopped:
@@ -135,7 +138,8 @@ def _options(table: PaperTable, options: dict[str, Any]) -> dict[str, Any]:
     seeds = options["seeds"]
     if seeds is None and table.runs is not None:
         seeds = f"{DEVELOPMENT_BELOW}:{DEVELOPMENT_BELOW + table.runs}"
-    methods = [name for name in table.methods if name in options["only"]] or table.methods
+    chosen = {*options["only"], *options["also"]}
+    methods = [name for name in table.methods if not options["only"] or name in chosen]
     return {**options, "suites": table.suites, "methods": methods, "seeds": seeds}
 
 
@@ -158,7 +162,8 @@ command = click.Command(
     help=_command.__doc__,
     short_help="The paper's tables for your model, beside the paper's figures.",
     epilog="\b\nwonderful-team paper\nwonderful-team paper toy --model simulated:paper-gpt-4o\n"
-    "wonderful-team paper ablation --model openai:NAME --estimate\nwonderful-team paper all --model simulated:paper-gpt-4o",
+    "wonderful-team paper ablation --model openai:NAME --estimate\nwonderful-team paper all --model simulated:paper-gpt-4o\n"
+    "wonderful-team paper vima17 --also mine.py:Mine --method team:paper",
     params=[
         click.Argument(["table"], required=False, metavar="[TABLE|all]"),
         click.Option(
@@ -168,6 +173,10 @@ command = click.Command(
         click.Option(
             ["--method", "only"], multiple=True, metavar="A,B",
             help="Only these of the table's methods, such as the team without its rivals. [default: all]",
+        ),
+        click.Option(
+            ["--also"], multiple=True, metavar="FILE.py:NAME,B",
+            help="Methods beside the table's own, one of yours or any other: a column or a line more.",
         ),
         *SHARED,
         click.Option(["--open", "open_page"], is_flag=True, help="Open the page when done."),

@@ -114,6 +114,10 @@ def report(profile: Any, saved: str | None) -> str:
         lines += error_lines(profile.errors)
     if saved:
         lines.append(f"saved       {saved}; use it with --model {shlex.quote(profile.name)}")
+        if profile.errors is not None:
+            lines.append(
+                f"simulated   --model {shlex.quote(f'simulated:{profile.name}')} answers from a simulator's truth with these errors"
+            )
     else:
         lines.append("not saved   add --save NAME to use this from then on with --model NAME")
     return "\n".join(lines)

@@ -151,8 +151,11 @@ def _metres(action: Action | None) -> str:
 
 def trial_word(trial: TrialResult) -> str:
     """How a trial ended, in capitals; in a world without a scorer the method's own judgement is all that there is."""
+    # Each plan names its own subgoals: what an earlier one said of a G3 that this one has not is not its judgement.
+    subgoals = [subgoal.id for subgoal in trial.plans[-1].subgoals] if trial.plans else []
     last = {verdict.subgoal: verdict.status for verdict in trial.verdicts}
-    if trial.outcome == "unscored" and trial.stage is None and last and set(last.values()) == {"done"}:
+    done = bool(subgoals) and all(last.get(name) == "done" for name in subgoals)
+    if trial.outcome == "unscored" and trial.stage is None and done:
         return "DONE, as the team judges (no scorer)"
     return trial.outcome.upper()
 

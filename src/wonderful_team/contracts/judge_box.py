@@ -24,7 +24,7 @@ class BoxVerdict(AnswerModel):
 
     reasoning: str = Reasoning
     decision: Literal["accept", "revise", "reject"] = Field(
-        description="accept: on the target, every edge within the limits; revise: on the target, but an edge is not; reject: elsewhere."
+        description="accept: good as it is, every edge within the limits where some are told; revise: on the target, but not so; reject: elsewhere."
     )
     problem: str = Field(description="What should change about the box, in one sentence; empty when accepted.")
     wrong_points: list[WrongPoint] = Field(

@@ -27,7 +27,8 @@ class NamedPoint(AnswerModel):
 
     name: str = Field(description="What it is: colour, pattern, shape.", min_length=1)
     point: PointPx = Field(
-        description="Its middle; of a thing that can be carried and has a hole there, a point on its material."
+        description="Its middle; of a ring or a letter, where the middle may be a hole, a point on its material; of what other things go into "
+        "(a frame, a pan, a box) the middle of its inside."
     )
 
 

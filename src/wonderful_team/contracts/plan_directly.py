@@ -16,6 +16,7 @@ from wonderful_team.contracts.shown import (
     AnswerModel,
     BoxPx,
     Question,
+    Reasoning,
     ShownSlot,
     ShownTask,
     fits,
@@ -39,12 +40,17 @@ class PointedTarget(TargetDraft):
     points: list[RolePoint] = Field(description="One for each use, in pixels of the main view; none when absent.")
 
 
-class DirectPlan(StepList):
-    """A whole plan; the concrete type allows only steps that the world can run."""
+class Pointed(AnswerModel):
+    """What is to be done, and where things are: thought of before the steps, so that steps name what was found."""
 
+    reasoning: str = Reasoning
     subgoals: list[GoalDraft] = Field(description="Empty only when the instruction is already fulfilled.")
     targets: list[PointedTarget]
     absent: list[str] = Field(description="Ids of targets that are not in the main view.")
+
+
+class DirectPlan(StepList, Pointed):
+    """A whole plan; the concrete type allows only steps that the world can run."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -121,10 +127,10 @@ def direct_plan_type(step_kinds: tuple[str, ...]) -> type[DirectPlan]:
     return create_model("DirectPlan", __base__=DirectPlan, steps=(steps_annotation(step_kinds), ...))
 
 
-def steps_annotation(step_kinds: tuple[str, ...]) -> Any:
+def steps_annotation(step_kinds: tuple[str, ...], outlines: bool = True) -> Any:
     """The type of a list of steps of these kinds, but for paths of functions, which nobody writes here."""
     kinds = tuple(kind for kind in step_kinds if kind != "follow") or step_kinds
-    return step_list_type(kinds).model_fields["steps"].annotation
+    return step_list_type(kinds, outlines).model_fields["steps"].annotation
 
 
 def in_parts(

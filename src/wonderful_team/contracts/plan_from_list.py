@@ -140,7 +140,7 @@ class PlanFromList(Question):
 def listed_plan_type(step_kinds: tuple[str, ...], thoughts: bool) -> type[ListedPlan]:
     """The answer type for a vocabulary, with a chain of thought before the plan or without."""
     base = ThoughtPlan if thoughts else ListedPlan
-    return create_model("ListedPlan", __base__=base, steps=(steps_annotation(step_kinds), ...))
+    return create_model("ListedPlan", __base__=base, steps=(steps_annotation(step_kinds, outlines=False), ...))
 
 
 def listed_plan(question: PlanFromList, parts: dict[str, Any], points: dict[str, dict[str, Point]]) -> ListedPlan:

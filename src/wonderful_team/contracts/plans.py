@@ -64,7 +64,7 @@ class GoalDraft(AnswerModel):
     id: str = Field(description="G1, G2, ... in order of execution.")
     text: str = Field(min_length=1)
     after: list[str] = Field(description="Ids of subgoals that must be reached first.")
-    targets: list[str] = Field(description="Ids of the targets it needs; empty when targets are extracted later.")
+    targets: list[str] = Field(description="Ids of the targets it needs.")
 
     def to_subgoal(self) -> Subgoal:
         return Subgoal(self.id, self.text, tuple(self.after), tuple(self.targets))
@@ -73,6 +73,7 @@ class GoalDraft(AnswerModel):
 class SubgoalDraft(GoalDraft):
     """One qualitative goal, and how it is carried out where that is simple."""
 
+    targets: list[str] = Field(description="Ids of the targets it needs; empty when targets are extracted later.")
     function: str | None = Field(description="What a helper function should compute (a path), or null.")
     move: MoveDraft | None = Field(
         None, description="The one pick and place that carries it out; null where it takes more."

@@ -36,6 +36,25 @@ class CritiqueDraft(AnswerModel):
     question: str = Field(min_length=1)
 
 
+class PlanDoubtDraft(CritiqueDraft):
+    """One question about one subgoal."""
+
+    about: str = Field(description='Id of the subgoal in doubt; "plan" for a missing one.')
+    # No boxes and points are drawn yet: what is for these is not offered, and refused with the reason.
+    kind: (
+        Literal[
+            "collision",
+            "physical_constraint",
+            "missing_prerequisite",
+            "missing_subgoal",
+            "ambiguity",
+            "needless_step",
+            "wrong_target",
+        ]
+        | SkipJsonSchema[Literal["wrong_point", "wrong_box"]]
+    )
+
+
 CLAUSE = 300
 """Most characters of one clause of a walk."""
 
@@ -80,6 +99,12 @@ class WalkedReview(AnswerModel):
     doubt: CritiqueDraft | None = Field(description="Null exactly when approved.")
 
 
+class WalkedPlanReview(WalkedReview):
+    """Verification's word on a plan of which nothing is drawn yet."""
+
+    doubt: PlanDoubtDraft | None = Field(description="Null exactly when approved.")
+
+
 @dataclass(frozen=True, eq=False)
 class ReviewPlan(Question):
     """Asked of Verification.
@@ -108,7 +133,7 @@ class ReviewPlan(Question):
         return tuple(target for target in self.targets if named and target.id not in named)
 
     def output(self) -> type[AnswerModel]:
-        return WalkedReview
+        return WalkedPlanReview
 
     def validate(self, answer: Any) -> tuple[Any, tuple[str, ...]]:
         check_review(answer, [*(subgoal.id for subgoal in self.subgoals), "plan"], "subgoal")
@@ -117,7 +142,8 @@ class ReviewPlan(Question):
 
     def walked(self, review: PlanReview) -> WalkedReview:
         """A review with a walk that says no more than the review: for models that judge the plan by other means."""
-        return walked([item for item in self.subgoals if item.id in self.to_walk], review)
+        said = walked([item for item in self.subgoals if item.id in self.to_walk], review)
+        return WalkedPlanReview.model_validate(said.model_dump(exclude_unset=True))
 
 
 def check_walk(answer: WalkedReview, to_walk: Sequence[str]) -> None:

@@ -39,6 +39,16 @@ class PlaceDraft(AnswerModel):
                 return Beside(self.target, self.side)
 
 
+class SpotDraft(PlaceDraft):
+    """Where something goes."""
+
+    # What no outline is known of has no side to lie beside. Models are not offered it; who answers so all the same ends with the steps.
+    how: Literal["at", "origin"] | SkipJsonSchema[Literal["beside"]] = Field(
+        description="at: its chosen point; origin: where it stood at the start."
+    )
+    side: SkipJsonSchema[Side | None] = None
+
+
 class StepDraft(AnswerModel):
     """A step of one kind; the concrete types have the fields of that kind's step."""
 
@@ -56,11 +66,11 @@ class StepDraft(AnswerModel):
         )
 
 
-def _draft_of(step: type[Step]) -> type[StepDraft]:
+def _draft_of(step: type[Step], place: type[PlaceDraft]) -> type[StepDraft]:
     """How a model writes a kind of step: its first line, its fields with their metadata, none of them left out."""
     hints = get_type_hints(step)
     given: dict[str, Any] = {
-        item.name: (PlaceDraft if hints[item.name] == Place else _hint_of(item, hints[item.name]), _field_of(item))
+        item.name: (place if hints[item.name] == Place else _hint_of(item, hints[item.name]), _field_of(item))
         for item in fields(step)
         if item.name != "subgoal"
     }
@@ -95,9 +105,15 @@ class StepList(AnswerModel):
 
 
 @cache
-def step_list_type(step_kinds: tuple[str, ...]) -> type[StepList]:
-    """The answer type for a vocabulary: a StepList whose steps may be of these kinds only."""
-    drafts = [_draft_of(actions.STEPS[kind]) for kind in step_kinds]
+def step_list_type(step_kinds: tuple[str, ...], outlines: bool = True) -> type[StepList]:
+    """The answer type for a vocabulary: a StepList whose steps may be of these kinds only.
+
+    Args:
+        step_kinds: What the robot can do.
+        outlines: Of targets more is known than points, so that steps can put things beside them.
+    """
+    place = PlaceDraft if outlines else SpotDraft
+    drafts = [_draft_of(actions.STEPS[kind], place) for kind in step_kinds]
     # typing.Union over a list built at run time has no `|` spelling.
     item: Any = drafts[0] if len(drafts) == 1 else Annotated[Union[tuple(drafts)], Field(discriminator="kind")]  # noqa: UP007
     return create_model("StepList", __base__=StepList, steps=(list[item], ...))

@@ -60,6 +60,7 @@ class WriteFunction(Question):
         most_up_m: How far a path in the air may rise over the height at which things are carried [m].
         earlier: Functions that were accepted earlier in the trial, which the code may call.
         advice: What went wrong before; told only beside earlier functions, which may be what went wrong.
+        facts: What is known of the robot and its place: how wide its tool is, how much of the table the view spans.
     """
 
     subgoal: Subgoal
@@ -71,6 +72,7 @@ class WriteFunction(Question):
     most_up_m: float = later(0.0)
     earlier: tuple[EarlierFunction, ...] = later(())
     advice: tuple[str, ...] = later(())
+    facts: tuple[str, ...] = later(())
 
     def output(self) -> type[AnswerModel]:
         return FunctionCode

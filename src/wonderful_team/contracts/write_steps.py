@@ -7,6 +7,7 @@ from typing import Any
 
 from wonderful_team.contracts.shown import AnswerModel, Question, ShownTask
 from wonderful_team.contracts.steps import check_steps, step_list_type
+from wonderful_team.core.later import later
 from wonderful_team.core.values import Subgoal, Target
 
 
@@ -17,6 +18,7 @@ class WriteSteps(Question):
     Attributes:
         functions: Ids of subgoals for which a helper function gives a path.
         doubt: What Verification asked about the last version, or "".
+        outlines: More is found of targets than points, so that steps can put things beside them.
     """
 
     task: ShownTask
@@ -25,9 +27,10 @@ class WriteSteps(Question):
     targets: tuple[Target, ...]
     functions: tuple[str, ...] = ()
     doubt: str = ""
+    outlines: bool = later(True)
 
     def output(self) -> type[AnswerModel]:
-        return step_list_type(self.step_kinds)
+        return step_list_type(self.step_kinds, self.outlines)
 
     def validate(self, answer: Any) -> tuple[Any, tuple[str, ...]]:
         check_steps(

@@ -7,6 +7,7 @@ from dataclasses import replace
 from wonderful_team.core.values import Plan
 from wonderful_team.errors import (
     BudgetReached,
+    GeometryError,
     ModelOutputError,
     NeedsClarification,
     NotFoundError,
@@ -30,6 +31,11 @@ ENDS_A_PLAN = (
     BudgetReached,
 )
 """What is the method's failure or its cap; other errors are somebody else's and pass."""
+
+
+def may_be_mended(error: WonderfulTeamError) -> bool:
+    """Whether a new look and another plan may do what this one could not: find its targets, or compute its numbers from them."""
+    return isinstance(error, NotFoundError | GeometryError)
 
 
 def ended_by(plan: Plan, error: WonderfulTeamError) -> Plan:

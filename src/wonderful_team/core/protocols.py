@@ -239,12 +239,18 @@ class Done:
 
 @dataclass(frozen=True)
 class GaveUp:
-    """The method stops without success, with the stage at which it failed."""
+    """The method stops without success, with the stage at which it failed.
+
+    Attributes:
+        again: A new look may mend it, as where something was not found. While replans are left it is then asked for another plan, which is a
+            replan: with a new picture, and neither `executed` nor `refused`.
+    """
 
     reason: str
     stage: str
     plan: Plan | None = None
     verdicts: tuple[Verdict, ...] = ()
+    again: bool = False
 
 
 Decision: TypeAlias = Act | Done | GaveUp

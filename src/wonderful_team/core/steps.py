@@ -53,12 +53,16 @@ class StepWords:
         told: A step of that kind as a model reads it.
         shown: As a page shows it; the same when left out.
         line: Its beginning in a terminal; the kind when left out.
+        planned: What a plan for it has to say, for whoever writes one; nothing more when left out.
+        written: How such a step is written, beyond what its fields say; likewise.
     """
 
     does: str
     told: str
     shown: str = ""
     line: str = "{kind}"
+    planned: str = ""
+    written: str = ""
 
 
 @dataclass(frozen=True)
@@ -107,6 +111,11 @@ class PushStep(_Step):
     words: ClassVar[StepWords] = StepWords(
         "lower the tool beside a thing, push the thing straight along the surface to a place, and lift the tool there",
         told="push from {start} to {end}",
+        planned="A subgoal that pushes says where the thing should end and what it must keep away from. Where friction leaves a thing is not "
+        "certain: what a second push of it needs is a guess until there is a new picture, so give it room. A second push needs no start of its "
+        "own: code computes it, behind the thing where the first push should leave it.",
+        written="start is the thing to be pushed. end is where its middle should arrive; only at a target with a push_end point, it is where the "
+        "front of the tool stops.",
     )
     roles: ClassVar[tuple[tuple[str, str], ...]] = (("push_start", "start"), ("push_end", "end"))
     start: Place
@@ -150,7 +159,11 @@ class CloseStep(_Step):
 
     kind: ClassVar[str] = "close"
     words: ClassVar[StepWords] = StepWords(
-        "close the gripper; tight keeps squeezing", told="close the gripper{tight}", line="close gripper{tight}"
+        "close the gripper; tight keeps squeezing",
+        told="close the gripper{tight}",
+        line="close gripper{tight}",
+        written="To carry a thing: open, move above it, move at, close, move clear, then move above the place, move at, open, move clear. What "
+        "is screwed on is gripped tightly and turned before it is lifted; without room for the whole turn: open, turn back, grip again.",
     )
     points: ClassVar[bool] = False
     tight: bool = False
@@ -181,6 +194,8 @@ class FollowStep(_Step):
         "lifted after the last) or in the air",
         told="follow the path of {function}{contact}",
         line="follow {function}{contact}",
+        written="A subgoal with a helper function is carried out with a follow step that names it. contact surface: the tool is lowered to the "
+        "surface at the first point and lifted after the last, as for drawing or wiping; air: it stays clear, with what it holds, as for shaking.",
     )
     function: str = field(metadata={"description": "Id of the subgoal that asked for the function."})
     contact: Contact | None = later(

@@ -115,13 +115,15 @@ class Ablation:
         base: What is compared, without its members.
         conditions: All of it, the most complete team first.
         effects: A line for each member of which a pair was run; then what several are worth together, where the whole team was run.
-        ends: How the trials of each condition ended.
+        ends: How the trials of each condition ended, on the scenes that all of them ended; on all of its own where there are none.
+        shared: How many scenes these are; None for none.
     """
 
     base: Condition
     conditions: tuple[Condition, ...]
     effects: tuple[Effect, ...]
     ends: Mapping[Condition, Counter[str]]
+    shared: int | None
 
 
 def ablations(summary: Summary) -> list[Ablation]:
@@ -149,7 +151,12 @@ def _ablation(summary: Summary, base: Condition, by_off: Mapping[frozenset[str],
                 several.append(_effect(summary, members, by_off[more], by_off[less]))
     single.sort(key=lambda one: _place(one.members[0]))
     conditions = tuple(by_off[off] for off in ordered)
-    return Ablation(base, conditions, (*single, *several), {one: ends_of(summary, one) for one in conditions})
+    found = {one: _ends_by_scene(summary, one) for one in conditions}
+    shared = set.intersection(*(set(ends) for ends in found.values()))
+    ends = {
+        one: Counter(found[one][scene] for scene in shared) if shared else ends_of(summary, one) for one in conditions
+    }
+    return Ablation(base, conditions, (*single, *several), ends, len(shared) or None)
 
 
 def _place(member: str) -> int:
@@ -157,7 +164,7 @@ def _place(member: str) -> int:
 
 
 def _effect(summary: Summary, members: tuple[str, ...], with_: Condition, without: Condition) -> Effect:
-    first, second = _ends_by_scene(summary, with_), _ends_by_scene(summary, without)
+    first, second = _scored(_ends_by_scene(summary, with_)), _scored(_ends_by_scene(summary, without))
     shared = first.keys() & second.keys()
     moved = Counter((first[scene], second[scene]) for scene in shared if first[scene] != second[scene])
     by_task = {task: summary.compare(with_, without, task) for task in summary.tasks}
@@ -165,11 +172,15 @@ def _effect(summary: Summary, members: tuple[str, ...], with_: Condition, withou
     return Effect(members, summary.compare(with_, without), dict(moved.most_common()), kept, by_task)
 
 
+def _scored(ends: Mapping[Scene, str]) -> dict[Scene, str]:
+    return {scene: end for scene, end in ends.items() if end != NOT_SCORED}
+
+
 def _ends_by_scene(summary: Summary, condition: Condition) -> dict[Scene, str]:
-    """How the scored scenes of a condition ended."""
+    """How the scenes of a condition ended."""
     found = {}
     for row in summary.by_condition.get(condition, []):
         end = end_of(row)
-        if end is not None and end != NOT_SCORED:
+        if end is not None:
             found[row.spec.task, row.spec.seed, row.spec.repeat] = end
     return found

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from statistics import fmean
+from collections.abc import Sequence
 
-from wonderful_team.core.intervals import wilson_interval
+from wonderful_team.core.intervals import mean_interval, wilson_interval
+from wonderful_team.core.text import counted
 from wonderful_team.evals.paper_tables import Measure, PaperCell, PaperTable
 from wonderful_team.evals.summary import Cell, Summary
+from wonderful_team.evals.trials import Condition
 
 
 def filled(table: PaperTable, summary: Summary | None) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
@@ -34,22 +36,37 @@ def _ours(cell: PaperCell, summary: Summary | None) -> str:
         return "not run"
     if cell.ours is not None:
         return _measured(summary, cell.ours)
-    groups = [[_cells(summary, one) for one in group] for group in cell.ours_over]
-    rates = [[held.rate.share for cells in group for held in cells] for group in groups]
-    if not groups or any(share is None for group in rates for share in group) or not all(rates):
-        return "-" if not groups else "not run yet"
-    n = min(held.rate.n for group in groups for cells in group for held in cells)
-    mean = fmean(fmean(share for share in group if share is not None) for group in rates)
-    return f"{100 * mean:.2f} % (n = {n} a task)"
+    return _mean_of(summary, cell.ours_over) if cell.ours_over else "-"
+
+
+def _mean_of(summary: Summary, groups: Sequence[Sequence[Measure]]) -> str:
+    """The mean of the means of groups of rates, one for each condition that has run them all."""
+    found: dict[Condition, dict[Measure, Cell]] = {}
+    for group in groups:
+        for one in group:
+            for cell in _cells(summary, one):
+                found.setdefault(cell.condition, {})[one] = cell
+    told = []
+    for condition, cells in found.items():
+        whole = [[cells[one] for one in group if one in cells and cells[one].rate.n] for group in groups]
+        if [len(group) for group in whole] != [len(group) for group in groups]:
+            continue
+        weights = [1 / len(groups) / len(group) for group in whole for _ in group]
+        rates = [cell.rate for group in whole for cell in group]
+        mean, low, high = mean_interval(rates, weights)
+        n = f"n = {min(rate.n for rate in rates)} a task; {100 * low:.0f} to {100 * high:.0f}"
+        told.append((condition, f"{100 * mean:.2f} % ({n}){_badges([cell for group in whole for cell in group])}"))
+    return _beside(told) or "not run yet"
 
 
 def _cells(summary: Summary, one: Measure) -> list[Cell]:
-    """What a study has for a measure, one for each model."""
-    return [
+    """What a study has for a measure, one for each model, and for each way of asking it."""
+    cells = (
         summary.cell(condition, one.task or None)
         for condition in summary.compared
         if condition.method == one.method and one.replans in (None, condition.replans)
-    ]
+    )
+    return [cell for cell in cells if cell.results]
 
 
 def _counted(cell: Cell, one: Measure) -> tuple[int, int]:
@@ -64,14 +81,26 @@ def _counted(cell: Cell, one: Measure) -> tuple[int, int]:
 
 
 def _measured(summary: Summary, one: Measure) -> str:
-    said = []
-    cells = _cells(summary, one)
-    for cell in cells:
+    told = []
+    for cell in _cells(summary, one):
         successes, n = _counted(cell, one)
         if not n:
+            told.append((cell.condition, f"no data ({counted(cell.count('error'), 'error')})"))
             continue
         low, high = wilson_interval(successes, n)
-        told = f"{round(100 * successes / n, 1):g} % (n = {n}; {100 * low:.0f} to {100 * high:.0f})"
-        badges = f" [{', '.join(cell.badges)}]" if cell.badges else ""
-        said.append((f"{cell.condition.model}: " if len(cells) > 1 else "") + told + badges)
-    return "; ".join(said) or "not run yet"
+        said = f"{round(100 * successes / n, 1):g} % (n = {n}; {100 * low:.0f} to {100 * high:.0f})"
+        told.append((cell.condition, f"{said}{_badges([cell])}"))
+    return _beside(told) or "not run yet"
+
+
+def _badges(cells: Sequence[Cell]) -> str:
+    """Where the answers came from, as a reader has to know it."""
+    names = dict.fromkeys(name for cell in cells for name in cell.badges)
+    return f" [{', '.join(names)}]" if names else ""
+
+
+def _beside(told: Sequence[tuple[Condition, str]]) -> str:
+    """Figures of one method, each by its model and what is special about it where there are several."""
+    if len(told) == 1:
+        return told[0][1]
+    return "; ".join(f"{one.label.removeprefix(f'{one.method} · ')}: {said}" for one, said in told)

@@ -17,6 +17,8 @@ from wonderful_team.evals.toy import is_toy
 from wonderful_team.evals.trials import DEVELOPMENT_BELOW, Condition, Row, TrialRow
 
 SENTENCES = 3
+LISTED = 6
+"""Conditions that a warning lists by name, where it is about all of them."""
 TOO_MANY_ERRORS = 0.02
 """Share of errors in a cell from which its rate deserves a warning."""
 NO_VLM = ("offline", "simulated", "scripted", "injected")
@@ -312,7 +314,11 @@ def _origins(cells: Sequence[Cell]) -> list[str]:
         for badge in whole.badges:
             if badge in _SAYS:
                 found.setdefault(f"{badge}: {_SAYS[badge]}", []).append(whole.condition.label)
-    return [f"{text} ({'; '.join(labels)})" for text, labels in found.items()]
+    every = len(cells)
+    return [
+        f"{text} ({'all that was compared' if len(labels) == every > LISTED else '; '.join(labels)})"
+        for text, labels in found.items()
+    ]
 
 
 def summarise(rows: Sequence[Row], requests: Sequence[Mapping[str, object]]) -> Summary:

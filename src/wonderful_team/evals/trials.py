@@ -34,6 +34,8 @@ Outcome: TypeAlias = Literal["success", "failure", "error", "unscored"]
 Recorded: TypeAlias = Literal["full", "failures", "none"]
 RECORDED: tuple[Recorded, ...] = get_args(Recorded)
 """Which trials of a study keep their run folder."""
+PRIVILEGED = "PRIVILEGED"
+"""Marks what was told what no planner may see."""
 DEVELOPMENT_BELOW = 1000
 """Seeds below this one are for development and docs; suites start here (INTERFACE)."""
 
@@ -68,7 +70,7 @@ class Condition:
     def label(self) -> str:
         """For tables: method · model, and what is special about it."""
         words = [self.method] + ([self.model] if self.model != "-" else [])
-        words += ["PRIVILEGED: told the simulator's truth"] if "privileged" in self.method.split(":") else []
+        words += [f"{PRIVILEGED}: told the simulator's truth"] if "privileged" in self.method.split(":") else []
         words += [f"{self.isolate} alone"] if self.isolate else []
         words += [self.perturb] if self.perturb else []
         words += [f"{self.replans} replans"] if self.replans else []

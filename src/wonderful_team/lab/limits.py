@@ -22,6 +22,8 @@ SMALL = (448, 336)
 """Size of the pictures of these trials: they cost little."""
 LEAST_RIGHT = 0.6
 """Least share of the marks that must be pointed at for an answer to count as right."""
+TRIES = 3
+"""How often so many pictures are tried before wrong answers count as a limit."""
 UNCONSTRAINED = "This one time, begin your reply with the word READY on a line of its own, before anything else. Only then give the answer."
 """What a service that enforces schemas cannot do, and most models without one will."""
 
@@ -62,7 +64,21 @@ async def _between(
 
 
 async def _holds(bench: Bench, profile: Profile, count: int, seed: int) -> tuple[bool, int | None]:
-    """Whether a request with so many pictures is answered rightly, and the limit that the service told, if it did."""
+    """Whether a request with so many pictures is answered rightly, and the limit that the service told, if it did.
+
+    A model that errs now and then points wrongly now and then: that alone is no limit, so what was answered and wrong is tried
+    with other pictures before it counts.
+    """
+    told: int | None = None
+    for attempt in range(TRIES):
+        right, told, refused = await _once(bench, profile, count, seed + 100 * attempt)
+        if right or refused:
+            return right, told
+    return False, told
+
+
+async def _once(bench: Bench, profile: Profile, count: int, seed: int) -> tuple[bool, int | None, bool]:
+    """Whether it is answered rightly, the limit that the service told, and whether it was refused or not answered at all."""
     scene = marked_scene(seed + count, SMALL, background="plain", absent=2, name="the one to answer")
     also = [
         marked_scene(seed + 50 + k, SMALL, background="plain", absent=7, name=f"another {k + 1}").picture
@@ -76,19 +92,19 @@ async def _holds(bench: Bench, profile: Profile, count: int, seed: int) -> tuple
         except BudgetReached:
             raise
         except RequestRejectedError:
-            return False, None
+            return False, None, True
         told = getattr(model, "picture_limit", None)
         if isinstance(told, int) and told < count:
-            return False, told
+            return False, told, True
         if not profile.native_points:
             # Where it points says nothing then; that it points at all says that the request was taken.
             if not seen.answered:
-                return False, None
+                return False, None, True
             continue
         limit = WILD * float(np.hypot(*scene.picture.size_px))
         if np.mean(np.nan_to_num(seen.errors_px, nan=np.inf) <= limit) < LEAST_RIGHT:
-            return False, None
-    return True, None
+            return False, None, False
+    return True, None, False
 
 
 def _told(profile: Profile, count: int, right: bool) -> str:

@@ -123,7 +123,8 @@ class Profile:
         else:
             spoken = f"{convention_words(self.convention, self.resize_measured)}, error {_px(self.fit.median_px)}"
             spoken += "" if self.native_boxes else ", no native boxes"
-        return f"{spoken}, {pictures_words(self.max_pictures, self.max_pictures_reached)}"
+        errs = "" if self.errors is None else f"; its errors: simulated:{self.name}"
+        return f"{spoken}, {pictures_words(self.max_pictures, self.max_pictures_reached)}{errs}"
 
 
 def convention_words(convention: Convention, resize_measured: bool = True) -> str:

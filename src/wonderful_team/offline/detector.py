@@ -18,6 +18,7 @@ from wonderful_team.images import whole
 from wonderful_team.offline.description import Description
 from wonderful_team.offline.eyes import Eyes, eyes_of
 from wonderful_team.offline.language import describe
+from wonderful_team.offline.language.tokens import OTHERS_MAY
 from wonderful_team.offline.vision import Match, Thing, in_plain_light
 
 
@@ -50,7 +51,9 @@ def described(words: str) -> Description:
     try:
         description = describe(words)
     except NotUnderstoodError as error:
-        raise NotUnderstoodError(f"detector 'classical', {words!r}: {error}", stage="grounding") from error
+        # Who reads it asked a detector: another model is not the way out.
+        said = str(error).removesuffix(OTHERS_MAY).strip()
+        raise NotUnderstoodError(f"detector 'classical', {words!r}: {said}", stage="grounding") from error
     if description.like is not None:
         raise NotUnderstoodError(
             f"detector 'classical' reads words alone; {words!r} points to a picture", stage="grounding"

@@ -87,6 +87,7 @@ def replans(record: dict[str, Any]) -> list[dict[str, Any]]:
                 "verdicts": verdicts,
                 "refusal": [] if verdicts else refusal,
                 "stopped": _stopped(planner, number - 1),
+                "unready": "" if before["status"] == "planned" else before["message"],
                 "rows": diff_rows(before["subgoals"], after["subgoals"]),
                 "steps": [step_words(step, target_words(after)) for step in after["steps"]],
                 "status": after["status"].replace("_", " "),

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-from wonderful_team.core.values import GroundedTarget, Plan
+from wonderful_team.core.values import GroundedTarget, Plan, Target
+from wonderful_team.planning.notes import one_line
 from wonderful_team.planning.plan_loop import PlanState
 
 
@@ -38,10 +39,20 @@ def not_found(absent: Sequence[GroundedTarget]) -> str:
     return "; ".join(f"{item.target.id} not found: {item.target.words}" for item in absent)
 
 
+def told_not_found(item: GroundedTarget) -> str:
+    """The same of one target, with why, for whoever plans again."""
+    why = one_line(item.history[-1].text).rstrip(".") if item.history else ""
+    return f"{item.target.id} ({item.target.words}) was not found in the picture{f': {why}' if why else ''}."
+
+
 def asks_anew(state: PlanState, absent: Sequence[GroundedTarget]) -> bool:
     """Whether a revised plan looks for something else than what was not found."""
-    missing = {(item.target.words, item.target.where, item.target.like) for item in absent}
-    return not missing & {(target.words, target.where, target.like) for target in state.targets}
+    missing = {_looked_for(item.target) for item in absent}
+    return not missing & {_looked_for(target) for target in state.targets}
+
+
+def _looked_for(target: Target) -> tuple[object, ...]:
+    return target.kind, target.words, target.part, target.where, target.like, target.alike
 
 
 def same_plan(state: PlanState, last: PlanState) -> bool:

@@ -91,7 +91,9 @@ async def _write_one(
     criticised: list[str] = []
     for _ in range(session.config.bounds.functions):
         written: FunctionCode = await session.ask(
-            WriteFunction(subgoal, shown, boxes, error, code, most_up_m=up_m, earlier=earlier, advice=told),
+            WriteFunction(
+                subgoal, shown, boxes, error, code, most_up_m=up_m, earlier=earlier, advice=told, facts=scene.task.facts
+            ),
             stage="act",
             branch=subgoal.id,
         )

@@ -134,6 +134,8 @@ class DecisionEntry(_Part):
     decision: str
     reason: str
     so_far: SoFar
+    again: bool = False
+    """It gave up on this plan, and said that a new look may mend it."""
 
 
 class ProfileEntry(_Part):

@@ -72,7 +72,8 @@ def rollout(
         plan: A plan that was read beforehand: exactly its actions run, in its own instruction and scene, or nothing
             moves and the trial ends. Once they ran, replans go on as asked for.
         plan_observation: The picture that plan was made from; without it the scene must be pixel for pixel the same.
-        replans: How often the policy may answer with new actions after its first ones ran or were refused.
+        replans: How often the policy may answer with new actions after its first ones ran or were refused, or after it gave up on a plan
+            that a new look may mend.
         reobserve: How often the policy may run only the first actions of its plan and be asked again with a new picture, which is
             not a replan. 0: every plan runs whole (open loop). A plan that was read beforehand always runs whole.
         scorer: Judges the outcome after the trial, and only then; None leaves it unscored.
@@ -159,6 +160,15 @@ def _attempts(
         )
         progress.asking(situation)
         decision = decision_of(policy, situation, caller)
+        if isinstance(decision, GaveUp) and decision.again and left > replanning:
+            # Nothing of it can run, as after a refusal: it was a plan, and the next one is a replan.
+            progress.decided(decision)
+            if decision.plan is not None:
+                progress.add_plan(decision.plan)
+            left, replanning, attempt = left - replanning, True, attempt + 1
+            read, refused, advice, halted = None, None, "", None
+            observation = progress.observe(world, f"attempt {attempt}")
+            continue
         if replanning and left == 0 and isinstance(decision, Act):
             # It was asked only for its judgement of what ran last.
             return halted or _ran_out()

@@ -90,7 +90,8 @@ class RolloutLog:
         """Note a decision and what it carries."""
         self.last = decision
         name = type(decision).__name__
-        self.tell("decision", name, {"decision": name, "reason": getattr(decision, "reason", "")})
+        again = {"again": True} if getattr(decision, "again", False) else {}
+        self.tell("decision", name, {"decision": name, "reason": getattr(decision, "reason", ""), **again})
         self._judged(JUDGE, tuple(getattr(decision, "verdicts", ())))
         if isinstance(decision, Act):
             self._before_attempt = len(self.verdicts)

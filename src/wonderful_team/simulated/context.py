@@ -126,6 +126,14 @@ class Context:
             return [moves[1], moves[0], *moves[2:]]
         return moves[:-1]
 
+    def taken_for(self, name: str, seen: Seen) -> str:
+        """What is taken for a thing by a planner that is shown no picture: another one as often as the profile says, the same for the same look."""
+        rng = np.random.default_rng([self.profile.seed, zlib.crc32(f"{seen.newest.view.hash}|{name}".encode())])
+        others = [one for one in seen.names if one != name]
+        if not others or rng.random() >= self.profile.wrong_thing:
+            return name
+        return others[int(rng.integers(len(others)))]
+
     def things(self, seen: Seen) -> Mapping[str, TrueThing]:
         """Everything on the table, in the state of the newest look."""
         known = seen.newest.things

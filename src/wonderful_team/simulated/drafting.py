@@ -106,10 +106,11 @@ def answer_write_steps(context: Context, question: WriteSteps) -> StepList:
     """
     plan = _own(context, question.task, question.subgoals, "WriteSteps")
     steps = _steps(plan, question.subgoals, question.targets, question.step_kinds)
-    answer: StepList = step_list_type(question.step_kinds).model_validate(
+    answer: Any = question.output().model_validate(
         {"reasoning": "One step per subgoal, in the plan's order.", "steps": steps}
     )
-    return answer
+    written: StepList = answer
+    return written
 
 
 def _own(context: Context, shown: ShownTask, subgoals: Sequence[Subgoal], contract: str) -> Written:

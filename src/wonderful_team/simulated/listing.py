@@ -87,7 +87,7 @@ def answer_plan_from_list(context: Context, question: PlanFromList) -> ListedPla
     for draft in plan.targets:
         meaning = plan.meanings[draft.id]
         target = draft.to_target()
-        points[draft.id] = {role: _at(meaning, role, seen, question.objects) for role in target.roles}
+        points[draft.id] = {role: _at(context, meaning, role, seen, question.objects) for role in target.roles}
     return listed_plan(question, _parts(plan), points)
 
 
@@ -116,14 +116,15 @@ def main_of(context: Context, name: str, size_px: tuple[int, int]) -> Seen:
     return seen
 
 
-def _at(meaning: Meaning, role: PointRole, seen: Seen, objects: Sequence[ListedObject]) -> Point:
-    """Where the list has a thing: the nearest line of its name. A spot is reckoned from where it is."""
+def _at(context: Context, meaning: Meaning, role: PointRole, seen: Seen, objects: Sequence[ListedObject]) -> Point:
+    """Where the list has a thing: the nearest line of its name, or of what is taken for it. A spot is reckoned from where it is."""
     place = place_of(meaning, seen)
     if meaning.thing is None:
         if place is None:
             raise NotUnderstoodError("a place lies outside of the view")
         return point_of(place, role, seen)
-    said, near = _words(seen, meaning.thing), seen.position(meaning.thing) or (0.0, 0.0)
+    thing = context.taken_for(meaning.thing, seen)
+    said, near = _words(seen, thing), seen.position(thing) or (0.0, 0.0)
     named = [item for item in objects if item.name == said]
     if not named:
         raise NotUnderstoodError(

@@ -1,7 +1,8 @@
 """DescribePictures, WriteProgram and JudgeFromBoxes: what a text-only planner is told and asked, answered from truth.
 
 No picture comes with these questions. As for a plan from a list, the plan is the one that truth asks for now; where things are is
-what a detector tells the program, of several the one nearest to the truth. What it does not find, this model cannot move.
+what a detector tells the program, of several that it finds of a name the one nearest to the truth; as often as the profile says, another thing is
+named. What the detector does not find, this model cannot move.
 """
 
 from __future__ import annotations
@@ -56,7 +57,7 @@ def answer_write_program(context: Context, question: WriteProgram) -> Program:
     if by_words:
         check_told(context, question.slot_words)
     shown = None if by_words else context.shown(context.things(seen))
-    moves = [_move(step, plan, seen, shown) for step in plan.steps]
+    moves = [_move(context, step, plan, seen, shown) for step in plan.steps]
     return program_for(question, moves, f"{len(moves)} moves lead from this table to what is asked.")
 
 
@@ -72,7 +73,9 @@ def check_found(question: WriteProgram) -> None:
         raise NotFoundError(f"the last program failed: {said.removeprefix('error: ').splitlines()[0]}")
 
 
-def _move(step: dict[str, object], plan: Written, seen: Seen, shown: Mapping[str, str] | None) -> ProgramMove:
+def _move(
+    context: Context, step: dict[str, object], plan: Written, seen: Seen, shown: Mapping[str, str] | None
+) -> ProgramMove:
     """One step as a move; `shown` names the picture of the instruction that shows a thing, for programs that can look by it."""
 
     def reference(name: object) -> Reference:
@@ -81,7 +84,7 @@ def _move(step: dict[str, object], plan: Written, seen: Seen, shown: Mapping[str
             return Reference(f"{{{shown[meaning.thing]}}}")
         if shown is not None and meaning.thing is None and meaning.slots and step["kind"] != "push":
             return Reference(shown_in=meaning.slots[0])
-        return _reference(meaning, seen, nearest=shown is None)
+        return _reference(context, meaning, seen, nearest=shown is None)
 
     pushed = step["kind"] == "push"
     place = step["end"] if pushed else step["place"]
@@ -94,11 +97,11 @@ def _move(step: dict[str, object], plan: Written, seen: Seen, shown: Mapping[str
     )
 
 
-def _reference(meaning: Meaning, seen: Seen, nearest: bool) -> Reference:
+def _reference(context: Context, meaning: Meaning, seen: Seen, nearest: bool) -> Reference:
     if meaning.thing is not None:
-        thing = seen.thing(meaning.thing)
-        near = seen.position(meaning.thing) if nearest else None
-        return Reference(meaning.thing if thing is None else thing.words, near=near)
+        name = context.taken_for(meaning.thing, seen)
+        thing = seen.thing(name)
+        return Reference(name if thing is None else thing.words, near=seen.position(name) if nearest else None)
     place = place_of(meaning, seen)
     if place is None:
         raise NotUnderstoodError("a place lies outside of the view")

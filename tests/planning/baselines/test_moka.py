@@ -74,6 +74,9 @@ def test_keypoints_are_the_middle_and_points_of_the_boundary_as_far_apart_as_the
     assert sum(min(math.dist(corner, point) for point in around) < 1 for corner in corners) >= 2
     assert min(math.dist(one, two) for k, one in enumerate(around) for two in around[:k]) > 30
     assert [y for _, y in around] == sorted(y for _, y in around)
+    # A handle has much boundary and is little of the thing: the middle stays in the pan.
+    mask[47:53, 160:200] = True
+    assert keypoints(Detection("pan", Box(40, 20, 200, 80), 1.0, mask), (200, 100))[0][0] < 104
     # A detector of boxes alone: the box is the mask.
     assert len(keypoints(Detection("slab", Box(40, 20, 160, 80), 1.0), (200, 100))) == 6
 

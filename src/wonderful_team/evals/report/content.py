@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import textwrap
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from itertools import zip_longest
@@ -25,11 +26,19 @@ from wonderful_team.images.thumbnail import run_thumbnail
 
 EXAMPLES = 3
 GALLERY = 24
+LONGEST_REASON = 90
+"""Characters of a reason below a picture."""
+MOST_OPEN = 12
+"""So many pairs are written out one below the other; more are folded up."""
+MOST_LINES = 40
+"""So many lines of what was measured beside success; more are folded up."""
 
 
 def page_content(summary: Summary, warnings: Sequence[str], baseline: str | None, page: Path) -> dict[str, Any]:
     """Everything that the template names but stores and files."""
     head, lines = tables.task_table(summary)
+    every = summary.pairs(baseline)
+    pairs = [one for one in every if one.n] or every
     return {
         "summary": summary,
         "runs_words": runs_words(summary),
@@ -49,7 +58,10 @@ def page_content(summary: Summary, warnings: Sequence[str], baseline: str | None
         "with_paper": any(name.startswith("paper (") for name in head),
         "pair_head": tables.PAIR_HEAD,
         "pair_task_head": tables.PAIR_TASK_HEAD[2:],
-        "pairs": _pairs(summary, baseline, page),
+        "pairs": _pairs(summary, pairs, page),
+        "apart": len(every) - len(pairs),
+        "most_open": MOST_OPEN,
+        "most_lines": MOST_LINES,
         "stages": _stage_table(summary),
         "failures": [_failures(one, summary, page) for one in summary.compared],
         "variant_head": tables.VARIANT_HEAD,
@@ -105,6 +117,9 @@ def _ablation(found: Ablation) -> dict[str, Any]:
         "label": found.base.label,
         "effects": ablation.effect_lines(found),
         "plot": _ends_plot(found.conditions, found.ends),
+        "on": "all that was run, as no scene is common to all of them"
+        if found.shared is None
+        else f"the {counted(found.shared, 'scene')} that all of them ended",
         "end_head": end_head,
         "end_lines": end_lines,
         "moved": ablation.moved_lines(found),
@@ -141,14 +156,14 @@ def _place(stage: str) -> tuple[int, str]:
     return (_ORDER.index(stage) if stage in _ORDER else len(_ORDER), stage)
 
 
-def _pairs(summary: Summary, baseline: str | None, page: Path) -> list[dict[str, Any]]:
+def _pairs(summary: Summary, pairs: Sequence[Pair], page: Path) -> list[dict[str, Any]]:
     # For all pairs at once: there is one for every two conditions, and each may name every trial.
     pages = {
         (row.spec.condition, row.spec.task, row.spec.seed, row.spec.repeat): link(row.result.page, page)
         for row in summary.rows
         if row.result is not None and row.result.page
     }
-    return [_pair(one, summary, pages) for one in summary.pairs(baseline)]
+    return [_pair(one, summary, pages) for one in pairs]
 
 
 def _pair(one: Pair, summary: Summary, pages: Mapping[tuple[Condition, str, int, int], str]) -> dict[str, Any]:
@@ -217,6 +232,7 @@ def _gallery(summary: Summary, page: Path) -> list[dict[str, Any]]:
             "label": row.spec.condition.label,
             "outcome": row.result.outcome,
             "stage": f"at {row.result.stage}" if row.result.stage else "",
+            "reason": textwrap.shorten(row.result.reason, LONGEST_REASON, placeholder=" …"),
         }
         for row in turns[:GALLERY]
         if row.result is not None

@@ -5,21 +5,22 @@ from __future__ import annotations
 import io
 import warnings
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from wonderful_team.core.intervals import wilson_interval
 from wonderful_team.errors import MissingExtraError
 from wonderful_team.evals.ablation import NOT_SCORED, ends_seen
-from wonderful_team.evals.names import short_names
+from wonderful_team.evals.names import NO_MODEL, short_names
 from wonderful_team.evals.paper import paper_beside
 from wonderful_team.evals.summary import Summary
-from wonderful_team.evals.trials import Condition
+from wonderful_team.evals.trials import PRIVILEGED, Condition
 
 _MARKS = "osD^vP*X<>"
 MOST_PER_TASK = 5
 """Conditions side by side that a plot per task can still show."""
 LONGEST_TICK = 40
+INCH_A_LETTER = 0.075
 LEAST_LABELLED = 3.0
 """Least share of a bar that has room for its number [%]."""
 _END_COLOURS = {
@@ -31,17 +32,22 @@ _BLUE, _GREY = "#2b5c8a", "#8a8f98"
 def rate_plot(summary: Summary) -> str:
     """Success of every condition with its 95 % interval; controls in grey."""
     conditions = [one for one in (*summary.main, *summary.main_bounds) if summary.cell(one).rate.n]
-    figure, axes = _figure(7.2, 0.9 + 0.42 * max(1, len(conditions)))
+    names, model = _names(conditions, summary)
+    figure, axes = _figure(7.2 + _wider(names.values()), 0.9 + 0.42 * max(1, len(conditions)))
     for place, one in enumerate(reversed(conditions)):
         rate = summary.cell(one).rate
         low, high = wilson_interval(rate.successes, rate.n)
         share = rate.successes / rate.n
         errors = [[100 * max(0.0, share - low)], [100 * max(0.0, high - share)]]
         axes.errorbar(100 * share, place, xerr=errors, fmt="o", color=_colour(one, summary), capsize=4)
-    axes.set_yticks(range(len(conditions)), [_named(one, summary) for one in reversed(conditions)])
+    rates = {one: summary.cell(one).rate for one in conditions}
+    axes.set_yticks(
+        range(len(conditions)),
+        [f"{names[one]} ({rates[one].successes}/{rates[one].n})" for one in reversed(conditions)],
+    )
     axes.set_ylim(-0.6, len(conditions) - 0.4)
     axes.set_xlim(-3, 103)
-    axes.set_xlabel("success [%], 95 % Wilson interval")
+    axes.set_xlabel(f"success{model} [%],\n95 % Wilson interval")
     return _svg(figure)
 
 
@@ -53,19 +59,20 @@ def cost_plot(summary: Summary) -> str:
     in_money = bool(paid) and all(cell.usd_per_trial is not None for cell in cells.values())
     if not in_money and not any(cell.mean("calls") for cell in cells.values()):
         return ""
-    figure, axes = _figure(8.6, 3.4)
+    names, model = _names(conditions, summary)
+    figure, axes = _figure(8.6 + _wider(names.values()), max(3.4, 0.21 * len(conditions)))
     for place, (one, cell) in enumerate(cells.items()):
         across = cell.usd_per_trial if in_money else cell.mean("calls")
         low, high = wilson_interval(cell.rate.successes, cell.rate.n)
         share = cell.rate.successes / cell.rate.n
         errors = [[100 * max(0.0, share - low)], [100 * max(0.0, high - share)]]
-        style = {"fmt": _MARKS[place % len(_MARKS)], "capsize": 4, "label": short_names(one.label), "alpha": 0.8}
+        style = {"fmt": _MARKS[place % len(_MARKS)], "capsize": 4, "label": names[one], "alpha": 0.8}
         axes.errorbar(across or 0.0, 100 * share, yerr=errors, color=f"C{place % 10}", **style)
     axes.set_ylim(-5, 108)
     axes.margins(x=0.1)
     axes.legend(fontsize=8, loc="center left", bbox_to_anchor=(1.01, 0.5), frameon=False)
-    axes.set_xlabel("USD per trial" if in_money else "model calls per trial (no price is known, or nothing was paid)")
-    axes.set_ylabel("success [%]")
+    axes.set_xlabel("USD per trial" if in_money else "model calls per trial\n(no price is known, or nothing was paid)")
+    axes.set_ylabel(f"success{model} [%]".replace(" with ", "\nwith "))
     return _svg(figure)
 
 
@@ -147,9 +154,20 @@ def _task_rate(summary: Summary, one: Condition, task: str, published: bool) -> 
     return 100 * share, 100 * min(low, share), 100 * max(high, share)
 
 
-def _named(one: Condition, summary: Summary) -> str:
-    rate = summary.cell(one).rate
-    return f"{short_names(one.label)} ({rate.successes}/{rate.n})"
+def _names(conditions: Sequence[Condition], summary: Summary) -> tuple[dict[Condition, str], str]:
+    """Labels that leave room for figures, and the model of all that was compared, if it is one: the axis names it."""
+    models = {one.model for one in summary.main}
+    shared = next(iter(models)) if len(models) == 1 else ""
+    names = {}
+    for one in conditions:
+        words = [word for word in one.label.split(" · ") if not (one in summary.main and word == shared)]
+        names[one] = short_names(" · ".join(PRIVILEGED if word.startswith(PRIVILEGED) else word for word in words))
+    return names, f" with {shared}" if shared not in ("", NO_MODEL) else ""
+
+
+def _wider(names: Iterable[str]) -> float:
+    """What long labels take [in], on top of a figure's own width."""
+    return INCH_A_LETTER * max(0, max(map(len, names), default=0) - LONGEST_TICK)
 
 
 def _colour(one: Condition, summary: Summary) -> str:

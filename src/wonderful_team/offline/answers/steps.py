@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from typing import Any
 
-from wonderful_team.contracts import StepList, WriteSteps, arm_steps, can_carry, step_list_type
+from wonderful_team.contracts import StepList, WriteSteps, arm_steps, can_carry
 from wonderful_team.core.actions import SIDES, Side
 from wonderful_team.core.values import Subgoal, Target
 from wonderful_team.errors import NotUnderstoodError, UnsupportedQuestion
@@ -30,8 +31,9 @@ def answer_write_steps(question: WriteSteps) -> StepList:
     reasoning = f"One task per subgoal in the plan's order, written as {kinds}."
     if question.doubt:
         reasoning += " Written anew from the subgoals after the doubt."
-    answer: StepList = step_list_type(question.step_kinds).model_validate({"reasoning": reasoning, "steps": steps})
-    return answer
+    answer: Any = question.output().model_validate({"reasoning": reasoning, "steps": steps})
+    written: StepList = answer
+    return written
 
 
 def _handles(subgoal: Subgoal) -> bool:

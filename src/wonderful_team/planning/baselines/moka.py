@@ -205,9 +205,11 @@ def _names(subtasks: Sequence[SubtaskDraft]) -> list[str]:
 
 def keypoints(found: Detection, size_px: tuple[int, int]) -> tuple[Point, ...]:
     """The middle of a thing, then points of its boundary as far from each other as they can be, from top to bottom [view px]."""
-    outlines, _ = cv2.findContours(found.mask_in(size_px).astype(np.uint8), cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)
+    mask = found.mask_in(size_px)
+    outlines, _ = cv2.findContours(mask.astype(np.uint8), cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)
     boundary = max(outlines, key=cv2.contourArea)[:, 0, :].astype(float) + 0.5
-    chosen = [boundary.mean(axis=0)]
+    # Of all that shows of it: the mean of the boundary alone lies towards a handle, where there is much boundary and little thing.
+    chosen = [np.argwhere(mask)[:, ::-1].mean(axis=0) + 0.5]
     away = np.hypot(*(boundary - chosen[0]).T)
     while len(chosen) < min(KEYPOINTS, len(boundary) + 1):
         chosen.append(boundary[int(away.argmax())])

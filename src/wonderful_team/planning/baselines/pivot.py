@@ -206,7 +206,7 @@ class Pivot(OpenLoop):
         draft: PlainPlan = (await self.ask(question, PLANNER, "plan")).value
         subgoals, targets, steps = draft.to_subgoals(), draft.to_targets(), tuple[Step, ...]()
         if subgoals:
-            asked = WriteSteps(scene.task, kinds, subgoals, targets)
+            asked = WriteSteps(scene.task, kinds, subgoals, targets, outlines=False)
             written: StepList = (await self.ask(asked, PLANNER, "act")).value
             steps = written.to_steps()
         view, seed = scene.views[0], scene.observation.hash

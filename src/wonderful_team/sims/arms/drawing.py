@@ -38,8 +38,9 @@ class Drawing(HeldTool):
     name = "pen"
     below_m = 0.055
     facts = (
-        "Tool: a pen that the gripper holds from the start, its tip down. Every position is that of the tip. It leaves a line of ink wherever "
-        "the tip touches; in the air it leaves none. There is nothing to pick up, and the gripper must stay closed."
+        "Tool: a pen that the gripper holds from the start, its tip down. Every position is that of the tip. It leaves a line of ink, "
+        f"{1000 * LINE_M:.0f} mm wide, wherever the tip touches; in the air it leaves none. There is nothing to pick up, and the gripper must "
+        "stay closed."
     )
 
     def __init__(self, paper: Thing, judge: Callable[[Sequence[Array]], str], goal: Callable[[Poses], Array]) -> None:

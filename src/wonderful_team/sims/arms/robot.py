@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from wonderful_team.core.geometry.arrays import Array
+from wonderful_team.sims.arms.giving import GivesSideways, shifted
 from wonderful_team.sims.arms.kinematics import Kinematics, downwards
 from wonderful_team.sims.arms.model import BuiltArm
 from wonderful_team.sims.arms.touch import Touch
@@ -251,30 +252,32 @@ class Robot:
         return Moved(0.0, float(np.abs(self.q - goal).max()), force, stopped)
 
     def grip(self, closed: bool, tight: bool = False) -> Moved:
-        """Close or open the fingers; the point between their tips stays where it is while they close."""
+        """Close or open the fingers; the point between their tips stays where it is until they hold something, which may push it aside."""
         row = self._built.row
         force = row.grip_force[1 if tight else 0] if closed else row.grip_force[1]
         self._model.actuator_forcerange[self._grip] = (-force, force)
         goal, yaw, q = self.tool_m, self.yaw_rad, self.q
         start, end = float(self._state.ctrl[self._grip]), row.grip_ctrl[1 if closed else 0]
         still, before, count = 0, self.opening_m, round(0.5 / (TICK * TIMESTEP_S))
-        pressed, held = 0.0, False
+        held, gives, eased = False, GivesSideways(), True
         for k in range(round((0.5 + WAIT_S) / (TICK * TIMESTEP_S))):
             if self._halted:
-                return self._ended(goal, yaw, pressed, "stop")
+                return self._ended(goal, yaw, 0.0, "stop")
             self._state.ctrl[self._grip] = start + (end - start) * min(1.0, (k + 1) / count)
             if closed and not held and still >= 2 and self.held_bodies():
                 # From here on it would lift, or press down, what it holds. Fingertips that only touch, such as the plate under a handle, go on.
-                held, self._state.ctrl[self._drives] = True, self.q
+                held, self._state.ctrl[self._drives] = True, (q := self.q)
+            if held and not (eased := gives.step(self._touch.push_n())):
+                self._state.ctrl[self._drives] = self._shifted(q, gives.by_m)
             if closed and not held and k % 3 == 0:
                 q = self._keep(goal, yaw, q)
             self._tick()
-            still = still + 1 if abs(self.opening_m - before) < 2e-5 else 0
+            still = still + 1 if eased and abs(self.opening_m - before) < 2e-5 else 0
             before = self.opening_m
             if k >= count and still >= 10:
                 break
         self.closed = closed
-        return self._ended(goal, yaw, pressed, "")
+        return self._ended(goal, yaw, 0.0, "")
 
     def loosen(self) -> None:
         """The fingers give way, as when something slips: nobody has told the gripper to open."""
@@ -312,10 +315,10 @@ class Robot:
         """Joint angles a little lower, or higher, so that the tool presses as it should on what it is led along."""
         change = GIVES_M_N * (force_n - PRESS_N)
         self._lean_m = float(np.clip(self._lean_m + change, -MOST_LEAN_M, MOST_LEAN_M))
-        jacobian = np.zeros((6, self._model.nv))
-        mj.mj_jacSite(self._model, self._state, jacobian[:3], jacobian[3:], self._flange)
-        up = np.array([0.0, 0.0, self._lean_m, 0.0, 0.0, 0.0])
-        return np.asarray(q + np.linalg.lstsq(jacobian[:, self._v_at], up, rcond=None)[0])
+        return self._shifted(q, np.array([0.0, 0.0, self._lean_m]))
+
+    def _shifted(self, q: Array, by_m: Array) -> Array:
+        return shifted(self._model, self._state, self._flange, self._v_at, q, by_m)
 
     def _along(self, path: Array, seconds: float, most_n: float, touching: bool = False) -> tuple[str, float]:
         """Servo the joints along a path, slow at both ends; the speed is told to the servos, which would lag behind."""

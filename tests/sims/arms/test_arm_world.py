@@ -102,6 +102,26 @@ def test_a_touch_on_the_way_down_stops_the_arm_and_is_reported(world: ArmWorld) 
 
 
 @needs_arms
+def test_what_is_held_may_land_a_little_early_and_no_more(world: ArmWorld) -> None:
+    for action in list(world.privileged.oracle())[:5]:
+        assert world.execute(action).executed
+    x, y, z = world._table.robot.tool_m
+    name = wanted(world)
+    hangs = float(z) - float(at(world, name)[2])
+    early = world.execute(MoveTo(Pose.at((x, y, hangs - 0.015))))
+    assert early.executed
+    assert "mm before its goal (limit 30 mm)" in str(early.fault)
+    world.execute(MoveTo(Pose.at((x, y, z))))
+    # Something stands on the way.
+    other = next(one for one in world.privileged.truth()["things"] if one.endswith("block") and one != name)
+    world._table.put(other, np.array([x, y, 0.0]), 0.0)
+    stopped = world.execute(MoveTo(Pose.at((x, y, hangs))))
+    assert (stopped.executed, stopped.measured["holding"], stopped.measured["contact"]) == (False, True, True)
+    assert stopped.measured["pose_error_m"] > 0.03
+    assert "before its goal (limit 30 mm)" in str(stopped.fault)
+
+
+@needs_arms
 def test_what_it_cannot_reach_or_run_is_refused(world: ArmWorld) -> None:
     far = world.execute(MoveTo(Pose.at((0.9, 0.0, 0.2))))
     assert not far.executed

@@ -10,8 +10,8 @@ from wonderful_team.contracts import CritiqueDraft, PlanReview, ReviewPlan, Revi
 from wonderful_team.core.actions import (
     SIDES,
     At,
-    CloseStep,
     Beside,
+    CloseStep,
     MoveStep,
     OpenStep,
     OriginOf,

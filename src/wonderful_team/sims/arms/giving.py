@@ -21,7 +21,8 @@ def shifted(model: Any, state: Any, site: int, columns: Array, q: Array, by_m: A
     """Joint angles with the tool a little elsewhere, not turned.
 
     Args:
-        model, state: Of MuJoCo; where the arm stands now says how its joints move the tool.
+        model: Of MuJoCo.
+        state: Where the arm stands now says how its joints move the tool.
         site: Id of the site that moves.
         columns: Of the arm's joints among all speeds.
         q: Joint angles, shape (N,) [rad].

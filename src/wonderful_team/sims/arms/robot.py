@@ -35,9 +35,8 @@ EMPTY_M = 0.003
 MOST_LEAP_RAD = 1.0
 """A joint that turns farther between two points of a turn takes another posture [rad]."""
 DOWN_SHARE = 0.5
-PRESS_N = 3.0
-"""With so much a tool that is led along a surface presses on it [N]."""
-PRESS_TICKS = 40
+PRESS_N, PRESS_TICKS = 3.0, 40
+"""With so much a tool that is led along a surface presses on it [N]; so many commands long before it is led."""
 GIVES_M_N, MOST_LEAN_M = 2e-5, 0.008
 """How far it goes down at each command for a newton that is missing, and at most in all [m]."""
 OVER_M = 0.32

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any, Protocol
 
 from wonderful_team.core.actions import Action, Gripper
@@ -22,6 +23,22 @@ REASONS = {
 }
 EMPTY = "the fingers have closed on nothing"
 LOST = "the fingers hold nothing any more: what they held slipped or was knocked out"
+
+
+@dataclass(frozen=True)
+class Moved:
+    """How a motion ended.
+
+    Attributes:
+        error_m, error_rad: How far the tool is from its goal.
+        force_n: Largest force that pressed on the tool, or on what it holds.
+        stopped_by: "" when it came to its end, else contact, collision, stop, reach or wrist.
+    """
+
+    error_m: float
+    error_rad: float
+    force_n: float
+    stopped_by: str = ""
 
 
 class Ended(Protocol):

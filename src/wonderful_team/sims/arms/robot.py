@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -13,6 +12,7 @@ from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.sims.arms.giving import GivesSideways, shifted
 from wonderful_team.sims.arms.kinematics import Kinematics, downwards
 from wonderful_team.sims.arms.model import BuiltArm
+from wonderful_team.sims.arms.reports import Moved
 from wonderful_team.sims.arms.touch import Touch
 from wonderful_team.sims.tabletop.engine import mj
 from wonderful_team.sims.tabletop.model import TIMESTEP_S
@@ -41,22 +41,6 @@ GIVES_M_N, MOST_LEAN_M = 2e-5, 0.008
 """How far it goes down at each command for a newton that is missing, and at most in all [m]."""
 OVER_M = 0.32
 """Height at which the tool comes from its parking place, and goes there [m]."""
-
-
-@dataclass(frozen=True)
-class Moved:
-    """How a motion ended.
-
-    Attributes:
-        error_m, error_rad: How far the tool is from its goal.
-        force_n: Largest force that pressed on the tool, or on what it holds.
-        stopped_by: "" when it came to its end, else contact, collision, stop, reach or wrist.
-    """
-
-    error_m: float
-    error_rad: float
-    force_n: float
-    stopped_by: str = ""
 
 
 class Robot:
@@ -153,6 +137,12 @@ class Robot:
     def holding(self) -> bool:
         """Whether fingers that were closed came to a stand apart from each other, and something presses on both."""
         return self.closed and self.opening_m > EMPTY_M and bool(self.held_bodies())
+
+    @property
+    def loosened(self) -> bool:
+        """Whether fingers that were told to close give way."""
+        row = self._built.row
+        return self.closed and float(self._state.ctrl[self._grip]) == row.grip_ctrl[0]
 
     def held_bodies(self) -> frozenset[int]:
         """Bodies that both fingers touch."""

@@ -13,10 +13,11 @@ from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.protocols import offers
 from wonderful_team.core.values import Instruction
 from wonderful_team.sims.arms.cameras import SIZE_PX, lenses, sensed
-from wonderful_team.sims.arms.disturbances import Disturbances, both
+from wonderful_team.sims.arms.disturbances import Disturbances, both, check_possible
 from wonderful_team.sims.arms.model import BuiltArm, build
 from wonderful_team.sims.arms.options import Asked
-from wonderful_team.sims.arms.robot import Moved, Robot
+from wonderful_team.sims.arms.reports import Moved
+from wonderful_team.sims.arms.robot import Robot
 from wonderful_team.sims.arms.rows import find_arm
 from wonderful_team.sims.arms.scene import ArmScene, Sorting
 from wonderful_team.sims.tabletop.appearance import PLAIN_LIGHT, Look
@@ -61,6 +62,7 @@ class ArmTable(SimulatedTable):
         self.task, self.seed, self.asked = task, seed, asked
         scene = task.scene(seed, made=partial(ArmScene, other_container="wrongbox" in asked.disturbances))
         assert isinstance(scene, ArmScene)
+        check_possible(task.name, scene, asked.disturbances)
         self.scene, self.work = scene, scene.work
         self.things: Mapping[str, Thing] = {thing.name: thing for thing in scene.things}
         self.rules = Rules(

@@ -16,7 +16,7 @@ from wonderful_team.sims.arms.held import HeldTool
 from wonderful_team.sims.arms.model import REACH_HIGH_M, REACH_LOW_M, upright
 from wonderful_team.sims.arms.options import asked as read_options
 from wonderful_team.sims.arms.privileged import ArmTruth
-from wonderful_team.sims.arms.robot import Moved
+from wonderful_team.sims.arms.reports import Moved
 from wonderful_team.sims.arms.rows import ArmRow, check_ready, find_arm
 from wonderful_team.sims.arms.table import ArmTable
 from wonderful_team.sims.arms.tasks import find_arm_task

@@ -240,6 +240,8 @@ class Course:
         if not len(lower):
             lower = heights[inside & (heights < top - RAISED_M)]
         base = max(float(np.quantile(lower, 0.25)), self._table_z_m) if len(lower) else min(top, self._table_z_m)
+        close = relief.all_round(box)
+        base = close if close is not None and base < close < top - RAISED_M else base
         raised = inside & (heights > base + RAISED_M * 0.75)
         return (raised if raised.any() else inside), base
 

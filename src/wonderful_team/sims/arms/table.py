@@ -12,7 +12,7 @@ import numpy as np
 from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.protocols import offers
 from wonderful_team.core.values import Instruction
-from wonderful_team.sims.arms.cameras import SIZE_PX, lenses, sensed
+from wonderful_team.sims.arms.cameras import SIZE_PX, PinholeLens, lenses, moved, sensed
 from wonderful_team.sims.arms.disturbances import Disturbances, both, check_possible
 from wonderful_team.sims.arms.model import BuiltArm, build
 from wonderful_team.sims.arms.options import Asked
@@ -101,6 +101,9 @@ class ArmTable(SimulatedTable):
     @staticmethod
     def _lenses(seed: int, asked: Asked) -> Any:
         found = lenses()
+        if asked.camera:
+            assert isinstance(found["top"], PinholeLens)
+            found["top"] = moved(found["top"], generator(seed, "camera", asked.camera), asked.camera)
         if asked.calibration:
             rng, step = generator(seed, "calibration", asked.calibration), asked.calibration - 1
             signs = rng.choice([-1.0, 1.0], size=3)

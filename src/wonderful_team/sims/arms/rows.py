@@ -118,8 +118,8 @@ def _fit_xarm7(spec: Any) -> None:
         linkage.solref[:2], linkage.solimp[:3] = (0.004, 1.0), (0.99, 0.9999, 0.001)
     for name, side in (("left_finger", -1.0), ("right_finger", 1.0)):
         spec.body(name).add_geom(
-            type=mj.mjtGeom.mjGEOM_BOX, size=(0.0145, 0.001, 0.0155), pos=(0.0, side * 0.0255, 0.044), mass=0.001, group=3,
-            solref=(0.004, 1.0), solimp=(0.95, 0.99, 0.001, 0.5, 2.0), friction=PAD, priority=1, condim=3,
+            type=mj.mjtGeom.mjGEOM_BOX, size=(0.0145, 0.001, 0.0155), pos=(0.0, side * 0.025, 0.044), mass=0.001, group=3,
+            solref=(0.004, 1.0), solimp=(0.95, 0.99, 0.001, 0.5, 2.0), friction=PAD, priority=1, condim=4,
         )  # fmt: skip
 
 

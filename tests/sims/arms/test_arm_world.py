@@ -188,3 +188,28 @@ def test_a_missing_part_is_named_with_its_command(monkeypatch: pytest.MonkeyPatc
     monkeypatch.setattr(rows, "find_spec", lambda name: None)
     with pytest.raises(MissingExtraError, match="mink"):
         make_world("block_in_bowl", seed=1)
+
+
+@needs_arms
+@pytest.mark.parametrize("tier", [1, 3])
+def test_a_moved_camera_sees_all_that_the_arm_reaches_and_planners_are_told_where_it_stands(tier: int) -> None:
+    usual, moved = make_world("block_in_bowl", seed=5), make_world(f"block_in_bowl@camera={tier}", seed=5)
+    try:
+        was, now = usual.observe().main, moved.observe().main
+        assert was.camera is not None
+        assert now.camera is not None
+        assert now.depth_m is not None
+        low, high = moved.limits.low_m, moved.limits.high_m
+        corners = np.array([(x, y, 0.0) for x in (low[0], high[0]) for y in (low[1], high[1])])
+        seen = now.camera.project(corners)
+        assert (seen > 0).all()
+        assert (seen < np.array(now.size_px)).all()
+        assert np.abs(seen - was.camera.project(corners)).max() > 4.0
+        block = at(moved, wanted(moved)) + np.array([0.0, 0.0, 0.045])
+        (x, y) = now.camera.project(block[None])[0]
+        found = now.camera.deproject([(x, y)], [now.depth_m[int(y), int(x)]])[0]
+        assert np.linalg.norm(found - block) < 0.004
+        assert "aslant" in moved.facts
+    finally:
+        usual.close()
+        moved.close()

@@ -35,8 +35,8 @@ EMPTY_M = 0.003
 MOST_LEAP_RAD = 1.0
 """A joint that turns farther between two points of a turn takes another posture [rad]."""
 DOWN_SHARE = 0.5
-PRESS_N, PRESS_TICKS = 3.0, 40
-"""With so much a tool that is led along a surface presses on it [N]; so many commands long before it is led."""
+PRESS_N, PRESS_TICKS, MOST_PRESS_TICKS = 3.0, 40, 150
+"""With so much a tool that is led along a surface presses on it [N]; so many commands long before it is led, and at most, until it touches."""
 GIVES_M_N, MOST_LEAN_M = 2e-5, 0.008
 """How far it goes down at each command for a newton that is missing, and at most in all [m]."""
 OVER_M = 0.32
@@ -223,10 +223,13 @@ class Robot:
         """Press as a tool does that is led along a surface, before it is: where it touches, and until it does so steadily."""
         self._led = (self.tool_m, self.q)
         q, self._lean_m, force = self.q, 0.0, self.force_n()
-        for _ in range(PRESS_TICKS):
+        for k in range(MOST_PRESS_TICKS):
             self._state.ctrl[self._drives] = self._leant(q, force)
             self._tick()
             force = self.force_n()
+            # A jolt in the air is taken for a touch now and then: then it goes on down, as far as a path's surface is looked for.
+            if k >= PRESS_TICKS and force > 0:
+                break
 
     def park(self) -> Moved:
         """Straight up, then to the parking place beside the table."""

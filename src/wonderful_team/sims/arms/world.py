@@ -116,7 +116,8 @@ class ArmWorld(SimulatedWorld[ArmTable, ArmTruth]):
             if low and not before_low:
                 if not moved.stopped_by:
                     moved = robot.move(goal - np.array([0.0, 0.0, SEEK_M]), yaw)
-                if moved.stopped_by == "contact":
+                if moved.stopped_by in ("", "contact"):
+                    # What the fingers hold may have crept up: a tool that touches nothing yet is pressed down all the same.
                     off_m = float(robot.tool_m[2]) - float(point[2])
                     moved = Moved(0.0, moved.error_rad, moved.force_n)
                     robot.press()

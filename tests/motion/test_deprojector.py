@@ -4,14 +4,16 @@ from __future__ import annotations
 
 from typing import Any
 
+import cv2
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tests.motion.block_scenes import SIZE, Block, affine_top, cameras, planar, scene
-from wonderful_team.core.geometry import Box
+from wonderful_team.core.geometry import AffineCamera, Box
 from wonderful_team.core.values import View
+from wonderful_team.images.relief import Relief
 from wonderful_team.motion.deprojector import Deprojector
 
 CAMERAS = cameras()
@@ -118,3 +120,18 @@ def test_the_floor_beside_the_table_supports_nothing() -> None:
     depth[:, 248:] = 1.05
     box = Box.bounding([tuple(p) for p in affine_top().project([block.top(a, b) for a in (0, 1) for b in (0, 1)])])
     assert Deprojector(with_depth(view, depth)).support_z_m(box) == pytest.approx(0.0, abs=1e-6)
+
+
+@pytest.mark.parametrize("turned_deg", [0.0, 8.0, -12.0])
+def test_what_lies_askew_on_a_larger_thing_stands_on_that_and_not_on_the_table(turned_deg: float) -> None:
+    camera = AffineCamera(np.array([[0, 800.0, 0, 320], [800.0, 0, 0, -200], [0, 0, -1.0, 1.0]]))
+    depth = np.full((400, 640), 1.0, np.float32)
+    for half_px, height_m in ((75.0, 0.055), (54.0, 0.063)):
+        corners = cv2.boxPoints(((300.0, 200.0), (2 * half_px, 2 * half_px), turned_deg))
+        cv2.fillPoly(depth, [np.round(corners).astype(np.int32)], 1.0 - height_m)
+    view = View("top", "top", 0.0, np.zeros((400, 640, 3), np.uint8), depth_m=depth, camera=camera)
+    lid = Box.bounding([tuple(map(float, corner)) for corner in corners])
+    assert Deprojector(view).support_z_m(lid, 0.065) == pytest.approx(0.055, abs=1e-3)
+    relief = Relief.of(view)
+    assert relief is not None
+    assert relief.all_round(lid) == pytest.approx(0.055, abs=1e-3)

@@ -56,6 +56,22 @@ def test_a_path_that_rises_is_not_followed_on_the_surface() -> None:
         run(FollowStep("G1", "G1", "surface"), path=over(0.0, 0.05))
 
 
+@pytest.mark.parametrize(("noise_m", "even"), [(0.0015, True), (0.006, False)], ids=["noise", "steps of a surface"])
+def test_points_of_one_surface_lie_on_one_plane_as_far_as_depth_tells(noise_m: float, even: bool) -> None:
+    assert VIEW.depth_m is not None
+    depth = VIEW.depth_m - np.where(np.arange(VIEW.depth_m.shape[1]) // 16 % 2, noise_m, 0.0).astype(np.float32) - 0.02
+    view = replace(VIEW, depth_m=depth)
+    path = tuple((float(x), y) for x, y in zip(range(40, 125, 16), (20.0, 20.0, 90.0, 90.0, 20.0, 20.0), strict=True))
+    (drawn,) = ground_actions((FollowStep("G1", "G1", "surface"),), TARGETS, view, LIMITS, paths={"G1": path})
+    assert isinstance(drawn.action, Trajectory)
+    heights = drawn.action.waypoints_m[1:-1, 2]
+    across = np.column_stack([drawn.action.waypoints_m[1:-1, :2], np.ones(len(path))])
+    off = heights - across @ np.linalg.lstsq(across, heights, rcond=None)[0]
+    assert bool(np.abs(off).max() < 1e-6) is even
+    assert np.abs(heights - 0.02).max() <= noise_m + 1e-4
+    assert ("one plane" in drawn.sources[1].how) is even
+
+
 def test_how_far_a_path_may_rise_leaves_room_for_whatever_is_held() -> None:
     up_m = most_up_m(carried_z_m(TARGETS, VIEW, LIMITS), LIMITS)
     assert 0 < up_m < LIMITS.high_m[2]

@@ -4,13 +4,16 @@ from __future__ import annotations
 
 from typing import Any
 
+import cv2
 import numpy as np
 import pytest
 
 from tests.motion.block_scenes import LIMITS, Block, cameras, found, scene
 from wonderful_team.core.actions import At, OriginOf, PickPlace, PickPlaceStep, Place
-from wonderful_team.core.values import GroundedTarget
+from wonderful_team.core.geometry import AffineCamera, Box
+from wonderful_team.core.values import GroundedTarget, Target, View
 from wonderful_team.motion import ground_actions, sharing
+from wonderful_team.motion.deprojector import Deprojector
 
 CAMERAS = cameras()
 RED = Block(0.38, -0.30, 0.43, -0.25, 0.05)
@@ -92,3 +95,16 @@ def test_the_parts_of_a_place_are_found_once_for_a_view(monkeypatch: pytest.Monk
         planned.action.place_m.tolist() for planned in again
     ]
     assert len(other) == 3
+
+
+def test_the_floor_of_a_place_that_lies_askew_is_what_most_of_it_shows() -> None:
+    """Its box shows the table in the corners, an edge, and in the middle a handle: half of what it shows lies lower than its floor."""
+    camera = AffineCamera(np.array([[0, 800.0, 0, 320], [800.0, 0, 0, -200], [0, 0, -1.0, 1.0]]))
+    depth = np.full((400, 640), 1.0, np.float32)
+    for sides_px, height_m in (((150, 150), 0.055), ((108, 108), 0.063), ((44, 12), 0.094)):
+        corners = cv2.boxPoints(((300.0, 200.0), sides_px, 8.0))
+        cv2.fillPoly(depth, [np.round(corners).astype(np.int32)], 1.0 - height_m)
+    view = View("top", "top", 0.0, np.zeros((400, 640, 3), np.uint8), depth_m=depth, camera=camera)
+    place = GroundedTarget(Target("T1", "object", "box"), "found", "top", Box.around((300.0, 200.0), 170.0, 170.0), {})
+    parts = sharing.parts_of(place, (300.0, 200.0), [(19.0, 19.0), (18.0, 18.0)], Deprojector(view))
+    assert np.hypot(*np.subtract(*parts)) > 37

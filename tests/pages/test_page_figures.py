@@ -126,6 +126,8 @@ def test_steps_say_what_the_targets_are() -> None:
         "rotate_deg": 0,
     }
     assert step_words(step, {"T3": "banana", "T4": "block"}) == "pick T3 banana, place left of T4 block"
+    turned = {"type": "RotateGripperStep", "subgoal": "G1", "rotate_deg": -270.0}
+    assert step_words(turned) == "turn the gripper 270° anticlockwise"
 
 
 def test_planted_mistakes_that_nobody_caught_are_not_called_caught() -> None:

@@ -137,16 +137,24 @@ def arm(*said: tuple[str, bool, bool]) -> tuple[StepReport, ...]:
 EMPTY = (("open", True, False), ("move", True, False), ("close", False, False), ("home", True, False))
 LOST_IT = (("close", True, True), ("move", False, False), ("home", True, False))
 BEFORE_IT = (("open", True, False), ("move", False, False))
-LET_GO = (("close", True, True), ("open", True, False), ("move", False, False))
+LET_GO = (("close", True, True), ("move", True, True), ("open", True, False), ("move", False, False))
+CENTRED = (("close", True, True), ("open", True, False), ("close", False, False))
 STOPPED = (("close", True, True), ("move", False, True))
 
 
 @pytest.mark.parametrize(
     ("said", "settled"),
-    [(EMPTY, True), (LOST_IT, True), (BEFORE_IT, False), (LET_GO, False), (STOPPED, False)],
-    ids=["closed on nothing", "lost on the way", "before it gripped", "after it let go", "it still holds it"],
+    [(EMPTY, True), (LOST_IT, True), (BEFORE_IT, False), (LET_GO, False), (STOPPED, True), (CENTRED, True)],
+    ids=[
+        "closed on nothing",
+        "lost on the way",
+        "before it gripped",
+        "after it let go",
+        "it still holds it",
+        "second grip",
+    ],
 )
-def test_only_an_empty_hand_on_the_way_settles_it(said: tuple[tuple[str, bool, bool], ...], settled: bool) -> None:
+def test_what_was_never_put_down_settles_it(said: tuple[tuple[str, bool, bool], ...], settled: bool) -> None:
     plan = Plan(Instruction("x"), "planned", (Subgoal("G1", "one"), Subgoal("G2", "two")))
     run = SubgoalRun("G2", SEEN, SEEN, arm(*said))
     known = {"G1": Verdict("G1", "done")}

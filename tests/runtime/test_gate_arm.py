@@ -2,9 +2,17 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
+import numpy as np
+
 from tests.motion.block_scenes import LIMITS, Block, affine_top, area, found, scene
 from tests.runtime.carrying import gate_of_carrying
+from wonderful_team.core.actions import At, CloseStep, MoveStep, OpenStep, RotateGripperStep
+from wonderful_team.core.geometry import Box
 from wonderful_team.core.values import GateReport
+from wonderful_team.motion import ground_actions
+from wonderful_team.runtime.course import stages_of
 
 CAMERA = affine_top()
 RED, BLUE = Block(0.38, -0.34, 0.48, -0.24), Block(0.48, 0.06, 0.58, 0.16)
@@ -32,3 +40,24 @@ def test_a_place_that_the_arm_itself_has_filled_is_refused() -> None:
     report = judged(("T1", "A1"), ("T2", "A1"))
     assert not report.admitted
     assert any("under the way" in reason for reason in report.reasons)
+
+
+def test_what_is_let_go_of_where_it_stands_has_not_moved() -> None:
+    view = scene(CAMERA, RED, BLUE)
+    target = found(CAMERA, "T1", RED)
+    assert target.box is not None
+    # Gripped beside its middle, as a cap is of which a box shows one side, too.
+    x, y = target.box.centre
+    target = replace(target, box=Box(target.box.x0, target.box.y0, x + 1, target.box.y1), points={"pick": (x - 4, y)})
+    steps = (
+        MoveStep("G1", At("T1"), "at"),
+        CloseStep("G1"),
+        OpenStep("G1"),
+        RotateGripperStep("G1", 90.0),
+        CloseStep("G1"),
+    )
+    before, *_, after = stages_of(ground_actions(steps, {"T1": target}, view, LIMITS), None, view, LIMITS)
+    assert before.relief is not None
+    assert after.relief is not None
+    high = [np.sort(np.round(one[one[:, 2] > 0.03], 4), axis=0) for one in (before.relief.xyz_m, after.relief.xyz_m)]
+    assert np.array_equal(*high)

@@ -20,6 +20,7 @@ class FailingArm(SquaresWorld):
 
     vocabulary: Vocabulary = ARM
     holding: bool = False
+    stopped_by: str = ""
     done: list[Action] = field(default_factory=list)
 
     def observe(self) -> Observation:
@@ -29,7 +30,8 @@ class FailingArm(SquaresWorld):
     def execute(self, action: Action) -> StepReport:  # type: ignore[override]
         self.done.append(action)
         first = len(self.done) == 1
-        return StepReport(action, not first, {}, "it slipped" if first else None)
+        told = {"holding": self.holding} | ({"stopped_by": self.stopped_by} if first and self.stopped_by else {})
+        return StepReport(action, not first, told, "it slipped" if first else None)
 
 
 @dataclass
@@ -74,6 +76,17 @@ def test_it_stays_otherwise(replans: int, holding: bool) -> None:
     world = FailingArm(holding=holding)
     ran(world, replans)
     assert [action.kind for action in world.done] == ["gripper"]
+
+
+@pytest.mark.parametrize(
+    ("stopped_by", "then"),
+    [("contact", ["gripper", "home"]), ("collision", [])],
+    ids=["it lies on something", "something hit it"],
+)
+def test_what_came_to_lie_on_something_is_let_go_of_and_nothing_else(stopped_by: str, then: list[str]) -> None:
+    world = FailingArm(holding=True, stopped_by=stopped_by)
+    ran(world, replans=1)
+    assert [action.kind for action in world.done] == ["gripper", *then]
 
 
 def test_of_a_plan_that_was_read_exactly_its_actions_run() -> None:

@@ -80,10 +80,13 @@ def test_handled_things_are_written_as_a_subgoal_with_its_steps() -> None:
     assert (first.move, second.move, second.function) == (None, None, None)
     assert plan.paths[first.text].up_m == (0.0, 0.08)
     place = {"target": "T1", "how": "origin", "side": None}
-    kinds = [
-        step["kind"]
-        for step in arm_steps("G1", "T1", place, 0.0, ARM.step_kinds, tight=True, twist_deg=-270.0, function="G1")
-    ]
-    assert kinds == [
-        "open", "move", "move", "move", "close", "rotate_gripper", "move", "follow", "move", "move", "open", "move", "home",
+    steps = arm_steps("G1", "T1", place, 0.0, ARM.step_kinds, tight=True, twist_deg=-270.0, function="G1")
+    # What is turned about its own axis is gripped twice, a quarter apart: that centres the fingers on it.
+    assert [step["kind"] for step in steps] == [
+        "open", "move", "move", "move", "close", "open", "rotate_gripper", "close", "rotate_gripper",
+        "move", "follow", "move", "move", "open", "move", "home",
     ]  # fmt: skip
+    assert [step["rotate_deg"] for step in steps if step["kind"] == "rotate_gripper"] == [90.0, -270.0]
+    assert [step["tight"] for step in steps if step["kind"] == "close"] == [False, True]
+    put = arm_steps("G1", "T1", place, 0.0, ARM.step_kinds, tight=True)
+    assert [step["kind"] for step in put].count("close") == 1

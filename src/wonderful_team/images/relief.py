@@ -20,6 +20,8 @@ from wonderful_team.core.values import View
 
 FARTHEST_M = 50.0
 """Depth beyond this is none [m]."""
+LEVEL_M = 0.005
+"""Heights round a thing that differ by no more are one level [m]."""
 RAISED_M = 0.004
 """What is at least this much higher than the table is not the table: more than a sheet of paper and sensor noise."""
 STEP_M = 0.006
@@ -86,6 +88,12 @@ class Relief:
         """Which points show in a box of the view, shape (N,) bool."""
         x, y = self.px.T
         return np.asarray((x >= box.x0) & (x <= box.x1) & (y >= box.y0) & (y <= box.y1))
+
+    def all_round(self, box: Box) -> float | None:
+        """Height of one level that shows close to a box of the view on all four of its sides [m]; None where there is none."""
+        sides = [self.xyz_m[self.in_box(side), 2] for side in box.sides]
+        levels = [float(np.median(side)) for side in sides if len(side)]
+        return min(levels) if len(levels) == 4 and max(levels) - min(levels) <= LEVEL_M else None
 
     def inside(self, region: Any) -> Array:
         """Which points lie in a region of the table (a shapely shape), shape (N,) bool."""

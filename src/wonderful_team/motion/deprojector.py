@@ -19,6 +19,8 @@ RING_SHARE = 0.15
 """How far round a box its surroundings are measured (share of its smaller side)."""
 DEPTH_NOISE_M = 0.01
 """Surfaces seen less than this below the table are the table; what lies deeper is beside it [m]."""
+LEVEL_M = 0.005
+"""Heights round a thing that differ by no more are one level [m]."""
 SURFACE_SAMPLES = 20
 """At how many points between two pixels one surface is looked for."""
 _WINDOW_PER_PX = 1 / 150
@@ -93,7 +95,17 @@ class Deprojector:
             inside = [self.surface(px, "inside the box").position_m for px in _grid(box) if self.inside(px)]
             lower = [float(at[2]) for at in inside if at is not None and TABLE_Z_M <= at[2] < below_m]
             supports = [min(lower)] if lower else []
-        return float(np.quantile(supports, 0.25)) if supports else self._plane_z_m
+        found = float(np.quantile(supports, 0.25)) if supports else self._plane_z_m
+        close = self._all_round(box)
+        return close if close is not None and found < close < below_m else found
+
+    def _all_round(self, box: Box) -> float | None:
+        """Height of one level that shows close to a box on all four of its sides [m]; None where there is none."""
+        levels = []
+        for side in box.sides:
+            seen = [self.surface(px, "side").position_m for px in side.scaled(0.5).corners if self.inside(px)]
+            levels += [float(np.median([at[2] for at in seen if at is not None]))] if seen else []
+        return min(levels) if len(levels) == 4 and max(levels) - min(levels) <= LEVEL_M else None
 
     def one_surface(self, one: Point, other: Point) -> bool:
         """Whether depth shows one surface over the table from a pixel straight to another."""

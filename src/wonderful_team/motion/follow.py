@@ -19,6 +19,8 @@ from wonderful_team.motion.state import MotionState
 MOST_UP_M = 0.3
 """No path in the air rises farther over the height at which things are carried [m]."""
 ROUNDING_M = 1e-6
+EVEN_M = 0.003
+"""Points that lie no farther from a plane lie on it: the rest is noise of depth, and a tool that is led over it would lift off [m]."""
 
 
 def carried_z_m(grounded: Mapping[str, GroundedTarget], view: View, limits: Limits) -> float:
@@ -102,8 +104,8 @@ def ground_follow(
         raise places.fail(f"the path {step.function!r} rises, so it is followed in the air; contact: 'air'")
     hanging = progress.held.hanging_m if progress.held is not None else 0.0
     spots = []
-    for number, point in enumerate(points, start=1):
-        seen = _seen(step, point, number, places)
+    shown = [_seen(step, point, number, places) for number, point in enumerate(points, start=1)]
+    for number, (point, seen) in enumerate(zip(points, _evened(shown) if low else shown, strict=True), start=1):
         if seen.position_m is None:
             spots.append(seen)
             continue
@@ -134,6 +136,22 @@ def ground_follow(
         height="clear" if step.contact else progress.height,
         over=None,
     )
+
+
+def _evened(shown: Sequence[ResolvedPoint]) -> Sequence[ResolvedPoint]:
+    """Points of a surface, on one plane where all of them lie on it as far as depth tells."""
+    points = [one.position_m for one in shown if one.position_m is not None]
+    if len(points) < len(shown) or len(points) < 4:
+        return shown
+    xyz = np.array(points)
+    across = np.column_stack([xyz[:, :2] - xyz[:, :2].mean(axis=0), np.ones(len(xyz))])
+    even_z = across @ np.linalg.lstsq(across, xyz[:, 2], rcond=None)[0]
+    if float(np.abs(even_z - xyz[:, 2]).max()) > EVEN_M:
+        return shown
+    return [
+        replace(one, position_m=np.array([*at[:2], z]), how=f"{one.how}, on one plane with the others")
+        for one, at, z in zip(shown, xyz, even_z, strict=True)
+    ]
 
 
 def _seen(step: FollowStep, point: PathPoint, number: int, places: Places) -> ResolvedPoint:

@@ -150,7 +150,7 @@ def parts_of(
     pairs = [one + other for one, other in zip(reach, [*reach[1:], reach[0]], strict=True)]
     ring = (max(pairs) + LEAST_GAP_PX) / (2 * math.sin(math.pi / len(sizes)))
     heights: dict[Point, float] = {}
-    for floor_m, shares in zip(_floors(place.box, centre, lift), (CLOSER, FARTHER), strict=False):
+    for floor_m, shares in zip(_floors(place.box, centre, lift), (CLOSER, FARTHER, FARTHER), strict=False):
         for share, turn in product(shares, range(TURNS)):
             angles = [2 * math.pi * (turn / TURNS + k / len(sizes)) for k in range(len(sizes))]
             points = [
@@ -173,8 +173,13 @@ def _floors(box: Box, centre: Point, lift: Deprojector) -> list[float | None]:
     heights = [
         float(at[2]) for px in spots if lift.inside(px) and (at := lift.surface(px, "floor").position_m) is not None
     ]
-    usual = float(np.median(heights)) if heights else float(seen[2])
-    return [float(seen[2]), usual] if usual < float(seen[2]) - LEVEL_M else [float(seen[2])]
+    if not heights:
+        return [float(seen[2])]
+    # A box round a thing that lies askew shows much beside it: its median may be the edge of the thing, and what most of it shows its floor.
+    level = np.array(heights)
+    most = float(level[np.argmax((np.abs(level[:, None] - level) <= LEVEL_M).sum(axis=1))])
+    lower = [one for one in dict.fromkeys((float(np.median(level)), most)) if one < float(seen[2]) - LEVEL_M]
+    return [float(seen[2]), *lower]
 
 
 def _rests(

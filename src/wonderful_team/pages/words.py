@@ -97,14 +97,18 @@ def step_words(step: dict[str, Any], names: Mapping[str, str] | None = None) -> 
     said = {name: _field_words(name, value, names) for name, value in {**later, **step}.items()}
     named = isinstance(step.get("place"), dict) and step["place"].get("type") in ("Beside", "OriginOf")
     return (kind.words.shown or kind.words.told).format(
-        **said, at="" if named else "at ", turned=f", turned {turn:g}° clockwise" if turn else ""
+        **said, at="" if named else "at ", turned=f", turned {_turn_words(turn)}" if turn else ""
     )
+
+
+def _turn_words(rotate_deg: float) -> str:
+    return f"{abs(rotate_deg):g}° {'clockwise' if rotate_deg >= 0 else 'anticlockwise'}"
 
 
 def _field_words(name: str, value: Any, names: Mapping[str, str] | None) -> str:
     match name:
         case "rotate_deg":
-            return f"{value:g}° clockwise"
+            return _turn_words(value)
         case "contact":
             return {"surface": ", touching the surface", "air": ", in the air"}.get(value, "")
         case "tight":

@@ -14,7 +14,7 @@ from wonderful_team.agents import step_words
 from wonderful_team.agents.plan_drawn import mark_targets
 from wonderful_team.agents.scene import SceneShown, show_views
 from wonderful_team.contracts import JudgeSubgoal, SubgoalOutcome
-from wonderful_team.core.actions import Gripper, Home, PickPlace
+from wonderful_team.core.actions import Gripper, Home, PickPlace, RotateGripper
 from wonderful_team.core.protocols import Checked, Situation
 from wonderful_team.core.steps import carried_by
 from wonderful_team.core.values import Plan, StepReport, SubgoalRun, Verdict
@@ -105,7 +105,8 @@ def stopped_verdicts(plan: Plan, known: Mapping[str, Verdict], stop: str) -> tup
 def measured_verdicts(
     plan: Plan, executed: Sequence[SubgoalRun], known: Mapping[str, Verdict]
 ) -> tuple[Verdict, ...] | None:
-    """A verdict on every subgoal where what the robot measured settles it: an action failed before anything was put down.
+    """A verdict on every subgoal where what the robot measured settles it: an action failed before anything was put down, whether the
+    fingers lost it, never had it, or still hold it.
 
     None where it does not, such as after a fault on the way home, or where an earlier subgoal was not judged.
     """
@@ -115,30 +116,32 @@ def measured_verdicts(
     failed = next((report for report in run.reports if not report.executed), None)
     before = [subgoal.id for subgoal in plan.subgoals]
     earlier = before[: before.index(run.subgoal)] if run.subgoal in before else before
-    if failed is None or not _empty_handed(run.reports, failed) or not all(name in known for name in earlier):
+    if failed is None or not _never_put(run.reports, failed) or not all(name in known for name in earlier):
         return None
     missed = Verdict(run.subgoal, "not_done", failed.words, "as the robot measured")
     return stopped_verdicts(plan, {**known, run.subgoal: missed}, "")
 
 
-def _empty_handed(reports: Sequence[StepReport], failed: StepReport) -> bool:
-    """Whether a subgoal carried nothing to where it belongs: its thing was not taken, or lost on the way."""
+def _never_put(reports: Sequence[StepReport], failed: StepReport) -> bool:
+    """Whether a subgoal carried nothing to where it belongs: its thing was not taken, lost on the way, or is held still."""
     match failed.action:
         case PickPlace():
             return failed.measured.get("held") is False
         case Home():
             return False
     holds = failed.measured.get("holding")
-    gripped = False
+    gripped = carried = False
     for report in reports:
         if report is failed:
             break
         if isinstance(report.action, Gripper):
-            if report.action.state == "open" and gripped:
+            if report.action.state == "open" and carried:
                 return False
             gripped = report.action.state != "open"
+        # A grip that lets go where it closed has put nothing down: it centres the fingers.
+        carried = gripped and (carried or not isinstance(report.action, Gripper | RotateGripper))
     closing = isinstance(failed.action, Gripper) and failed.action.state != "open"
-    return holds is False and (gripped or closing)
+    return isinstance(holds, bool) and (gripped or closing)
 
 
 def done_subgoals(plan: Plan, verdicts: Sequence[Verdict]) -> tuple[str, ...]:

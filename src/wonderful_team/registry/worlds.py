@@ -44,7 +44,7 @@ WORLDS: dict[str, WorldRow] = {
     ),
     "arms": WorldRow(
         "MuJoCo, a UR5e with a two-finger gripper at a table: grasps by contact, colour and depth from above; the optional part arms. "
-        "TASK@nudge=1 (also hand, remove, slip, depth, calibration, each 1 to 3) disturbs it",
+        "TASK@nudge=1 (also hand, remove, slip, depth, calibration, camera, each 1 to 3) disturbs it",
         lambda: importlib.import_module("wonderful_team.sims.arms"),
     ),
     "fetch": WorldRow(

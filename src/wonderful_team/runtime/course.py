@@ -15,6 +15,7 @@ from wonderful_team.core.actions import (
     MoveTo,
     OriginOf,
     Place,
+    RotateGripper,
     places_of,
 )
 from wonderful_team.core.geometry import Box
@@ -57,7 +58,8 @@ class Course:
         self._at: tuple[str, Array] | None = None
         # Points of what the fingers have just let go of: they still stand round it.
         self._let_go = np.zeros(0, dtype=np.int64)
-        # How the tool was turned when it closed, and how the last move has turned it.
+        # Where the tool was and how it was turned when it closed, and how the last move has turned it.
+        self._held_at: Array | None = None
         self._held_yaw_rad = self._yaw_rad = 0.0
         self._due: tuple[str, Array | None, float, Array, Array, float] | None = None
 
@@ -84,6 +86,8 @@ class Course:
             self._at = (step.to.target, np.zeros(3)) if step.height == "at" else None
         if isinstance(action, MoveTo):
             self._yaw_rad = action.pose.yaw_rad
+        if isinstance(action, RotateGripper):
+            self._yaw_rad += action.yaw_rad
         held = self._held
         carried = None if held is None else held[1].turned(self._yaw_rad - self._held_yaw_rad)
         own = self._mask(held[2]) if held is not None and self._relief is not None else None
@@ -235,6 +239,8 @@ class Course:
         if not len(lower):
             lower = heights[inside & (heights < top - RAISED_M)]
         base = max(float(np.quantile(lower, 0.25)), self._table_z_m) if len(lower) else min(top, self._table_z_m)
+        close = relief.all_round(box)
+        base = close if close is not None and base < close < top - RAISED_M else base
         raised = inside & (heights > base + RAISED_M * 0.75)
         return (raised if raised.any() else inside), base
 
@@ -309,10 +315,9 @@ class Course:
             if self._held is not None and tool_m is not None and self._relief is not None:
                 # What it stood on, not the lowest of its points that is seen: a fruit bulges over its own foot.
                 name, carried, indices, base = self._held
-                own = self._mask(indices)
-                middle = self._relief.xyz_m[own, :2].mean(axis=0) if own.any() else tool_m[:2]
+                start = np.append((tool_m if self._held_at is None else self._held_at)[:2], base)
                 end = np.append(tool_m[:2], float(tool_m[2]) - carried.hanging_m)
-                self._move(name, own, base, np.append(middle, base), end, 0.0)
+                self._move(name, self._mask(indices), base, start, end, self._yaw_rad - self._held_yaw_rad)
                 self._let_go = indices
             self._held = None
         elif self._held is None:
@@ -322,7 +327,7 @@ class Course:
             name = self._at[0]
             points, base = self._own(name, tool_m)
             indices = np.zeros(0, dtype=np.int64) if points is None else np.flatnonzero(points)
-            self._held = (name, self._carried(name, points, tool_m, base), indices, base)
+            self._held, self._held_at = (name, self._carried(name, points, tool_m, base), indices, base), tool_m
             self._held_yaw_rad = self._yaw_rad
 
     def _from_between(self, meant: Any | None) -> Any | None:

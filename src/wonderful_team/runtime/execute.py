@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TypeAlias
 
 from wonderful_team.core import deadline
-from wonderful_team.core.actions import Home, HomeStep
+from wonderful_team.core.actions import Gripper, Home, HomeStep, OpenStep
 from wonderful_team.core.geometry import Box
 from wonderful_team.core.protocols import Act, World
 from wonderful_team.core.text import counted
@@ -248,14 +248,19 @@ class Execution:
     ) -> Observation:
         """Home with an empty hand where the plan ends early, through the gate like everything else: from there the whole scene is seen.
 
-        Where a person consents to plans, nothing moves that she has not read; what is held stays where it is.
+        What came to lie on something on its way down is let go of there. Where a person consents to plans, nothing moves that she has
+        not read; whatever else is held stays where it is.
         """
-        idle = last.robot is not None and not last.robot.holding and not isinstance(failed.action, Home)
-        if not (self._again and idle and self._approval is None and Home.kind in self._world.vocabulary.kinds):
+        kinds = self._world.vocabulary.kinds
+        lies = bool(reports) and _lies_on_something(reports[-1])
+        idle = last.robot is not None and (lies or not last.robot.holding) and not isinstance(failed.action, Home)
+        if not (self._again and idle and self._approval is None and Home.kind in kinds):
             return last
-        home = PlannedAction(HomeStep(failed.step.subgoal), Home())
+        subgoal = failed.step.subgoal
+        opened = PlannedAction(OpenStep(subgoal), Gripper("open"))
+        leaving = (*((opened,) if lies else ()), PlannedAction(HomeStep(subgoal), Home()))
         report = check_gate(
-            (home,),
+            leaving,
             vocabulary=self._world.vocabulary,
             limits=self._world.limits,
             plan=None,
@@ -267,7 +272,9 @@ class Execution:
         self._progress.passed_gate(GOING_HOME, report)
         if not report.admitted:
             return last
-        self._execute(home, before, reports)
+        for planned in leaving:
+            if not self._execute(planned, before, reports).executed:
+                break
         return self._world.observe()
 
     def _still_fresh(
@@ -306,6 +313,12 @@ class Execution:
             self._progress.observed(f"after {planned.step.subgoal}", after)
             self._progress.ran_subgoal(run)
         return run
+
+
+def _lies_on_something(report: StepReport) -> bool:
+    """Whether an arm was stopped on its way down as what it holds touched something."""
+    told = report.measured
+    return not report.executed and bool(told.get("holding")) and told.get("stopped_by") == "contact"
 
 
 def _only_consent(report: GateReport) -> bool:

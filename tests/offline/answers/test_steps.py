@@ -8,7 +8,7 @@ import pytest
 
 from tests.offline.answers.tables import KINDS, ask, draft, table, task
 from wonderful_team.contracts import PlanReview, ReviewSteps, StepList, WriteSteps
-from wonderful_team.core.actions import ARM, At, Beside, OriginOf, PickPlaceStep, PushStep, Step
+from wonderful_team.core.actions import ARM, At, Beside, OriginOf, PickPlaceStep, PushStep, RotateGripperStep, Step
 from wonderful_team.core.geometry import Box
 from wonderful_team.core.pictures import BoxMark, PathMark, Picture
 from wonderful_team.core.values import Subgoal, Target
@@ -134,6 +134,17 @@ def test_wrong_steps_are_doubted_by_number(steps: tuple[Step, ...], about: str) 
     doubt = reviewed(steps).doubt
     assert doubt is not None
     assert doubt.about == about
+
+
+@pytest.mark.parametrize("held", [False, True])
+def test_an_open_gripper_may_turn_and_what_it_holds_may_not(held: bool) -> None:
+    text = "put the green star onto the blue square"
+    plan, shown = draft(text, SCENE), task(text, SCENE)
+    first, *rest = steps_for(text, ARM.step_kinds)
+    number = [step.kind for step in rest].index("close") + held
+    steps = (first, *rest[:number], RotateGripperStep("G1", 90.0), *rest[number:])
+    review = ask(ReviewSteps(shown, plan.to_subgoals(), plan.to_targets(), steps, shown.main))
+    assert review.approved is not held, review
 
 
 def test_a_drawn_arrow_must_begin_at_its_box() -> None:

@@ -102,6 +102,26 @@ def test_a_touch_on_the_way_down_stops_the_arm_and_is_reported(world: ArmWorld) 
 
 
 @needs_arms
+def test_what_is_held_may_land_a_little_early_and_no_more(world: ArmWorld) -> None:
+    for action in list(world.privileged.oracle())[:5]:
+        assert world.execute(action).executed
+    x, y, z = world._table.robot.tool_m
+    name = wanted(world)
+    hangs = float(z) - float(at(world, name)[2])
+    early = world.execute(MoveTo(Pose.at((x, y, hangs - 0.015))))
+    assert early.executed
+    assert "mm before its goal (limit 30 mm)" in str(early.fault)
+    world.execute(MoveTo(Pose.at((x, y, z))))
+    # Something stands on the way.
+    other = next(one for one in world.privileged.truth()["things"] if one.endswith("block") and one != name)
+    world._table.put(other, np.array([x, y, 0.0]), 0.0)
+    stopped = world.execute(MoveTo(Pose.at((x, y, hangs))))
+    assert (stopped.executed, stopped.measured["holding"], stopped.measured["contact"]) == (False, True, True)
+    assert stopped.measured["pose_error_m"] > 0.03
+    assert "before its goal (limit 30 mm)" in str(stopped.fault)
+
+
+@needs_arms
 def test_what_it_cannot_reach_or_run_is_refused(world: ArmWorld) -> None:
     far = world.execute(MoveTo(Pose.at((0.9, 0.0, 0.2))))
     assert not far.executed
@@ -168,3 +188,28 @@ def test_a_missing_part_is_named_with_its_command(monkeypatch: pytest.MonkeyPatc
     monkeypatch.setattr(rows, "find_spec", lambda name: None)
     with pytest.raises(MissingExtraError, match="mink"):
         make_world("block_in_bowl", seed=1)
+
+
+@needs_arms
+@pytest.mark.parametrize("tier", [1, 3])
+def test_a_moved_camera_sees_all_that_the_arm_reaches_and_planners_are_told_where_it_stands(tier: int) -> None:
+    usual, moved = make_world("block_in_bowl", seed=5), make_world(f"block_in_bowl@camera={tier}", seed=5)
+    try:
+        was, now = usual.observe().main, moved.observe().main
+        assert was.camera is not None
+        assert now.camera is not None
+        assert now.depth_m is not None
+        low, high = moved.limits.low_m, moved.limits.high_m
+        corners = np.array([(x, y, 0.0) for x in (low[0], high[0]) for y in (low[1], high[1])])
+        seen = now.camera.project(corners)
+        assert (seen > 0).all()
+        assert (seen < np.array(now.size_px)).all()
+        assert np.abs(seen - was.camera.project(corners)).max() > 4.0
+        block = at(moved, wanted(moved)) + np.array([0.0, 0.0, 0.045])
+        (x, y) = now.camera.project(block[None])[0]
+        found = now.camera.deproject([(x, y)], [now.depth_m[int(y), int(x)]])[0]
+        assert np.linalg.norm(found - block) < 0.004
+        assert "aslant" in moved.facts
+    finally:
+        usual.close()
+        moved.close()

@@ -5,10 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 
+import numpy as np
 import pytest
 
 from tests.sims.arms.needed import needs_arms
-from tests.sims.arms.playing import lay_down, play
+from tests.sims.arms.playing import by_team, lay_down, play
 from wonderful_team.core.actions import Action, Gripper, RotateGripper
 from wonderful_team.sims.arms import ArmWorld
 from wonderful_team.sims.arms.capping import FREE_RAD, Capped
@@ -119,3 +120,28 @@ def test_a_fallen_bottle_and_the_wrong_one_have_failed(world: ArmWorld) -> None:
     lay_down(world, meant.name)
     assert work._bottle_problem(world._table.poses()) == f"the {meant.name} has fallen"
     assert world.privileged.score().success is False
+
+
+@needs_arms
+def test_fingers_that_close_off_the_middle_are_moved_over_the_cap_and_do_not_tip_the_bottle(world: ArmWorld) -> None:
+    work = work_of(world)
+    name = work.caps[work.wanted.name].name
+    cap = world._table.poses()[name].position_m
+    at = cap + np.array([0.004, -0.004, work.caps[work.wanted.name].body.height_m - 0.017])
+    off = np.zeros(2)
+    for action in (Gripper("open"), work.to(at, 0.0, 0.1), work.to(at, 0.0), Gripper("close"), Gripper("open"),
+                   degrees(-90), Gripper("tight")):  # fmt: skip
+        report = world.execute(action)
+        assert report.executed, report.fault
+        poses = world._table.poses()
+        off = np.array(report.measured["tool_m"])[:2] - poses[name].position_m[:2]
+        assert float(poses[work.wanted.name].position_m[2]) < 0.0005, "it tips"
+    assert np.abs(off).max() < 0.001, "centred along both ways of closing"
+    assert work.moved_m(work.wanted.name, world._table.poses()) < 0.001
+
+
+@needs_arms
+@pytest.mark.parametrize("seed", [20, 3])
+def test_a_camera_some_millimetres_off_does_not_keep_a_cap_on(seed: int) -> None:
+    trial = by_team("arms/cap@calibration=2", seed, model="offline")
+    assert trial.outcome == "success", trial.reason

@@ -22,3 +22,16 @@ def test_it_refuses_what_the_world_would_refuse() -> None:
         check_levels([suite("arms/lid_box/one@shove=1")])
     with pytest.raises(UnknownNameError, match="level of tabletop/rotate"):
         check_levels([suite("tabletop/rotate@nudge=1")])
+
+
+@pytest.mark.parametrize(
+    ("task", "why"),
+    [
+        ("arms/star@slip=1", "the tool is held from the start, so it never happens; valid: no disturbance"),
+        ("arms/cap@nudge=1", "nothing has to go from one place to another, so it never happens; valid: slip"),
+    ],
+)
+def test_a_disturbance_that_cannot_happen_is_refused(task: str, why: str) -> None:
+    with pytest.raises(ConfigError, match=why):
+        check_levels([suite(task)])
+    check_levels([suite("arms/shake@slip=1")])

@@ -7,8 +7,11 @@ import math
 import numpy as np
 import pytest
 
+import wonderful_team as wt
+from tests.sims.arms.needed import needs_arms
 from wonderful_team.core.geometry import Pose
 from wonderful_team.core.geometry.arrays import Array
+from wonderful_team.sims.arms import ArmWorld
 from wonderful_team.sims.arms.drawing import Drawing
 from wonderful_team.sims.arms.star import star_points, star_problem
 from wonderful_team.sims.tabletop.model import Thing
@@ -114,3 +117,17 @@ def test_nothing_can_be_done_about_a_wrong_drawing() -> None:
     assert [action.kind for action in work.oracle(poses)] == ["trajectory", "home"]
     work.strokes = [[(float(x), float(y)) for x, y in inked(ring(5))]]
     assert work.oracle(poses) == []
+
+
+@needs_arms
+def test_a_pen_that_is_led_over_noisy_depth_does_not_lift_off() -> None:
+    world = ArmWorld("star@depth=2", 5000)
+    try:
+        trial = wt.rollout(wt.Team(model="offline"), world)
+        assert trial.outcome == "success", trial.reason
+        work = world._table.work
+        assert isinstance(work, Drawing)
+        (line,) = work.ink
+        assert len(line) > 300
+    finally:
+        world.close()

@@ -6,6 +6,9 @@ import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 
+CLOSE_PX, CLOSE_SHARE = 4.0, 0.04
+"""What is no farther from a box than this many pixels, or this share of its shorter side, is close to it."""
+
 
 @dataclass(frozen=True)
 class Box:
@@ -75,6 +78,21 @@ class Box:
     def grown(self, left: float, top: float, right: float, bottom: float) -> Box:
         """Move each edge outward by that much [px]; negative moves it inward."""
         return Box(self.x0 - left, self.y0 - top, self.x1 + right, self.y1 + bottom)
+
+    @property
+    def sides(self) -> tuple[Box, Box, Box, Box]:
+        """Strips close to its four sides, without the corners: left, right, above, below.
+
+        Of what lies askew on a larger thing, the corners of the box and all that is farther off show what lies beside both.
+        """
+        deep = max(CLOSE_PX, CLOSE_SHARE * min(self.width, self.height))
+        x, y = self.width / 6, self.height / 6
+        return (
+            Box(self.x0 - deep, self.y0 + y, self.x0 - deep / 2, self.y1 - y),
+            Box(self.x1 + deep / 2, self.y0 + y, self.x1 + deep, self.y1 - y),
+            Box(self.x0 + x, self.y0 - deep, self.x1 - x, self.y0 - deep / 2),
+            Box(self.x0 + x, self.y1 + deep / 2, self.x1 - x, self.y1 + deep),
+        )
 
     def scaled(self, factor: float) -> Box:
         """The same centre, sides times `factor`."""

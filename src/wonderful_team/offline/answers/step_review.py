@@ -11,7 +11,9 @@ from wonderful_team.core.actions import (
     SIDES,
     At,
     Beside,
+    CloseStep,
     MoveStep,
+    OpenStep,
     OriginOf,
     PickPlaceStep,
     Place,
@@ -74,6 +76,7 @@ def _one_by_one(tasks: Sequence[Task]) -> list[Task]:
 def _step_problems(steps: Sequence[Step], asked: dict[str, tuple[Subgoal, list[Task]]], eyes: Eyes) -> list[Problem]:
     problems: list[Problem] = []
     used: dict[str, int] = {}
+    closed = False
     for number, step in enumerate(steps, start=1):
         if step.subgoal not in asked:
             problems.append((number, "needless_step", f"Step {number} serves no subgoal of the plan; what is it for?"))
@@ -92,7 +95,10 @@ def _step_problems(steps: Sequence[Step], asked: dict[str, tuple[Subgoal, list[T
             if step.to.target not in parts:
                 text = f"'{subgoal.text}' does not speak of {step.to.target}; why move there in step {number}?"
                 problems.append((number, "wrong_target", text))
-        elif isinstance(step, RotateGripperStep):
+        elif isinstance(step, CloseStep | OpenStep):
+            closed = isinstance(step, CloseStep)
+        elif isinstance(step, RotateGripperStep) and closed:
+            # An open gripper turns nothing but itself.
             turns = [task.rotate_deg for task in tasks]
             if not any(_same_angle(step.rotate_deg, turn) for turn in turns):
                 text = f"'{subgoal.text}' asks for {turns[0]:g} degrees; why {step.rotate_deg:g} in step {number}?"

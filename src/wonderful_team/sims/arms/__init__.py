@@ -1,8 +1,10 @@
 """Arms at a table: real arm models in MuJoCo that run the arm's vocabulary by contact. Needs the optional part `arms`."""
 
+from wonderful_team.sims.arms.disturbances import check_possible
 from wonderful_team.sims.arms.options import TIERS, asked
 from wonderful_team.sims.arms.rows import ARMS, check_ready
-from wonderful_team.sims.arms.tasks import task_names
+from wonderful_team.sims.arms.scene import ArmScene
+from wonderful_team.sims.arms.tasks import find_arm_task, task_names
 from wonderful_team.sims.arms.world import ArmWorld
 
 make_world = ArmWorld
@@ -20,7 +22,11 @@ def check_options(task: str) -> None:
     Raises:
         ConfigError: It cannot; says what can.
     """
-    asked(task, None, 0, 0)
+    wanted = asked(task, None, 0, 0)
+    if wanted.disturbances:
+        scene = find_arm_task(wanted.task).scene(0, made=ArmScene)
+        assert isinstance(scene, ArmScene)
+        check_possible(wanted.task, scene, wanted.disturbances)
 
 
 __all__ = ["ARMS", "TIERS", "ArmWorld", "check_options", "check_ready", "make_world", "partitions", "task_names"]

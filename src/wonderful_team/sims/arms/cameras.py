@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
+import itertools
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import cv2
 import numpy as np
 
 from wonderful_team.core.geometry import Camera, PinholeCamera, Pose
 from wonderful_team.core.geometry.arrays import Array
+from wonderful_team.sims.tabletop.appearance import aslant
 from wonderful_team.sims.tabletop.cameras import Lens
 
 SIZE_PX = (640, 400)
+REACH_LOW_M, REACH_HIGH_M = (0.25, -0.37, 0.0), (0.71, 0.37, 0.4)
+"""The workspace: what the arm reaches with its fingers pointing down [m]."""
 TABLE_CENTRE_M = (0.48, 0.0, 0.0)
 TOP_HEIGHT_M = 1.15
 SEEN_WIDTH_M = 0.94
@@ -75,6 +79,28 @@ def lenses(size_px: tuple[int, int] = SIZE_PX) -> dict[str, Lens]:
         focal_px=FRONT_FOCAL_PX * scale,
     )
     return {"top": top, "front": front}
+
+
+CLEAR_M, MARGIN = 0.12, 1.02
+"""A camera that was moved sees all that the arm reaches, and what stands there up to this high [m], with so much to spare."""
+
+
+def moved(usual: PinholeLens, rng: np.random.Generator, tier: int) -> PinholeLens:
+    """The top camera tilted, rolled and looking past where it looked, by as much as our tabletop's; planners are told where it stands.
+
+    Args:
+        usual: Where it stands else.
+        rng: Draws how.
+        tier: 1 to 3.
+    """
+    aside, (right, down, forward) = aslant(usual, rng, tier - 1)
+    position = np.array(TABLE_CENTRE_M) + aside - TOP_HEIGHT_M * forward
+    ends = zip(REACH_LOW_M[:2], REACH_HIGH_M[:2], strict=True)
+    corners = np.array([(x, y, z) for x, y in itertools.product(*ends) for z in (0.0, CLEAR_M)]) - position
+    half = np.array(usual.size_px) / 2
+    across = np.abs(np.column_stack([corners @ right, corners @ down])) / (corners @ forward)[:, None]
+    focal = min(usual.focal_px, float((half / across.max(axis=0)).min()) / MARGIN)
+    return replace(usual, position_m=position, right=right, down=down, forward=forward, focal_px=focal)
 
 
 NOISE_M = (0.001, 0.002, 0.003)

@@ -7,7 +7,7 @@ does; every one is kept, for the truth and the tests.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Protocol
 
@@ -17,8 +17,11 @@ from shapely.affinity import translate
 
 from wonderful_team.core.geometry import Pose
 from wonderful_team.core.geometry.arrays import Array
+from wonderful_team.core.protocols import offers
+from wonderful_team.errors import ConfigError
+from wonderful_team.sims.arms.held import HeldTool
 from wonderful_team.sims.arms.robot import Robot
-from wonderful_team.sims.arms.scene import ROOM_M
+from wonderful_team.sims.arms.scene import ROOM_M, ArmScene, Sorting
 from wonderful_team.sims.tabletop.goals import Poses, footprint_of
 from wonderful_team.sims.tabletop.model import Thing
 from wonderful_team.sims.tabletop.seeds import generator
@@ -75,6 +78,21 @@ class Disturbed(Protocol):
     def wanted_things(self) -> tuple[str, ...]: ...
     def arrived(self, name: str) -> bool: ...
     def put(self, name: str, position_m: Array, yaw_rad: float) -> None: ...
+
+
+def check_possible(task: str, scene: ArmScene, kinds: Iterable[str]) -> None:
+    """Whether disturbances can happen in a scene at all: a trial that nothing disturbs would count as one that was.
+
+    Raises:
+        ConfigError: One of them cannot; says which can.
+    """
+    carries = offers(scene.work, Sorting) or any(goal.inside for phase in scene.phases for goal in phase)
+    grips = not isinstance(scene.work, HeldTool)
+    can = DISTURBANCES if carries else {"slip": ""} if grips else {}
+    for kind in kinds:
+        if kind not in can:
+            why = "nothing has to go from one place to another" if grips else "the tool is held from the start"
+            raise ConfigError(f"{task}@{kind}: {why}, so it never happens; valid: {', '.join(can) or 'no disturbance'}")
 
 
 @dataclass

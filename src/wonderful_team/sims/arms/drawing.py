@@ -19,8 +19,8 @@ from wonderful_team.sims.tabletop.engine import mj
 from wonderful_team.sims.tabletop.goals import Poses, footprint_of
 from wonderful_team.sims.tabletop.model import Thing
 
-TIP_M, LINE_M = 0.0025, 0.003
-"""Radius of the tip, and width of the line [m]."""
+TIP_M, LINE_M, FELT_M = 0.0025, 0.003, 1e-4
+"""Radius of the tip, width of the line, and how far a felt tip gives and still leaves ink: the tip of the model is hard [m]."""
 EVERY_M, LIFTED_S = 0.001, 0.03
 """The line is kept as points this far apart; a tip that touches nothing for so long has been lifted [s]."""
 DRAWN_EVERY_M = 0.003
@@ -63,7 +63,8 @@ class Drawing(HeldTool):
         )  # fmt: skip
         body.add_geom(
             name="pen tip", type=mj.mjtGeom.mjGEOM_SPHERE, size=(TIP_M, 0, 0), pos=(0.0, 0.0, -self.below_m + TIP_M),
-            mass=0.001, group=0, condim=3, friction=(0.2, 0.005, 0.0001), priority=2, solref=STIFF, rgba=INK_RGBA,
+            mass=0.001, group=0, condim=3, friction=(0.2, 0.005, 0.0001), priority=2, solref=STIFF, margin=FELT_M,
+            gap=FELT_M, rgba=INK_RGBA,
         )  # fmt: skip
 
     def begin(self, built: BuiltArm, state: Any, robot: Robot) -> None:

@@ -32,8 +32,6 @@ from wonderful_team.sims.tabletop.model import (
 
 TABLE_M = (0.16, 0.82, 0.52)
 """Nearest and farthest edge of the table, and half its width, in the robot's base frame [m]."""
-REACH_LOW_M, REACH_HIGH_M = (0.25, -0.37, 0.0), (0.71, 0.37, 0.4)
-"""The workspace: what the arm reaches with its fingers pointing down [m]."""
 PREFIX = "arm/"
 """Of every name of the arm and its gripper in the scene's model."""
 IMPRATIO = 10.0

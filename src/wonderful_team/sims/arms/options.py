@@ -10,7 +10,7 @@ from wonderful_team.errors import ConfigError
 from wonderful_team.sims.arms.disturbances import DISTURBANCES
 from wonderful_team.sims.arms.rows import ARMS, DEFAULT
 
-TIERS = ("depth", "calibration")
+TIERS = ("depth", "calibration", "camera")
 HARDEST = 3
 
 
@@ -21,6 +21,7 @@ class Asked:
     Attributes:
         depth: Faults of the depth sensor, 0 (none) to 3.
         calibration: Error of the top camera's calibration, 0 (none) to 3.
+        camera: How far the top camera was moved, 0 (not) to 3; planners are told where it stands.
         disturbances: How often each kind of disturbance happens, 1 to 3; see `disturbances.py`.
     """
 
@@ -28,6 +29,7 @@ class Asked:
     arm: str = DEFAULT
     depth: int = 0
     calibration: int = 0
+    camera: int = 0
     disturbances: Mapping[str, int] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
@@ -37,14 +39,14 @@ class Asked:
                 raise ConfigError(f"{name}: expected a tier from 0 (none) to {HARDEST} (most), got {value!r}")
 
 
-def asked(name: str, arm: str | None, depth: int, calibration: int) -> Asked:
+def asked(name: str, arm: str | None, depth: int, calibration: int, camera: int = 0) -> Asked:
     """Read a name such as "block_in_bowl@xarm7@depth=2", completed by options.
 
     Raises:
         ConfigError: The name says otherwise than the options do, or something unknown.
     """
     task, *parts = name.split("@")
-    found = Asked(task, arm or DEFAULT, depth, calibration)
+    found = Asked(task, arm or DEFAULT, depth, calibration, camera)
     for part in parts:
         tier, equals, level = part.partition("=")
         if equals and tier in TIERS and level.isdigit():

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any, Protocol
 
 from wonderful_team.core.actions import Action, Gripper
@@ -11,6 +12,8 @@ from wonderful_team.core.values import StepReport
 LEANS_RAD = 0.01
 AWAY_M = 0.012
 """A motion that ends farther than this from its goal did not do what was asked [m]."""
+HELD_AWAY_M = 0.03
+"""What is held may come to lie on another thing so much before its goal; farther, it was stopped on its way there [m]."""
 REASONS = {
     "reach": "out of the arm's reach",
     "collision": "stopped: something pressed on the arm",
@@ -20,6 +23,22 @@ REASONS = {
 }
 EMPTY = "the fingers have closed on nothing"
 LOST = "the fingers hold nothing any more: what they held slipped or was knocked out"
+
+
+@dataclass(frozen=True)
+class Moved:
+    """How a motion ended.
+
+    Attributes:
+        error_m, error_rad: How far the tool is from its goal.
+        force_n: Largest force that pressed on the tool, or on what it holds.
+        stopped_by: "" when it came to its end, else contact, collision, stop, reach or wrist.
+    """
+
+    error_m: float
+    error_rad: float
+    force_n: float
+    stopped_by: str = ""
 
 
 class Ended(Protocol):
@@ -47,6 +66,7 @@ def measured(tool_m: Array, opening_m: float, holding: bool, moved: Ended | None
             "force_n": round(moved.force_n, 1),
             "contact": moved.stopped_by == "contact" or moved.force_n > 0.5,
         }
+        found |= {"stopped_by": moved.stopped_by} if moved.stopped_by else {}
     return found
 
 
@@ -68,11 +88,12 @@ def report(
         return StepReport(action, False, found, lost)
     if moved is None:
         return StepReport(action, False, found, fault)
-    away, millimetres = moved.error_m > AWAY_M, f"{1000 * moved.error_m:.0f} mm"
+    landed = moved.stopped_by == "contact" and holding
+    limit_m = HELD_AWAY_M if landed else AWAY_M
+    away, millimetres = moved.error_m > limit_m, f"{1000 * moved.error_m:.0f} mm"
     if moved.stopped_by == "contact":
-        # What is held comes to lie where it touches; an empty tool that touches something early is not where it should be.
-        said = f"{REASONS['contact']}, {millimetres} before its goal (limit {1000 * AWAY_M:.0f} mm)"
-        return StepReport(action, not away or holding, found, said if away else None)
+        said = f"{REASONS['contact']}, {millimetres} before its goal (limit {1000 * limit_m:.0f} mm)"
+        return StepReport(action, not away, found, said if moved.error_m > AWAY_M else None)
     if moved.stopped_by:
         return StepReport(action, False, found, REASONS[moved.stopped_by])
     if away and not isinstance(action, Gripper):

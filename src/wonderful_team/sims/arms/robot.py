@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from wonderful_team.core.geometry.arrays import Array
+from wonderful_team.sims.arms.giving import GivesSideways, shifted
 from wonderful_team.sims.arms.kinematics import Kinematics, downwards
 from wonderful_team.sims.arms.model import BuiltArm
+from wonderful_team.sims.arms.reports import Moved
 from wonderful_team.sims.arms.touch import Touch
 from wonderful_team.sims.tabletop.engine import mj
 from wonderful_team.sims.tabletop.model import TIMESTEP_S
@@ -34,29 +35,12 @@ EMPTY_M = 0.003
 MOST_LEAP_RAD = 1.0
 """A joint that turns farther between two points of a turn takes another posture [rad]."""
 DOWN_SHARE = 0.5
-PRESS_N = 3.0
-"""With so much a tool that is led along a surface presses on it [N]."""
-PRESS_TICKS = 40
+PRESS_N, PRESS_TICKS, MOST_PRESS_TICKS = 3.0, 40, 150
+"""With so much a tool that is led along a surface presses on it [N]; so many commands long before it is led, and at most, until it touches."""
 GIVES_M_N, MOST_LEAN_M = 2e-5, 0.008
 """How far it goes down at each command for a newton that is missing, and at most in all [m]."""
 OVER_M = 0.32
 """Height at which the tool comes from its parking place, and goes there [m]."""
-
-
-@dataclass(frozen=True)
-class Moved:
-    """How a motion ended.
-
-    Attributes:
-        error_m, error_rad: How far the tool is from its goal.
-        force_n: Largest force that pressed on the tool, or on what it holds.
-        stopped_by: "" when it came to its end, else contact, collision, stop, reach or wrist.
-    """
-
-    error_m: float
-    error_rad: float
-    force_n: float
-    stopped_by: str = ""
 
 
 class Robot:
@@ -154,6 +138,12 @@ class Robot:
         """Whether fingers that were closed came to a stand apart from each other, and something presses on both."""
         return self.closed and self.opening_m > EMPTY_M and bool(self.held_bodies())
 
+    @property
+    def loosened(self) -> bool:
+        """Whether fingers that were told to close give way."""
+        row = self._built.row
+        return self.closed and float(self._state.ctrl[self._grip]) == row.grip_ctrl[0]
+
     def held_bodies(self) -> frozenset[int]:
         """Bodies that both fingers touch."""
         return self._touch.held()
@@ -233,10 +223,13 @@ class Robot:
         """Press as a tool does that is led along a surface, before it is: where it touches, and until it does so steadily."""
         self._led = (self.tool_m, self.q)
         q, self._lean_m, force = self.q, 0.0, self.force_n()
-        for _ in range(PRESS_TICKS):
+        for k in range(MOST_PRESS_TICKS):
             self._state.ctrl[self._drives] = self._leant(q, force)
             self._tick()
             force = self.force_n()
+            # A jolt in the air is taken for a touch now and then: then it goes on down, as far as a path's surface is looked for.
+            if k >= PRESS_TICKS and force > 0:
+                break
 
     def park(self) -> Moved:
         """Straight up, then to the parking place beside the table."""
@@ -251,30 +244,32 @@ class Robot:
         return Moved(0.0, float(np.abs(self.q - goal).max()), force, stopped)
 
     def grip(self, closed: bool, tight: bool = False) -> Moved:
-        """Close or open the fingers; the point between their tips stays where it is while they close."""
+        """Close or open the fingers; the point between their tips stays where it is until they hold something, which may push it aside."""
         row = self._built.row
         force = row.grip_force[1 if tight else 0] if closed else row.grip_force[1]
         self._model.actuator_forcerange[self._grip] = (-force, force)
         goal, yaw, q = self.tool_m, self.yaw_rad, self.q
         start, end = float(self._state.ctrl[self._grip]), row.grip_ctrl[1 if closed else 0]
         still, before, count = 0, self.opening_m, round(0.5 / (TICK * TIMESTEP_S))
-        pressed, held = 0.0, False
+        held, gives, eased = False, GivesSideways(), True
         for k in range(round((0.5 + WAIT_S) / (TICK * TIMESTEP_S))):
             if self._halted:
-                return self._ended(goal, yaw, pressed, "stop")
+                return self._ended(goal, yaw, 0.0, "stop")
             self._state.ctrl[self._grip] = start + (end - start) * min(1.0, (k + 1) / count)
             if closed and not held and still >= 2 and self.held_bodies():
                 # From here on it would lift, or press down, what it holds. Fingertips that only touch, such as the plate under a handle, go on.
-                held, self._state.ctrl[self._drives] = True, self.q
+                held, self._state.ctrl[self._drives] = True, (q := self.q)
+            if held and not (eased := gives.step(self._touch.push_n())):
+                self._state.ctrl[self._drives] = self._shifted(q, gives.by_m)
             if closed and not held and k % 3 == 0:
                 q = self._keep(goal, yaw, q)
             self._tick()
-            still = still + 1 if abs(self.opening_m - before) < 2e-5 else 0
+            still = still + 1 if eased and abs(self.opening_m - before) < 2e-5 else 0
             before = self.opening_m
             if k >= count and still >= 10:
                 break
         self.closed = closed
-        return self._ended(goal, yaw, pressed, "")
+        return self._ended(goal, yaw, 0.0, "")
 
     def loosen(self) -> None:
         """The fingers give way, as when something slips: nobody has told the gripper to open."""
@@ -312,10 +307,10 @@ class Robot:
         """Joint angles a little lower, or higher, so that the tool presses as it should on what it is led along."""
         change = GIVES_M_N * (force_n - PRESS_N)
         self._lean_m = float(np.clip(self._lean_m + change, -MOST_LEAN_M, MOST_LEAN_M))
-        jacobian = np.zeros((6, self._model.nv))
-        mj.mj_jacSite(self._model, self._state, jacobian[:3], jacobian[3:], self._flange)
-        up = np.array([0.0, 0.0, self._lean_m, 0.0, 0.0, 0.0])
-        return np.asarray(q + np.linalg.lstsq(jacobian[:, self._v_at], up, rcond=None)[0])
+        return self._shifted(q, np.array([0.0, 0.0, self._lean_m]))
+
+    def _shifted(self, q: Array, by_m: Array) -> Array:
+        return shifted(self._model, self._state, self._flange, self._v_at, q, by_m)
 
     def _along(self, path: Array, seconds: float, most_n: float, touching: bool = False) -> tuple[str, float]:
         """Servo the joints along a path, slow at both ends; the speed is told to the servos, which would lag behind."""

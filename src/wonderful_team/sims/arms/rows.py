@@ -109,9 +109,18 @@ def _menagerie(
 
 
 def _fit_xarm7(spec: Any) -> None:
-    """Linkages that keep the fingers parallel: the file's give by 7 degrees under a firm grip, and what is held turns about one edge."""
+    """Linkages that keep the fingers parallel, and flat pads.
+
+    The file's linkages give by 7 degrees under a firm grip, and what is held turns about one edge. Its fingers are meshes: where they meet
+    another mesh, a few points that change from step to step carry all, and a block turns and creeps out while it is carried.
+    """
     for linkage in spec.equalities:
         linkage.solref[:2], linkage.solimp[:3] = (0.004, 1.0), (0.99, 0.9999, 0.001)
+    for name, side in (("left_finger", -1.0), ("right_finger", 1.0)):
+        spec.body(name).add_geom(
+            type=mj.mjtGeom.mjGEOM_BOX, size=(0.0145, 0.001, 0.0155), pos=(0.0, side * 0.025, 0.044), mass=0.001, group=3,
+            solref=(0.004, 1.0), solimp=(0.95, 0.99, 0.001, 0.5, 2.0), friction=PAD, priority=1, condim=4,
+        )  # fmt: skip
 
 
 def _fit_panda(spec: Any) -> None:

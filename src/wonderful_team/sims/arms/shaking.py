@@ -77,7 +77,8 @@ class Shaking(Bottles):
         x, y, z = (float(value) for value in self._state.xpos[self._bodies[self.wanted.name]])
         held = self.held(self.wanted.name)
         in_air = z > OFF_M and held
-        self._loose = self._loose + 1 if z > DROP_M and not held else 0
+        # What the disturbance "slip" lets fall, nobody has dropped.
+        self._loose = self._loose + 1 if z > DROP_M and not held and not self._robot.loosened else 0
         if self._loose >= LOOSE:
             self.dropped_m = max(self.dropped_m, z)
         if in_air and not self._in_air:

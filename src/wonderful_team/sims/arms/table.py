@@ -12,11 +12,12 @@ import numpy as np
 from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.protocols import offers
 from wonderful_team.core.values import Instruction
-from wonderful_team.sims.arms.cameras import SIZE_PX, lenses, sensed
-from wonderful_team.sims.arms.disturbances import Disturbances, both
+from wonderful_team.sims.arms.cameras import SIZE_PX, PinholeLens, lenses, moved, sensed
+from wonderful_team.sims.arms.disturbances import Disturbances, both, check_possible
 from wonderful_team.sims.arms.model import BuiltArm, build
 from wonderful_team.sims.arms.options import Asked
-from wonderful_team.sims.arms.robot import Moved, Robot
+from wonderful_team.sims.arms.reports import Moved
+from wonderful_team.sims.arms.robot import Robot
 from wonderful_team.sims.arms.rows import find_arm
 from wonderful_team.sims.arms.scene import ArmScene, Sorting
 from wonderful_team.sims.tabletop.appearance import PLAIN_LIGHT, Look
@@ -60,6 +61,7 @@ class ArmTable(SimulatedTable):
         self.task, self.seed, self.asked = task, seed, asked
         scene = task.scene(seed, made=partial(ArmScene, other_container="wrongbox" in asked.disturbances))
         assert isinstance(scene, ArmScene)
+        check_possible(task.name, scene, asked.disturbances)
         self.scene, self.work = scene, scene.work
         self.things: Mapping[str, Thing] = {thing.name: thing for thing in scene.things}
         self.rules = Rules(
@@ -98,6 +100,9 @@ class ArmTable(SimulatedTable):
     @staticmethod
     def _lenses(seed: int, asked: Asked) -> Any:
         found = lenses()
+        if asked.camera:
+            assert isinstance(found["top"], PinholeLens)
+            found["top"] = moved(found["top"], generator(seed, "camera", asked.camera), asked.camera)
         if asked.calibration:
             rng, step = generator(seed, "calibration", asked.calibration), asked.calibration - 1
             signs = rng.choice([-1.0, 1.0], size=3)

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.sims.arms.model import BuiltArm
 from wonderful_team.sims.tabletop.engine import mj
 
@@ -41,6 +42,18 @@ class Touch:
             if (a in own) != (b in own):
                 mj.mj_contactForce(self._model, self._state, k, force)
                 total += float(force[0])
+        return total
+
+    def push_n(self) -> Array:
+        """What pushes the robot in all, as a sensor at its wrist feels it, shape (3,) [N]: fingers that press against each other cancel."""
+        total, force = np.zeros(3), np.zeros(6)
+        for k in range(self._state.ncon):
+            contact = self._state.contact[k]
+            a, b = (int(self._model.geom_bodyid[geom]) for geom in contact.geom)
+            if (a in self._own) != (b in self._own):
+                mj.mj_contactForce(self._model, self._state, k, force)
+                # The frame's first row points from the first body to the second, on which the force acts.
+                total += (1.0 if b in self._own else -1.0) * (contact.frame.reshape(3, 3).T @ force[:3])
         return total
 
     def _carried_now(self) -> frozenset[int]:

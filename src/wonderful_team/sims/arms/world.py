@@ -12,11 +12,12 @@ from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.values import Fingers, Limits, RobotState, StepReport
 from wonderful_team.errors import ConfigError
 from wonderful_team.sims.arms import reports
+from wonderful_team.sims.arms.cameras import REACH_HIGH_M, REACH_LOW_M
 from wonderful_team.sims.arms.held import HeldTool
-from wonderful_team.sims.arms.model import REACH_HIGH_M, REACH_LOW_M, upright
+from wonderful_team.sims.arms.model import upright
 from wonderful_team.sims.arms.options import asked as read_options
 from wonderful_team.sims.arms.privileged import ArmTruth
-from wonderful_team.sims.arms.robot import Moved
+from wonderful_team.sims.arms.reports import Moved
 from wonderful_team.sims.arms.rows import ArmRow, check_ready, find_arm
 from wonderful_team.sims.arms.table import ArmTable
 from wonderful_team.sims.arms.tasks import find_arm_task
@@ -40,12 +41,19 @@ class ArmWorld(SimulatedWorld[ArmTable, ArmTruth]):
     """
 
     def __init__(
-        self, task: str, seed: int = 0, *, arm: str | None = None, depth: int = 0, calibration: int = 0
+        self,
+        task: str,
+        seed: int = 0,
+        *,
+        arm: str | None = None,
+        depth: int = 0,
+        calibration: int = 0,
+        camera: int = 0,
     ) -> None:
         check_ready()
         if seed < 0:
             raise ConfigError(f"seed {seed}: must be 0 or more")
-        wanted = read_options(task.removeprefix("arms/"), arm, depth, calibration)
+        wanted = read_options(task.removeprefix("arms/"), arm, depth, calibration, camera)
         found, row = find_arm_task(wanted.task), find_arm(wanted.arm)
         self.task, self.seed, self.arm, self.horizon = found.name, seed, wanted.arm, found.horizon
         self.vocabulary: Vocabulary = ARM
@@ -108,7 +116,8 @@ class ArmWorld(SimulatedWorld[ArmTable, ArmTruth]):
             if low and not before_low:
                 if not moved.stopped_by:
                     moved = robot.move(goal - np.array([0.0, 0.0, SEEK_M]), yaw)
-                if moved.stopped_by == "contact":
+                if moved.stopped_by in ("", "contact"):
+                    # What the fingers hold may have crept up: a tool that touches nothing yet is pressed down all the same.
                     off_m = float(robot.tool_m[2]) - float(point[2])
                     moved = Moved(0.0, moved.error_rad, moved.force_n)
                     robot.press()
@@ -160,7 +169,7 @@ def _facts(row: ArmRow, table: ArmTable) -> str:
             "Every way across the table is made clear of everything; the tool goes down only over where it is to be.",
             f"Reach: {100 * (REACH_HIGH_M[0] - REACH_LOW_M[0]):.0f} by {100 * (REACH_HIGH_M[1] - REACH_LOW_M[1]):.0f} cm in the "
             "middle of the table, and nothing beyond.",
-            "Views: the top camera looks straight down; the front camera looks from the side that is the lower edge of the top view.",
+            f"Views: the top camera looks {'down a little aslant' if table.asked.camera else 'straight down'}; the front camera looks from the side that is the lower edge of the top view.",
             "North is the upper edge of the top view, south the lower, west the left, east the right.",
             "A turn without a direction is clockwise, seen from above.",
         )

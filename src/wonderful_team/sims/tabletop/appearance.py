@@ -107,13 +107,7 @@ def _rgb(values: Array) -> tuple[float, float, float]:
 
 def _moved(usual: Lens, rng: np.random.Generator, tier: int) -> Lens:
     """The camera tilted about a level axis, rolled about its own, and looking past the middle; all of the table is seen."""
-    step = tier - 1
-    tilt, roll = (math.radians(most) * rng.uniform(0.6, 1.0) for most in (TILT_DEG[step], ROLL_DEG[step]))
-    roll *= rng.choice([-1.0, 1.0])
-    way = rng.uniform(-math.pi, math.pi)
-    aside = np.append(rng.uniform(-SHIFT_M[step], SHIFT_M[step], size=2), 0.0)
-    turn = _turn(np.array([math.cos(way), math.sin(way), 0.0]), tilt) @ _turn(usual.forward, roll)
-    right, down, forward = turn @ usual.right, turn @ usual.down, turn @ usual.forward
+    aside, (right, down, forward) = aslant(usual, rng, tier - 1)
     # It stays a metre from the point of the table that it looks at.
     pivot = np.array([0.5, 0.0, 0.0]) + aside
     moved = replace(usual, position_m=pivot - forward, right=right, down=down, forward=forward)
@@ -133,6 +127,22 @@ def _moved(usual: Lens, rng: np.random.Generator, tier: int) -> Lens:
         return moved
     signs = rng.choice([-1.0, 1.0], size=3)
     return replace(moved, wrong_m=(WRONG_M * signs[0], WRONG_M * signs[1]), wrong_rad=WRONG_RAD * signs[2])
+
+
+def aslant(usual: Lens, rng: np.random.Generator, step: int) -> tuple[Array, tuple[Array, Array, Array]]:
+    """How a camera was moved: how far it looks past where it looked, shape (3,) [m], and its right, down and forward now, shape (3,) each.
+
+    Args:
+        usual: How it stood.
+        rng: Draws it.
+        step: How much, 0 to 2.
+    """
+    tilt, roll = (math.radians(most) * rng.uniform(0.6, 1.0) for most in (TILT_DEG[step], ROLL_DEG[step]))
+    roll *= rng.choice([-1.0, 1.0])
+    way = rng.uniform(-math.pi, math.pi)
+    aside = np.append(rng.uniform(-SHIFT_M[step], SHIFT_M[step], size=2), 0.0)
+    turn = _turn(np.array([math.cos(way), math.sin(way), 0.0]), tilt) @ _turn(usual.forward, roll)
+    return aside, (turn @ usual.right, turn @ usual.down, turn @ usual.forward)
 
 
 def _turn(axis: Array, angle_rad: float) -> Array:

@@ -33,9 +33,12 @@ ENDS_A_PLAN = (
 """What is the method's failure or its cap; other errors are somebody else's and pass."""
 
 
-def may_be_mended(error: WonderfulTeamError) -> bool:
-    """Whether a new look and another plan may do what this one could not: find its targets, or compute its numbers from them."""
-    return isinstance(error, NotFoundError | GeometryError)
+def to_mend(error: WonderfulTeamError) -> str:
+    """What a new look and another plan may do that this one could not: find its targets, or compute its numbers from them; "" otherwise.
+
+    Words, and not the error: it holds all that was at work when it was raised.
+    """
+    return str(error) if isinstance(error, NotFoundError | GeometryError) else ""
 
 
 def ended_by(plan: Plan, error: WonderfulTeamError) -> Plan:

@@ -10,7 +10,7 @@ from wonderful_team.agents.scene import SceneShown
 from wonderful_team.core.actions import Vocabulary
 from wonderful_team.core.caps import Caps
 from wonderful_team.core.pictures import PathPoint
-from wonderful_team.core.plan_endings import ENDS_A_PLAN, ended_by, may_be_mended
+from wonderful_team.core.plan_endings import ENDS_A_PLAN, ended_by, to_mend
 from wonderful_team.core.protocols import Act, Checked, Decision, Detector, Done, GaveUp, Model, Situation, Subscriber
 from wonderful_team.core.text import counted
 from wonderful_team.core.together import both
@@ -27,14 +27,7 @@ from wonderful_team.core.values import (
     Verdict,
 )
 from wonderful_team.detectors import name_of
-from wonderful_team.errors import (
-    ActionRefusedError,
-    ConfigError,
-    GeometryError,
-    NeedsClarification,
-    NotFoundError,
-    WonderfulTeamError,
-)
+from wonderful_team.errors import ActionRefusedError, ConfigError, GeometryError, NeedsClarification, NotFoundError
 from wonderful_team.models.budget import Budget
 from wonderful_team.models.client import DEADLINE_S, ModelClient
 from wonderful_team.planning import acting, endings, grounding, judging, plan_loop
@@ -134,7 +127,7 @@ class TeamPolicy:
         self._session: AgentSession | None = None
         self._last: tuple[SceneShown, Plan] | None = None
         self._looking = False
-        self._failed: WonderfulTeamError | None = None
+        self._to_mend = ""
         self._said: tuple[str, ...] = ()
         self._done: tuple[str, ...] = ()
         self._checks = SubgoalChecks()
@@ -170,7 +163,7 @@ class TeamPolicy:
         session = self._session or self._begin(instruction)
         self._session = session
         start = Plan(instruction, "failed", keep_out=tuple(keep_out), scene_hash=observation.hash, parent=parent)
-        progress, self._failed = _Progress(start), None
+        progress, self._to_mend = _Progress(start), ""
         try:
             for line in advice:
                 session.note("verification", "before", one_line(f"What went wrong before this plan: {line}"))
@@ -178,7 +171,7 @@ class TeamPolicy:
             # What Memory is still writing belongs to this plan: whether it is kept must not be a matter of luck.
             await session.memory.barrier()
         except ENDS_A_PLAN as error:
-            plan, self._failed = ended_by(progress.plan, error), error
+            plan, self._to_mend = ended_by(progress.plan, error), to_mend(error)
         finally:
             await settle(session)
         plan = replace(plan, functions=session.functions)
@@ -331,9 +324,9 @@ class TeamPolicy:
         if situation.refused is not None:
             return await self._after_refusal(situation, plan)
         assert self._session is not None
-        if self._failed is not None and not situation.executed:
-            self._session.stage("replan", f"{self._failed}: looked again, and planned anew")
-            return await self._next_plan(situation, (f"The last plan could not be made ready: {self._failed}.",), plan)
+        if self._to_mend and not situation.executed:
+            self._session.stage("replan", f"{self._to_mend}: looked again, and planned anew")
+            return await self._next_plan(situation, (f"The last plan could not be made ready: {self._to_mend}.",), plan)
         if looking and all(report.executed for run in situation.executed for report in run.reports):
             # Not judged first: the new plan holds what is left to do in the new picture.
             self._done = (*self._done, *done_lines(plan))
@@ -404,8 +397,7 @@ class TeamPolicy:
             parent=before.id if before is not None else None,
         )
         if plan.status != "planned":
-            again = self._failed is not None and may_be_mended(self._failed)
-            return GaveUp(plan.message, plan.stage or "plan", plan, verdicts, again)
+            return GaveUp(plan.message, plan.stage or "plan", plan, verdicts, bool(self._to_mend))
         if not plan.actions:
             return Done(plan.message, verdicts)
         if situation.reobserve_left > 0 and is_uncertain(plan):

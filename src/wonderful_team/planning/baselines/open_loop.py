@@ -17,7 +17,7 @@ from wonderful_team.contracts import Question
 from wonderful_team.core.actions import Step
 from wonderful_team.core.geometry import Box
 from wonderful_team.core.pictures import Picture, Point
-from wonderful_team.core.plan_endings import ENDS_A_PLAN, ended_by, may_be_mended
+from wonderful_team.core.plan_endings import ENDS_A_PLAN, ended_by, to_mend
 from wonderful_team.core.protocols import Act, Decision, Done, GaveUp, Situation
 from wonderful_team.core.values import (
     Answer,
@@ -29,7 +29,7 @@ from wonderful_team.core.values import (
     Target,
     Usage,
 )
-from wonderful_team.errors import ActionRefusedError, NotFoundError, WonderfulTeamError
+from wonderful_team.errors import ActionRefusedError, NotFoundError
 from wonderful_team.models.client import ModelClient
 from wonderful_team.motion import ground_actions
 
@@ -50,7 +50,7 @@ class OpenLoop(ABC):
         self.attempt = 0
         self._asked: Counter[str] = Counter()
         self._best: Plan | None = None
-        self._failed: WonderfulTeamError | None = None
+        self._to_mend = ""
 
     @property
     def usage_by_role(self) -> Mapping[str, Usage]:
@@ -83,13 +83,12 @@ class OpenLoop(ABC):
             if situation.replans_left <= 0:
                 return GaveUp(str(ActionRefusedError(situation.refused.reasons)), "gate", self._best)
             advice = tuple(f"The safety gate refused: {reason}" for reason in situation.refused.reasons)
-        elif self._failed is not None and not situation.executed and situation.attempt:
-            advice = (f"The last plan could not be made ready: {self._failed}.",)
+        elif self._to_mend and not situation.executed and situation.attempt:
+            advice = (f"The last plan could not be made ready: {self._to_mend}.",)
         self.attempt = situation.attempt
         plan = await self._planned(situation, advice)
         if plan.status != "planned":
-            again = self._failed is not None and may_be_mended(self._failed)
-            return GaveUp(plan.message, plan.stage or "plan", plan, again=again)
+            return GaveUp(plan.message, plan.stage or "plan", plan, again=bool(self._to_mend))
         return Act(plan.actions, plan) if plan.actions else Done(plan.message)
 
     async def after(self, situation: Situation) -> Done | GaveUp | str:
@@ -103,11 +102,11 @@ class OpenLoop(ABC):
         start = Plan(
             situation.instruction, "failed", keep_out=limits.keep_out, scene_hash=situation.observation.hash, parent=before
         )  # fmt: skip
-        self._best, self._failed = start, None
+        self._best, self._to_mend = start, ""
         try:
             plan = await self.make_plan(scene, start, advice)
         except ENDS_A_PLAN as error:
-            plan, self._failed = ended_by(self._best, error), error
+            plan, self._to_mend = ended_by(self._best, error), to_mend(error)
         self._best = plan
         self.client.tell("plan", plan.id, plan)
         return plan

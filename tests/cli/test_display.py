@@ -166,7 +166,7 @@ def test_what_became_of_a_trial_names_pictures_as_people_do() -> None:
     verdict = SimpleNamespace(subgoal="G1", status="not_done", cause="the tallest {dragged_obj} is not at the bowl")
     trial = SimpleNamespace(
         outcome="failure", ending="failure", stage="execution", reason="no replans left; G1 not done: the {dragged_obj} stayed",
-        verdicts=[verdict], plans=[SimpleNamespace(instruction=said)], reports=[],
+        verdicts=[verdict], plans=[SimpleNamespace(instruction=said, subgoals=())], reports=[],
     )  # fmt: skip
     text = "\n".join(trial_lines(cast(TrialResult, trial)))
     assert "{" not in text

@@ -12,6 +12,7 @@ from dataclasses import replace
 from http.server import BaseHTTPRequestHandler, HTTPServer
 from typing import Any
 
+import numpy as np
 import pytest
 
 from tests.models.wire.scenes import answer_px, picture, reading
@@ -20,7 +21,8 @@ from tests.servers.faults import Fault
 from tests.servers.server import KEY, Rules, WireServer
 from tests.servers.wiring import WIRES, Wire
 from wonderful_team.core.caps import Caps
-from wonderful_team.core.values import Answer
+from wonderful_team.core.pictures import Picture
+from wonderful_team.core.values import Answer, Request
 from wonderful_team.errors import (
     BudgetReached,
     ConfigError,
@@ -44,6 +46,16 @@ REQUEST = reading(VIEW, (picture((300, 200), "front"),))
 
 def serve(wire: Wire, desk: AgentSession, **rules: Any) -> WireServer:
     return WireServer(typed_brain(desk, lambda _: answer_px(VIEW), wire.speech), Rules(local=not wire.vendor, **rules))
+
+
+def grainy_request() -> Request:
+    """The same question about pictures with the noise of a camera."""
+    rng = np.random.default_rng(5)
+
+    def grainy(even: Picture) -> Picture:
+        return replace(even, rgb=np.clip(even.rgb + rng.normal(0, 3, even.rgb.shape), 0, 255).astype(np.uint8))
+
+    return reading(grainy(VIEW), (grainy(picture((300, 200), "front")),))
 
 
 def ask(model: Any, desk: AgentSession, **client: Any) -> Answer:
@@ -367,7 +379,9 @@ def test_pictures_that_were_refused_as_too_heavy_are_sent_again_as_lighter_jpeg(
     wire = WIRES["anthropic"]
     with WireServer(scripted_brain(said), Rules(local=not wire.vendor)) as server:
         server.strike(Fault(fault))
-        answer = ask(wire.provider(server, encoding=encoding), desk)
+        # With the grain of a photo: JPEG makes an even picture no lighter.
+        model = Tapped(wire.provider(server, encoding=encoding), desk)
+        answer = asyncio.run(ModelClient(model).ask(grainy_request()))
     first, second = server.heard
     assert [piece.shape for piece in second.pictures] == [piece.shape for piece in first.pictures]
     assert ("image/jpeg" in json.dumps(first.body)) == (encoding == "auto")

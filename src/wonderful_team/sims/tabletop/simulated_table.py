@@ -143,10 +143,14 @@ class SimulatedTable(ABC):
             ConfigError: The table is closed.
         """
         self.renderer()
-        state = self._still()
-        return lambda: self._drawn_from(state, camera)
+        # To the last bit: poses that are worked out again differ by rounding.
+        poses = {name: getattr(self._state, name).copy() for name in DRAWN_FROM}
+        return lambda: self._drawn_from(poses, camera)
 
-    def _drawn_from(self, state: Any, camera: str) -> tuple[Array, Array]:
+    def _drawn_from(self, poses: Mapping[str, Array], camera: str) -> tuple[Array, Array]:
+        state = mj.MjData(self.built.model)
+        for name, values in poses.items():
+            getattr(state, name)[:] = values
         renderer = open_renderer(self.built, self._wanted_renderer)[0] if self.closed else self.renderer()
         try:
             drawn = renderer.draw(state, camera)
@@ -154,13 +158,6 @@ class SimulatedTable(ABC):
             if self.closed:
                 renderer.close()
         return drawn.rgb, drawn.depth_m
-
-    def _still(self) -> Any:
-        """The state as it is drawn now, to the last bit: poses worked out again differ by rounding."""
-        still, now = mj.MjData(self.built.model), self._state
-        for name in DRAWN_FROM:
-            getattr(still, name)[:] = getattr(now, name)
-        return still
 
     def film(self, each: Callable[[], None] | None, every_s: float) -> None:
         """Call `each` about every `every_s` of simulated time while something is moved; None stops it."""

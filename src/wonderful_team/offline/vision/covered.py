@@ -9,7 +9,7 @@ import numpy as np
 
 from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.offline.vision.fitting import least_squares
-from wonderful_team.offline.vision.outlines import components, filled, kernel
+from wonderful_team.offline.vision.outlines import components, filled, kernel, nearest_in
 from wonderful_team.offline.vision.things import lab_histogram
 
 STEP_M, OTHER_LOOK = 0.005, 0.3
@@ -73,8 +73,12 @@ def _plate_and_rests(lab: Array, piece: Array, height: Array, least: float) -> l
         return [piece]
     if float(np.percentile(height[border], 75)) - level < STEP_M:
         return [piece]
-    apart = [piece & ~plate & (cv2.dilate(other.astype(np.uint8), kernel(5)) > 0) for other in others]
-    return [plate, piece & ~plate & ~np.any([np.zeros_like(piece), *apart], axis=0), *apart]
+    # Pixels that the plate's edge blurs go to what is nearest.
+    marks = np.zeros(piece.shape, np.int32)
+    for number, part in enumerate((plate, under, *others), start=1):
+        marks[part] = number
+    nearest = marks[nearest_in(marks > 0)]
+    return [piece & (nearest == number) for number in range(1, len(others) + 3)]
 
 
 def _by_looks(lab: Array, parts: Sequence[Array]) -> list[Array]:

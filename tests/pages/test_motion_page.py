@@ -14,7 +14,7 @@ import pytest
 from tests.pages.arm_run import FINGERS, PX_PER_M, ArmWorld, Carrying
 from tests.pages.test_page import read
 from wonderful_team.pages import write_page
-from wonderful_team.pages.fingers import pads_m
+from wonderful_team.pages.fingers import _planned, pads_m
 from wonderful_team.pages.height_profile import profile_drawing
 from wonderful_team.pages.legs import Leg, corners_of, distance_to, leg_of
 from wonderful_team.record import Recorder
@@ -71,6 +71,19 @@ def test_fingers_are_to_scale_with_their_numbers(folder: Path) -> None:
         assert between == pytest.approx((opening + FINGERS.thickness_m) * PX_PER_M, abs=0.05)
         sides = np.linalg.norm(pads[0] - np.roll(pads[0], 1, axis=0), axis=1)
         assert sides == pytest.approx([0.02 * PX_PER_M] * 4, abs=0.05)
+
+
+def test_a_second_grip_tells_how_the_gripper_was_turned_after_the_move() -> None:
+    move = {"type": "MoveTo", "pose": {"position_m": [0.4, 0.0, 0.1], "quaternion_wxyz": [1.0, 0.0, 0.0, 0.0]}}
+    told = [{"how": "gripped across 30 mm, turned 0 degrees clockwise"}]
+    closing = {"type": "Gripper", "state": "close"}
+    turn = {"type": "RotateGripper", "yaw_rad": -np.pi / 2}
+    actions = [(move, told), (closing, []), ({"type": "Gripper", "state": "open"}, []), (turn, []), (closing, [])]
+    content = {"actions": [{"action": action, "sources": sources} for action, sources in actions]}
+    first, second = _planned(content, {"opening_m": FINGERS.opening_m}, 1.0)
+    assert first.how == told[0]["how"]
+    assert second.how == f"{first.how}; then turned 90.0° clockwise"
+    assert second.yaw_rad == pytest.approx(-np.pi / 2)
 
 
 def test_every_drawing_of_motion_says_what_it_shows_and_the_page_stays_whole(folder: Path) -> None:

@@ -62,8 +62,8 @@ def _gripped(
         grip = grip_of(view, places.box(name), px, support, grasp_z_m(top, support), fingers, displaced)
     except GeometryError as problem:
         raise places.fail(f"{name} cannot be gripped: {problem}") from problem
-    middle = ResolvedPoint(px, np.array([*grip.centre_m, top]), f"{spot.how}; {grip.how}")
     yaw_rad = wrap_angle(grip.yaw_rad + progress.turn_of(name))
+    middle = ResolvedPoint(px, np.array([*grip.centre_m, top]), f"{spot.how}; {replace(grip, yaw_rad=yaw_rad).how}")
     return progress.carry(name, middle, places.lift), yaw_rad, grip.support_z_m - support
 
 

@@ -150,7 +150,12 @@ def parts_of(
     pairs = [one + other for one, other in zip(reach, [*reach[1:], reach[0]], strict=True)]
     ring = (max(pairs) + LEAST_GAP_PX) / (2 * math.sin(math.pi / len(sizes)))
     heights: dict[Point, float] = {}
-    for floor_m, shares in zip(_floors(place.box, centre, lift), (CLOSER, FARTHER, FARTHER), strict=False):
+    floors = _floors(place.box, centre, lift)
+    tries: list[tuple[float | None, tuple[float, ...]]] = [*zip(floors, (CLOSER, FARTHER, FARTHER), strict=False)]
+    if len(floors) > 1:
+        # What stands in the middle hides the floor, and may be gone by then, as a lid is: better side by side than on top of each other.
+        tries.append((None, CLOSER))
+    for floor_m, shares in tries:
         for share, turn in product(shares, range(TURNS)):
             angles = [2 * math.pi * (turn / TURNS + k / len(sizes)) for k in range(len(sizes))]
             points = [

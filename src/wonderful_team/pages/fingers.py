@@ -88,6 +88,8 @@ def _planned(content: dict[str, Any], fingers: Mapping[str, Any], start: float |
                 yaw = Pose(at, np.array(pose["quaternion_wxyz"])).yaw_rad
             case "RotateGripper":
                 yaw += action["yaw_rad"]
+                # What the move said of the turn holds no longer.
+                how = f"{how}; then turned {turned(action['yaw_rad'])}" if how else ""
             case "Trajectory":
                 at, how = np.array(action["waypoints_m"][-1]), ""
             case "Home":

@@ -52,6 +52,50 @@ def test_a_lid_and_its_box_are_two_things_and_the_lid_closes_the_box(noise_m: fl
     assert handle.box.width == pytest.approx(60, abs=6)
 
 
+def askew(off_px: tuple[float, float], lean: float = 0.0, noise_m: float = 0.0) -> Picture:
+    """A blue box with an opening, and a yellow lid with its handle shifted on it, which rises by `lean` a pixel to the right [m]."""
+    at = (AT[0] + off_px[0], AT[1] + off_px[1])
+    drawn = Drawing()
+    drawn.add(box_shape(AT, 180, 180), plain(BLUE), height_m=0.055)
+    drawn.add(box_shape(AT, 116, 116), plain((30, 50, 120)), height_m=0.004)
+    drawn.add(box_shape(at, 136, 136), plain(YELLOW), height_m=0.063)
+    drawn.add(box_shape(at, 60, 16), plain(YELLOW), height_m=0.095)
+    drawn.height_m += np.where(drawn.height_m > 0.06, lean * (np.arange(drawn.height_m.shape[1]) - at[0]), 0.0).astype(
+        np.float32
+    )
+    drawn.height_m += np.random.default_rng(0).normal(0, noise_m, drawn.height_m.shape).astype(np.float32)
+    return drawn.picture(depth=True)
+
+
+@pytest.mark.parametrize("noise_m", [0.0, 0.001])
+@pytest.mark.parametrize(
+    ("off_px", "lean"), [((50.0, 0.0), 0.0), ((0.0, -50.0), 0.0), ((6.0, 6.0), 0.00006), ((-4.0, 0.0), -0.00006)]
+)
+def test_a_lid_askew_on_its_box_or_over_its_edge_is_a_lid_and_closes_it(
+    off_px: tuple[float, float], lean: float, noise_m: float
+) -> None:
+    eyes = Eyes(askew(off_px, lean, noise_m))
+    lid, box = eyes.best(describe("the lid")), eyes.best(describe("the box"))
+    assert lid is not None
+    assert box is not None
+    assert lid.box.centre == pytest.approx((AT[0] + off_px[0], AT[1] + off_px[1]), abs=6)
+    assert box.box.centre == pytest.approx(AT, abs=6)
+    assert box.box.width == pytest.approx(180, abs=8)
+    assert closed_by(box.thing, eyes) is lid.thing
+    # What still shows of the inside is the box's, and no thing of its own.
+    assert len(eyes.scene.things) == 3
+
+
+def test_a_block_in_an_open_box_closes_nothing() -> None:
+    drawn = Drawing().add(box_shape(AT, 180, 180), plain(BLUE), height_m=0.055)
+    drawn.add(box_shape(AT, 116, 116), plain(BLUE), height_m=0.004)
+    drawn.add(box_shape(AT, 50, 50), plain(RED), height_m=0.064)
+    eyes = Eyes(drawn.picture(depth=True))
+    box = eyes.best(describe("the box"))
+    assert box is not None
+    assert closed_by(box.thing, eyes) is None
+
+
 def test_a_level_top_of_one_colour_and_what_is_no_higher_stay_one_thing() -> None:
     assert len(see(boxed(0.055)).things) <= len(see(boxed(0.063)).things)
     one = (

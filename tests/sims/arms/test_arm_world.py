@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import gc
+import weakref
 from collections.abc import Iterator
 from typing import Any
 
@@ -213,3 +215,20 @@ def test_a_moved_camera_sees_all_that_the_arm_reaches_and_planners_are_told_wher
     finally:
         usual.close()
         moved.close()
+
+
+@needs_arms
+@pytest.mark.parametrize("task", ["lid_box/one", "star", "lid_box/one@slip=1"])
+def test_a_world_that_nobody_holds_is_gone_at_once(task: str) -> None:
+    world = make_world(task, 1000)
+    world.observe()
+    table = world.privileged._table
+    gone = [weakref.ref(one) for one in (table, table.robot, table.work, table.built)]
+    gc.collect()
+    gc.disable()
+    try:
+        world.close()
+        del world, table
+        assert [one() for one in gone] == [None] * len(gone)
+    finally:
+        gc.enable()

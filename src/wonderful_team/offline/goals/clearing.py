@@ -11,7 +11,7 @@ from wonderful_team.offline.description import FREE, ROOMY
 from wonderful_team.offline.eyes import Eyes
 from wonderful_team.offline.goals.aims import Aim, Named, seen_named
 from wonderful_team.offline.vision import Thing
-from wonderful_team.offline.vision.kinds import part_on
+from wonderful_team.offline.vision.kinds import is_kind_here, part_on
 from wonderful_team.offline.vision.table import height_above_table
 
 LOWER_M = 0.002
@@ -61,13 +61,17 @@ def obstacles(aim: Aim, others: Sequence[Aim], eyes: Eyes) -> list[Aim]:
 
 
 def closed_by(holder: Thing | None, eyes: Eyes) -> Thing | None:
-    """What stands on the middle of a thing that should be open there and shows no hollow; None where it may be open.
+    """What stands on a thing that should be open there: a lid, or whatever stands on its middle where no hollow shows; None where it may be open.
 
-    A thing in an open container stands lower than what closes one: round it the container's floor shows. Only depth tells.
+    A thing in an open container stands lower than what closes one: round it the container's floor shows. A lid, told by its
+    handle, is no load wherever it lies: askew in the opening, or over the edge. Only depth tells.
     """
     depth = eyes.looked_at.depth_m
     if holder is None or holder.height_m is None or holder.height_m < DEEP_M or depth is None:
         return None
+    for one in eyes.scene.on(holder):
+        if is_kind_here(one, "lid", eyes.scene):
+            return one
     uppers = [one for one in eyes.scene.on(holder) if one.box.contains(holder.box.centre)]
     heights = height_above_table(depth, np.isfinite(depth))
     if not uppers or heights is None:

@@ -166,8 +166,9 @@ def _is_bottom(thing: Thing, scene: Scene) -> bool:
 
 
 def _is_lid(thing: Thing, scene: Scene) -> bool:
-    """Whether a thing has a handle on its middle, and lies on another or is not round, as a bottle is."""
-    return part_on(thing, scene) is not None and (thing.on is not None or not is_round(thing))
+    """Whether a thing has a handle on its middle, which has none itself, and lies on another or is not round, as a bottle is."""
+    part = part_on(thing, scene)
+    return part is not None and part_on(part, scene) is None and (thing.on is not None or not is_round(thing))
 
 
 def _lies_aside(thing: Thing, scene: Scene) -> bool:

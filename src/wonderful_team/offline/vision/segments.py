@@ -8,6 +8,7 @@ import cv2
 import numpy as np
 
 from wonderful_team.core.geometry.arrays import Array
+from wonderful_team.offline.vision.covered import uncovered
 from wonderful_team.offline.vision.occlusion import part_overlaid
 from wonderful_team.offline.vision.outlines import (
     components,
@@ -27,9 +28,6 @@ LEAST_SHARE = 0.0006
 
 _JUMP_M = 0.010
 """A step in height that separates two things [m]."""
-
-_STEP_M, _OTHER_LOOK = 0.005, 0.3
-"""A plate stands at least so much higher than the rim round it [m], and is at most so much alike in colours (0 to 1)."""
 
 _CRESCENT, _CIRCLE, _MOSTLY = (0.5, 0.85), 0.7, 0.5
 """Shares of its hull that a round thing fills of which another hides a part, of the circle round it that its hull fills at least, and of
@@ -139,7 +137,7 @@ def _with_height(lab: Array, table: Table, least: float) -> list[Segment]:
     for patch in _patches(solid, least, fill=False):
         view = window(patch)
         pieces = _split_by_height(lab[view], patch[view], table.height_m[view], least)
-        pieces = [part for piece in pieces for part in _covered(lab[view], piece, table.height_m[view], least)]
+        pieces = uncovered(lab[view], pieces, table.height_m[view], least)
         raised += [patch] if len(pieces) == 1 else [placed(piece, view, patch.shape) for piece in pieces]
     raised = [_behind(piece, raised, table.height_m) for piece in raised]
     wide = cv2.dilate(table.raised.astype(np.uint8), kernel(5)) > 0
@@ -224,25 +222,6 @@ def _split_by_height(lab: Array, patch: Array, height_m: Array, least: float) ->
         markers[piece] = number
     nearest = markers[nearest_in(markers > 0)]
     return [patch & (nearest == number) for number in range(1, len(pieces) + 1)]
-
-
-def _covered(lab: Array, piece: Array, height_m: Array, least: float) -> list[Array]:
-    """A level plate of another colour that lies inside a level rim only a little lower, and the rim: a lid on its box."""
-    if piece.sum() < 2 * least:
-        return [piece]
-    height = cv2.medianBlur(np.where(piece, np.nan_to_num(height_m), 0.0).astype(np.float32), 5)
-    plate = piece & (height > np.percentile(height[piece], 75) - _STEP_M / 2)
-    plate = cv2.morphologyEx(plate.astype(np.uint8), cv2.MORPH_OPEN, kernel(3)) > 0
-    rim = piece & ~(cv2.dilate(plate.astype(np.uint8), kernel(5)) > 0)
-    if min(plate.sum(), rim.sum()) < least or (plate & ~filled(rim)).any() or (filled(plate) & rim).any():
-        return [piece]
-    levels = [np.percentile(height[part], (10, 50, 90)) for part in (plate, rim)]
-    level = all(high - low < _STEP_M / 2 for low, _, high in levels)
-    apart = float(levels[0][1] - levels[1][1])
-    if not level or apart < _STEP_M or lab_histogram(lab[plate]) @ lab_histogram(lab[rim]) > _OTHER_LOOK:
-        return [piece]
-    whole = filled(plate)
-    return [piece & whole, piece & ~whole]
 
 
 def _same_level(lab: Array, pieces: list[Array], height: Array) -> list[Array]:

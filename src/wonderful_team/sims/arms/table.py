@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from typing import Any
+from weakref import proxy
 
 import numpy as np
 
@@ -84,9 +85,10 @@ class ArmTable(SimulatedTable):
         mj.mj_forward(self.built.model, self._state)
         self.robot = Robot(self.built, self._state)
         self.rest()
-        self.disturbances = Disturbances(self, dict(asked.disturbances))
+        # What the robot and the built scene call holds these weakly: in a circle a world's memory would stay until the collector comes by.
+        self.disturbances = Disturbances(proxy(self), dict(asked.disturbances))
         if self.work is not None:
-            self.work.begin(self.built, self._state, self.robot)
+            self.work.begin(proxy(self.built), self._state, proxy(self.robot))
             self.robot.each_step = self.work.step
             self.rest()
         if asked.disturbances:

@@ -108,3 +108,20 @@ def test_the_floor_of_a_place_that_lies_askew_is_what_most_of_it_shows() -> None
     place = GroundedTarget(Target("T1", "object", "box"), "found", "top", Box.around((300.0, 200.0), 170.0, 170.0), {})
     parts = sharing.parts_of(place, (300.0, 200.0), [(19.0, 19.0), (18.0, 18.0)], Deprojector(view))
     assert np.hypot(*np.subtract(*parts)) > 37
+
+
+@pytest.mark.parametrize(("handle_px", "apart"), [((130, 44), True), ((0, 0), False)])
+def test_beside_what_stands_in_the_middle_and_may_be_gone_by_then_things_lie_side_by_side(
+    handle_px: tuple[int, int], apart: bool
+) -> None:
+    """A lid's handle leaves no level room for two; without one, a place that is too small for both takes them one upon the other."""
+    camera = AffineCamera(np.array([[0, 800.0, 0, 320], [800.0, 0, 0, -200], [0, 0, -1.0, 1.0]]))
+    depth = np.full((400, 640), 1.0, np.float32)
+    side = 110 if apart else 60
+    for (width, height), height_m in (((side, side), 0.06), (handle_px, 0.09)):
+        depth[200 - height // 2 : 200 + height // 2, 300 - width // 2 : 300 + width // 2] = 1.0 - height_m
+    view = View("top", "top", 0.0, np.zeros((400, 640, 3), np.uint8), depth_m=depth, camera=camera)
+    box = Box.around((300.0, 200.0), float(side), float(side))
+    place = GroundedTarget(Target("T1", "object", "box"), "found", "top", box, {})
+    parts = sharing.parts_of(place, (300.0, 200.0), [(25.0, 25.0), (25.0, 25.0)], Deprojector(view))
+    assert (np.hypot(*np.subtract(*parts)) >= 50) == apart

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Any, Literal, TypeAlias, get_args
 
 from pydantic import Field
 from pydantic.json_schema import SkipJsonSchema
@@ -12,8 +12,13 @@ from pydantic.json_schema import SkipJsonSchema
 from wonderful_team.contracts.shown import AnswerModel, Question, Reasoning, ShownTask, known, unique
 from wonderful_team.core.values import Subgoal, Target
 
-GROUNDING_KINDS = ("wrong_point", "wrong_box")
+PlanDoubt: TypeAlias = Literal[
+    "collision", "physical_constraint", "missing_prerequisite", "missing_subgoal", "ambiguity", "needless_step", "wrong_target"
+]  # fmt: skip
+"""Kinds of doubt about a plan."""
+GroundingDoubt: TypeAlias = Literal["wrong_point", "wrong_box"]
 """Kinds of doubt about where a target was found; they name the target, which is then looked for again."""
+GROUNDING_KINDS: tuple[str, ...] = get_args(GroundingDoubt)
 
 
 class CritiqueDraft(AnswerModel):
@@ -22,17 +27,7 @@ class CritiqueDraft(AnswerModel):
     about: str = Field(
         description="Id of the subgoal (or number of the step) in doubt; of the target for wrong_point and wrong_box."
     )
-    kind: Literal[
-        "collision",
-        "physical_constraint",
-        "missing_prerequisite",
-        "missing_subgoal",
-        "ambiguity",
-        "needless_step",
-        "wrong_target",
-        "wrong_point",
-        "wrong_box",
-    ]
+    kind: Literal[PlanDoubt, GroundingDoubt]
     question: str = Field(min_length=1)
 
 
@@ -41,18 +36,7 @@ class PlanDoubtDraft(CritiqueDraft):
 
     about: str = Field(description='Id of the subgoal in doubt; "plan" for a missing one.')
     # No boxes and points are drawn yet: what is for these is not offered, and refused with the reason.
-    kind: (
-        Literal[
-            "collision",
-            "physical_constraint",
-            "missing_prerequisite",
-            "missing_subgoal",
-            "ambiguity",
-            "needless_step",
-            "wrong_target",
-        ]
-        | SkipJsonSchema[Literal["wrong_point", "wrong_box"]]
-    )
+    kind: PlanDoubt | SkipJsonSchema[GroundingDoubt]
 
 
 CLAUSE = 300

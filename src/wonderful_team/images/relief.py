@@ -16,12 +16,11 @@ from shapely import LineString, MultiPoint
 
 from wonderful_team.core.geometry import Box, PlanarCamera
 from wonderful_team.core.geometry.arrays import Array
+from wonderful_team.core.geometry.boxes import level_all_round
 from wonderful_team.core.values import View
 
 FARTHEST_M = 50.0
 """Depth beyond this is none [m]."""
-LEVEL_M = 0.005
-"""Heights round a thing that differ by no more are one level [m]."""
 RAISED_M = 0.004
 """What is at least this much higher than the table is not the table: more than a sheet of paper and sensor noise."""
 STEP_M = 0.006
@@ -91,9 +90,7 @@ class Relief:
 
     def all_round(self, box: Box) -> float | None:
         """Height of one level that shows close to a box of the view on all four of its sides [m]; None where there is none."""
-        sides = [self.xyz_m[self.in_box(side), 2] for side in box.sides]
-        levels = [float(np.median(side)) for side in sides if len(side)]
-        return min(levels) if len(levels) == 4 and max(levels) - min(levels) <= LEVEL_M else None
+        return level_all_round([self.xyz_m[self.in_box(side), 2].tolist() for side in box.sides])
 
     def inside(self, region: Any) -> Array:
         """Which points lie in a region of the table (a shapely shape), shape (N,) bool."""

@@ -9,6 +9,7 @@ import numpy as np
 
 from wonderful_team.core.geometry import Box, PlanarCamera
 from wonderful_team.core.geometry.arrays import Array
+from wonderful_team.core.geometry.boxes import level_all_round
 from wonderful_team.core.geometry.cameras import Camera
 from wonderful_team.core.pictures import Point
 from wonderful_team.core.values import View
@@ -19,8 +20,6 @@ RING_SHARE = 0.15
 """How far round a box its surroundings are measured (share of its smaller side)."""
 DEPTH_NOISE_M = 0.01
 """Surfaces seen less than this below the table are the table; what lies deeper is beside it [m]."""
-LEVEL_M = 0.005
-"""Heights round a thing that differ by no more are one level [m]."""
 SURFACE_SAMPLES = 20
 """At how many points between two pixels one surface is looked for."""
 _WINDOW_PER_PX = 1 / 150
@@ -101,11 +100,11 @@ class Deprojector:
 
     def _all_round(self, box: Box) -> float | None:
         """Height of one level that shows close to a box on all four of its sides [m]; None where there is none."""
-        levels = []
+        sides = []
         for side in box.sides:
             seen = [self.surface(px, "side").position_m for px in side.scaled(0.5).corners if self.inside(px)]
-            levels += [float(np.median([at[2] for at in seen if at is not None]))] if seen else []
-        return min(levels) if len(levels) == 4 and max(levels) - min(levels) <= LEVEL_M else None
+            sides.append([float(at[2]) for at in seen if at is not None])
+        return level_all_round(sides)
 
     def one_surface(self, one: Point, other: Point) -> bool:
         """Whether depth shows one surface over the table from a pixel straight to another."""

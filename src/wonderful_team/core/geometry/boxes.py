@@ -3,11 +3,24 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+import statistics
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 CLOSE_PX, CLOSE_SHARE = 4.0, 0.04
 """What is no farther from a box than this many pixels, or this share of its shorter side, is close to it."""
+LEVEL_M = 0.005
+"""Heights close to a box that differ by no more are one level [m]."""
+
+
+def level_all_round(sides: Sequence[Sequence[float]]) -> float | None:
+    """Height of one level that shows on all four sides of a box [m]; None where there is none.
+
+    Args:
+        sides: Heights that were seen in each of `Box.sides` [m].
+    """
+    levels = [statistics.median(heights) for heights in sides if len(heights)]
+    return min(levels) if len(levels) == 4 and max(levels) - min(levels) <= LEVEL_M else None
 
 
 @dataclass(frozen=True)

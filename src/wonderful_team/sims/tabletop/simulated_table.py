@@ -30,19 +30,17 @@ DRAWN_FROM = (
 
 @dataclass(frozen=True, eq=False)
 class Snapshot:
-    """Where every body stood at one instant: enough to draw it again."""
+    """Where everything stood at one instant: enough to draw it again, to the last bit.
 
-    qpos: Array
-    mocap_pos: Array
-    mocap_quat: Array
+    Attributes:
+        kept: Copies of `DRAWN_FROM`, by name; poses that are worked out again from joint angles differ by rounding.
+    """
+
+    kept: Mapping[str, Array]
 
     def same_as(self, other: Snapshot) -> bool:
         """Whether nothing at all moved between the two."""
-        return (
-            np.array_equal(self.qpos, other.qpos)
-            and np.array_equal(self.mocap_pos, other.mocap_pos)
-            and np.array_equal(self.mocap_quat, other.mocap_quat)
-        )
+        return all(np.array_equal(self.kept[name], other.kept[name]) for name in ("qpos", "mocap_pos", "mocap_quat"))
 
 
 def poses_of(built: BuiltModel, names: Iterable[str], state: Any) -> Poses:
@@ -143,17 +141,13 @@ class SimulatedTable(ABC):
             ConfigError: The table is closed.
         """
         self.renderer()
-        # To the last bit: poses that are worked out again differ by rounding.
-        poses = {name: getattr(self._state, name).copy() for name in DRAWN_FROM}
-        return lambda: self._drawn_from(poses, camera)
+        at = self.snapshot()
+        return lambda: self._drawn_at(at, camera)
 
-    def _drawn_from(self, poses: Mapping[str, Array], camera: str) -> tuple[Array, Array]:
-        state = mj.MjData(self.built.model)
-        for name, values in poses.items():
-            getattr(state, name)[:] = values
+    def _drawn_at(self, at: Snapshot, camera: str) -> tuple[Array, Array]:
         renderer = open_renderer(self.built, self._wanted_renderer)[0] if self.closed else self.renderer()
         try:
-            drawn = renderer.draw(state, camera)
+            drawn = renderer.draw(self._state_at(at), camera)
         finally:
             if self.closed:
                 renderer.close()
@@ -172,8 +166,7 @@ class SimulatedTable(ABC):
 
     def snapshot(self) -> Snapshot:
         """Where everything stands now, kept."""
-        state = self._state
-        return Snapshot(state.qpos.copy(), state.mocap_pos.copy(), state.mocap_quat.copy())
+        return Snapshot({name: getattr(self._state, name).copy() for name in DRAWN_FROM})
 
     def masks_at(self, at: Snapshot, camera: str) -> dict[str, Array]:
         """Which pixels of a view showed each thing at an earlier instant, shape (H, W) bool by name."""
@@ -186,10 +179,8 @@ class SimulatedTable(ABC):
 
     def _state_at(self, at: Snapshot) -> Any:
         state = mj.MjData(self.built.model)
-        state.qpos[:], state.mocap_pos[:], state.mocap_quat[:] = at.qpos, at.mocap_pos, at.mocap_quat
-        mj.mj_kinematics(self.built.model, state)
-        mj.mj_comPos(self.built.model, state)
-        mj.mj_camlight(self.built.model, state)
+        for name, values in at.kept.items():
+            getattr(state, name)[:] = values
         return state
 
     def slot_masks(self, slot: str, camera: str) -> dict[str, Array]:

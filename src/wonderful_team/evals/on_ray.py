@@ -21,7 +21,7 @@ from wonderful_team.core.text import counted
 from wonderful_team.errors import ClusterLostError, ConfigError, MissingExtraError
 from wonderful_team.evals.leases import RENEW_EVERY_S, Owner
 from wonderful_team.evals.monitor import StudyMonitor
-from wonderful_team.evals.processes import without_main
+from wonderful_team.evals.processes import interrupts_held, without_main
 from wonderful_team.evals.ray_actors import Hello, versions_here
 from wonderful_team.evals.ray_messages import (
     Cause,
@@ -129,7 +129,7 @@ def _talking(order: Order) -> Iterator[Any]:
     context = multiprocessing.get_context("spawn")
     link, far = context.Pipe()
     process = context.Process(target=talk_to_ray, args=(order, far), name="ray", daemon=False)
-    with without_main():
+    with interrupts_held(), without_main():
         process.start()
     far.close()
     try:

@@ -11,7 +11,6 @@ import contextlib
 import importlib
 import os
 import secrets
-import signal
 import socket
 import threading
 import time
@@ -20,7 +19,7 @@ from collections import deque
 from dataclasses import dataclass, field
 from typing import Any
 
-from wonderful_team.evals.processes import THREADS
+from wonderful_team.evals.processes import THREADS, leave_to_parent
 from wonderful_team.evals.ray_actors import Hello, Places, TrialWorker
 from wonderful_team.evals.ray_messages import (
     Cause,
@@ -39,6 +38,8 @@ from wonderful_team.evals.trials import TrialRow
 from wonderful_team.redaction import redact
 
 LOCAL = "local"
+SIGNALS = ("SIGINT", "SIGTERM", "SIGHUP")
+"""A terminal, or `timeout`, tells the whole group; this process ends when the other one says so, or is gone."""
 STARTS_THAT_FAIL = 3
 """So many workers in a row died before they ended a trial: then no more are started."""
 LOSSES_IN_A_ROW = 10
@@ -55,7 +56,7 @@ LOCAL_OBJECTS_BYTES = 200_000_000
 
 def talk_to_ray(order: Order, link: Any) -> None:
     """Entry of the process."""
-    _leave_signals_to_parent()
+    leave_to_parent(*SIGNALS)
     said = os.open(order.said, os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o600)
     for stream in (1, 2):
         os.dup2(said, stream)
@@ -66,16 +67,9 @@ def talk_to_ray(order: Order, link: Any) -> None:
     except Exception as error:  # noqa: BLE001  ray raises bare exceptions when versions differ or a node does not start
         link.send(Failed(f"--ray {order.address}: {_line(error)}", wrong_use=True))
         return
-    _leave_signals_to_parent()  # Ray has set handlers of its own
+    leave_to_parent(*SIGNALS)  # Ray has set handlers of its own
     asyncio.run(_Side(ray, order, link).run())
     ray.shutdown()
-
-
-def _leave_signals_to_parent() -> None:
-    """A terminal, or `timeout`, tells the whole group; this process ends when the other one says so, or is gone."""
-    for name in ("SIGINT", "SIGTERM", "SIGHUP"):
-        if hasattr(signal, name):
-            signal.signal(getattr(signal, name), signal.SIG_IGN)
 
 
 def _set_up(address: str) -> None:

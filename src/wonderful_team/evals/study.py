@@ -19,7 +19,7 @@ from wonderful_team.core.text import counted
 from wonderful_team.errors import ConfigError
 from wonderful_team.evals.monitor import Report, StudyMonitor, StudyStatus
 from wonderful_team.evals.plan import StudyPlan
-from wonderful_team.evals.processes import one_thread_each, without_main
+from wonderful_team.evals.processes import interrupts_held, one_thread_each, without_main
 from wonderful_team.evals.rate_limit import ProcessLimiter
 from wonderful_team.evals.shipment import Shipment
 from wonderful_team.evals.store import Store
@@ -124,7 +124,7 @@ def _run_processes(work: Work, monitor: StudyMonitor, jobs: int, calls_at_once: 
 
     def start() -> Any:
         process = context.Process(target=worker_main, args=(work, stopping), daemon=False)
-        with contextlib.nullcontext() if needs_main else without_main():
+        with interrupts_held(), contextlib.nullcontext() if needs_main else without_main():
             process.start()
         return process
 

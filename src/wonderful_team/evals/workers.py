@@ -6,7 +6,6 @@ import asyncio
 import contextlib
 import multiprocessing
 import os
-import signal
 import sqlite3
 import sys
 import time
@@ -22,6 +21,7 @@ from wonderful_team.core.heap import Growth
 from wonderful_team.core.interrupts import in_thread
 from wonderful_team.errors import FileNotWrittenError, WonderfulTeamError
 from wonderful_team.evals.leases import RENEW_EVERY_S, Owner
+from wonderful_team.evals.processes import leave_to_parent
 from wonderful_team.evals.spending import CapReached
 from wonderful_team.evals.store import CUT, Store
 from wonderful_team.evals.stored_rows import Claim
@@ -77,7 +77,7 @@ class Work:
 
 def worker_main(work: Work, stopping: Any) -> None:
     """Entry of a worker process; an interrupt from the keyboard is the parent's to answer."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    leave_to_parent("SIGINT")
     with redacted_streams():
         try:
             work_until_done(work, stopping.is_set)

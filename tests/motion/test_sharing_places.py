@@ -125,3 +125,22 @@ def test_beside_what_stands_in_the_middle_and_may_be_gone_by_then_things_lie_sid
     place = GroundedTarget(Target("T1", "object", "box"), "found", "top", box, {})
     parts = sharing.parts_of(place, (300.0, 200.0), [(25.0, 25.0), (25.0, 25.0)], Deprojector(view))
     assert (np.hypot(*np.subtract(*parts)) >= 50) == apart
+
+
+@pytest.mark.parametrize(("point", "room"), [((300.0, 200.0), True), ((270.0, 228.0), True), ((520.0, 200.0), False)])
+def test_things_in_one_free_area_of_a_box_lie_side_by_side_on_its_floor(point: tuple[float, float], room: bool) -> None:
+    """An area has a point and no outline: its floor is seen round the point, in the middle of a box or beside its wall."""
+    camera = AffineCamera(np.array([[0, 800.0, 0, 320], [800.0, 0, 0, -200], [0, 0, -1.0, 1.0]]))
+    depth = np.full((400, 640), 1.0, np.float32)
+    for middle, outer, inner in ((300, 130, 118), (520, 64, 52)):
+        for side, height_m in ((outer, 0.06), (inner, 0.005)):
+            depth[200 - side // 2 : 200 + side // 2, middle - side // 2 : middle + side // 2] = 1.0 - height_m
+    view = View("top", "top", 0.0, np.zeros((400, 640, 3), np.uint8), depth_m=depth, camera=camera)
+    area = GroundedTarget(Target("T1", "area", "free space in the box"), "found", "top", None, {"place": point})
+    parts = sharing.parts_of(area, point, [(20.0, 20.0), (20.0, 20.0)], Deprojector(view))
+    if not room:
+        assert parts == [point, point]
+        return
+    assert np.hypot(*np.subtract(*parts)) > 24
+    for part in parts:
+        assert np.max(np.abs(np.subtract(part, (300.0, 200.0)))) <= 59 - 20  # not on the wall

@@ -102,6 +102,21 @@ def test_a_new_picture_begins_new_notebooks_but_attempts_stay_known_to_who_judge
     assert [note.text for note in books.read("replanner", "")] == ["noted by the replanner"]
 
 
+def test_steps_written_anew_take_the_place_of_those_before():
+    books = Notebooks()
+    for key, text in (
+        ("WriteSteps", "The steps so far: 1. pick T1"),
+        ("RevisePlan", "On the doubt 'is it T1?' you changed the plan"),
+        ("RevisePlan", "On the doubt 'is it T2?' you kept the plan"),
+        ("WriteSteps", "The steps so far: 1. pick T2"),
+    ):
+        books.begin("supervisor", "")(Note(key, text, "notebook"))
+    shown = [note.text for note in books.read("supervisor", "")]
+    assert shown[-1] == "The steps so far: 1. pick T2"
+    assert sum("The steps so far" in text for text in shown) == 1
+    assert sum("On the doubt" in text for text in shown) == 2
+
+
 def test_no_kind_of_question_leaves_more_than_a_line():
     long = {"words": "a " * 400 + "\n\n(12, 14)"}
     assert len(one_line(long["words"])) <= LONGEST + 2

@@ -41,6 +41,8 @@ GRID = 8
 """So many points along each side of a place say how high its floor usually is."""
 TURNS = 24
 """Directions in which a group of things is tried."""
+WAY_PX = 2.0
+"""Least distance of the pixels at which the floor of a free area is followed from its point."""
 ROUND = tuple((math.cos(k * math.pi / 4), math.sin(k * math.pi / 4)) for k in range(8))
 _lock = threading.Lock()
 _parts: WeakKeyDictionary[View, dict[Any, tuple[Point, ...]]] = WeakKeyDictionary()
@@ -139,18 +141,20 @@ def parts_of(
     """A point for each thing on a place, clear of the others; the one point for all where there is no room.
 
     Args:
-        place: Where they go.
+        place: Where they go. A free area has no outline: there the floor that is seen at its point is the place.
         centre: Its chosen point [px].
         sizes: Half width and height of each thing [px].
         lift: The view.
     """
-    if place.box is None:
+    if place.box is None and lift.view.depth_m is None:
         return [centre] * len(sizes)
     reach = [(half_x + half_y) / 2 for half_x, half_y in sizes]
     pairs = [one + other for one, other in zip(reach, [*reach[1:], reach[0]], strict=True)]
     ring = (max(pairs) + LEAST_GAP_PX) / (2 * math.sin(math.pi / len(sizes)))
     heights: dict[Point, float] = {}
     floors = _floors(place.box, centre, lift)
+    if floors == [None] and place.box is None:
+        return [centre] * len(sizes)
     tries: list[tuple[float | None, tuple[float, ...]]] = [*zip(floors, (CLOSER, FARTHER, FARTHER), strict=False)]
     if len(floors) > 1:
         # What stands in the middle hides the floor, and may be gone by then, as a lid is: better side by side than on top of each other.
@@ -158,21 +162,26 @@ def parts_of(
     for floor_m, shares in tries:
         for share, turn in product(shares, range(TURNS)):
             angles = [2 * math.pi * (turn / TURNS + k / len(sizes)) for k in range(len(sizes))]
-            points = [
-                (centre[0] + share * ring * math.cos(angle), centre[1] + share * ring * math.sin(angle))
-                for angle in angles
-            ]
-            discs = zip(points, reach, strict=True)
-            if all(_rests(point, radius, place.box, floor_m, lift, heights) for point, radius in discs):
-                return points
+            offsets = [(share * ring * math.cos(angle), share * ring * math.sin(angle)) for angle in angles]
+            # Round the point; of a free area, which may end at a wall just beside its point, also with the first of them on it.
+            middles = [(0.0, 0.0), *([] if place.box is not None else [offsets[0]])]
+            for dx, dy in middles:
+                points = [(centre[0] + x - dx, centre[1] + y - dy) for x, y in offsets]
+                discs = list(zip(points, reach, strict=True))
+                if not all(_rests(point, radius, place.box, floor_m, lift, heights) for point, radius in discs):
+                    continue
+                if place.box is not None or all(_no_wall(centre, *disc, lift, heights) for disc in discs):
+                    return points
     return [centre] * len(sizes)
 
 
-def _floors(box: Box, centre: Point, lift: Deprojector) -> list[float | None]:
+def _floors(box: Box | None, centre: Point, lift: Deprojector) -> list[float | None]:
     """Heights that a place's floor may have [m]: what shows at its point, or, where something stands there, round it."""
     seen = lift.surface(centre, "floor").position_m
     if seen is None or lift.view.depth_m is None:
         return [None]
+    if box is None:
+        return [float(seen[2])]
     shares = [(k + 0.5) / GRID for k in range(GRID)]
     spots = [(box.x0 + box.width * a, box.y0 + box.height * b) for a in shares for b in shares]
     heights = [
@@ -188,19 +197,40 @@ def _floors(box: Box, centre: Point, lift: Deprojector) -> list[float | None]:
 
 
 def _rests(
-    point: Point, radius_px: float, box: Box, floor_m: float | None, lift: Deprojector, heights: dict[Point, float]
+    point: Point,
+    radius_px: float,
+    box: Box | None,
+    floor_m: float | None,
+    lift: Deprojector,
+    heights: dict[Point, float],
 ) -> bool:
     """Whether a disc lies wholly on the floor of a place: at one height where that is seen, else within its outline.
 
     `heights` keeps what was looked up [m]; most discs are out at their first spots, and the others are then not looked up.
     """
     spots = [point, *((point[0] + radius_px * x, point[1] + radius_px * y) for x, y in ROUND)]
-    if not all(lift.inside(spot) and box.contains(spot) for spot in spots):
+    if not all(lift.inside(spot) and (box is None or box.contains(spot)) for spot in spots):
         return False
     if floor_m is not None:
         return all(abs(_height_m(spot, lift, heights) - floor_m) <= LEVEL_M for spot in spots)
+    assert box is not None  # an area has a floor that is seen
     half = np.array([box.width, box.height]) / 2 * WITHIN
     return all(np.hypot(*((np.array(spot) - box.centre) / half)) <= 1 for spot in spots)
+
+
+def _no_wall(centre: Point, point: Point, radius_px: float, lift: Deprojector, heights: dict[Point, float]) -> bool:
+    """Whether a disc is reached from an area's point over its floor alone: beyond a box's wall may lie a table that is as high."""
+    floor_m = _height_m(centre, lift, heights)
+    for x, y in ROUND:
+        end = (point[0] + radius_px * x, point[1] + radius_px * y)
+        count = 1 + int(math.dist(centre, end) / WAY_PX)
+        way = [
+            (centre[0] + (end[0] - centre[0]) * k / count, centre[1] + (end[1] - centre[1]) * k / count)
+            for k in range(1, count)
+        ]
+        if not all(abs(_height_m(spot, lift, heights) - floor_m) <= LEVEL_M for spot in way):
+            return False
+    return True
 
 
 def _height_m(spot: Point, lift: Deprojector, heights: dict[Point, float]) -> float:

@@ -15,6 +15,8 @@ from wonderful_team.core.values import Note
 
 NOTEBOOK_LINES = 12
 """Most lines of a notebook that a request carries: the newest ones."""
+REPLACED = frozenset({"WriteSteps"})
+"""Questions of which only the newest answer counts: steps written anew take the place of those before."""
 JUDGES_ATTEMPTS = "replanner"
 """The role whose notes are about attempts, not about one picture."""
 
@@ -62,7 +64,10 @@ class Notebooks:
         lines = [*self._lines.get((role, ""), ())]
         if branch:
             lines += self._lines.get((role, branch), ())
-        return tuple([line for line in lines if line is not None][-NOTEBOOK_LINES:])
+        written = [line for line in lines if line is not None]
+        newest = {line.key: line for line in written}
+        standing = [line for line in written if line.key not in REPLACED or line is newest[line.key]]
+        return tuple(standing[-NOTEBOOK_LINES:])
 
 
 class SystemMemory:

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from tests.runtime.runtime_fakes import SquaresWorld, make_plan
-from wonderful_team.core.actions import ARM, Action, Gripper, OpenStep, Vocabulary
+from wonderful_team.core.actions import ARM, Action, At, CloseStep, Gripper, MoveStep, MoveTo, OpenStep, Vocabulary
+from wonderful_team.core.geometry import Pose
 from wonderful_team.core.protocols import Act, Done, GaveUp, Situation
 from wonderful_team.core.values import Observation, PlannedAction, RobotState, StepReport, Trial
 from wonderful_team.runtime import rollout
@@ -87,6 +88,49 @@ def test_what_came_to_lie_on_something_is_let_go_of_and_nothing_else(stopped_by:
     world = FailingArm(holding=True, stopped_by=stopped_by)
     ran(world, replans=1)
     assert [action.kind for action in world.done] == ["gripper", *then]
+
+
+@dataclass
+class JammedArm(SquaresWorld):
+    """An arm that grips a thing and then lifts it so far, where something presses on it."""
+
+    vocabulary: Vocabulary = ARM
+    lifted_m: float = 0.0
+    done: list[Action] = field(default_factory=list)
+
+    def observe(self) -> Observation:
+        seen = super().observe()
+        return replace(seen, robot=RobotState(np.array([0.5, 0.0, 0.1]), 0.2, self._holding))
+
+    @property
+    def _holding(self) -> bool:
+        return bool(self.done) and not (isinstance(self.done[-1], Gripper) and self.done[-1].state == "open")
+
+    def execute(self, action: Action) -> StepReport:  # type: ignore[override]
+        self.done.append(action)
+        rises = isinstance(action, MoveTo)
+        told = {"holding": self._holding, "tool_m": (0.5, 0.0, 0.1 + (self.lifted_m if rises else 0.0))}
+        told |= {"stopped_by": "collision"} if rises else {}
+        return StepReport(action, not rises, told, "something pressed on the arm" if rises else None)
+
+
+class Lifts(Opens):
+    """Grips and lifts, and is done when it is asked again."""
+
+    def decide(self, situation: Situation) -> Act | Done | GaveUp:
+        self.seen.append(situation)
+        over = Pose.at((0.5, 0.0, 0.2))
+        close = PlannedAction(CloseStep("G1"), Gripper("close"))
+        rise = PlannedAction(MoveStep("G1", At("T1"), "above"), MoveTo(over))
+        return Act((close, rise)) if len(self.seen) == 1 else Done("as good as it gets")
+
+
+@pytest.mark.parametrize(("lifted_m", "then"), [(0.002, ["gripper", "home"]), (0.03, [])], ids=["jammed", "lifted"])
+def test_what_could_not_be_lifted_is_let_go_of_where_it_stands(lifted_m: float, then: list[str]) -> None:
+    world = JammedArm(lifted_m=lifted_m)
+    trial = rollout(Lifts(), world, replans=1)
+    assert trial.gates[0].admitted, trial.gates[0].reasons
+    assert [action.kind for action in world.done] == ["gripper", "move_to", *then]
 
 
 def test_of_a_plan_that_was_read_exactly_its_actions_run() -> None:

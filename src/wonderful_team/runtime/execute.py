@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
@@ -35,6 +36,8 @@ from wonderful_team.runtime.seen_checks import still_free_checks
 from wonderful_team.runtime.stage import Stage
 from wonderful_team.runtime.staleness import staleness_checks, touched, watched
 
+LIFTED_M = 0.005
+"""What the fingers hold was not lifted while they are no farther than this from where they closed [m]."""
 Check: TypeAlias = Callable[[SubgoalRun, tuple[str, ...]], str]
 """Asked after a subgoal with what the plan did not expect: why to stop there, or ""."""
 
@@ -248,11 +251,11 @@ class Execution:
     ) -> Observation:
         """Home with an empty hand where the plan ends early, through the gate like everything else: from there the whole scene is seen.
 
-        What came to lie on something on its way down is let go of there. Where a person consents to plans, nothing moves that she has
-        not read; whatever else is held stays where it is.
+        What came to lie on something on its way down is let go of there, and so is what was gripped and could not be lifted. Where a
+        person consents to plans, nothing moves that she has not read; whatever else is held stays where it is.
         """
         kinds = self._world.vocabulary.kinds
-        lies = bool(reports) and _lies_on_something(reports[-1])
+        lies = bool(reports) and (_lies_on_something(reports[-1]) or _never_lifted(reports))
         idle = last.robot is not None and (lies or not last.robot.holding) and not isinstance(failed.action, Home)
         if not (self._again and idle and self._approval is None and Home.kind in kinds):
             return last
@@ -319,6 +322,18 @@ def _lies_on_something(report: StepReport) -> bool:
     """Whether an arm was stopped on its way down as what it holds touched something."""
     told = report.measured
     return not report.executed and bool(told.get("holding")) and told.get("stopped_by") == "contact"
+
+
+def _never_lifted(reports: Sequence[StepReport]) -> bool:
+    """Whether what an arm holds stands where it was gripped: it may be jammed, or heavier than it looks."""
+    last = reports[-1].measured
+    close = next(
+        (one for one in reversed(reports) if isinstance(one.action, Gripper) and one.action.state == "close"), None
+    )
+    gripped_m, now_m = (None if close is None else close.measured.get("tool_m")), last.get("tool_m")
+    if reports[-1].executed or not last.get("holding") or gripped_m is None or now_m is None:
+        return False
+    return math.dist(gripped_m, now_m) <= LIFTED_M
 
 
 def _only_consent(report: GateReport) -> bool:

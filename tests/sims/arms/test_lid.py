@@ -174,6 +174,21 @@ def test_the_lid_hangs_level_from_its_handle_and_the_block_falls_in(seed: int) -
         world.close()
 
 
+@pytest.mark.parametrize(("tilt_deg", "aside_m"), [(0.0, 0.0), (3.0, 0.001), (-4.0, -0.001)])
+def test_a_lid_that_falls_back_on_its_box_lies_on_the_rim_and_does_not_stick_in_it(
+    world: ArmWorld, tilt_deg: float, aside_m: float
+) -> None:
+    rest_m = float(world._table.poses()["lid"].position_m[2])
+    box = box_m(world)
+    half = math.radians(tilt_deg) / 2
+    fall = Pose((box[0] + aside_m, box[1], rest_m + 0.15), (math.cos(half), math.sin(half), 0.0, 0.0))
+    set_down(world, "lid", fall.position_m, fall)
+    world._table.robot.rest(1.5)
+    lies = world._table.poses()["lid"].position_m
+    assert float(lies[2]) > rest_m - 0.002
+    assert np.hypot(*(lies - box)[:2]) < 0.01
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("task", ["lid_box/one", "lid_box/two"])
 def test_the_whole_team_lifts_the_lid_first(task: str) -> None:

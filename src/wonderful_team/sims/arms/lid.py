@@ -19,6 +19,7 @@ from wonderful_team.core.actions import Action, PickPlace
 from wonderful_team.core.geometry import Pose
 from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.protocols import Score
+from wonderful_team.sims.arms.held import STIFF
 from wonderful_team.sims.arms.model import BuiltArm, upright
 from wonderful_team.sims.arms.oracle import arm_actions, grasp_yaw
 from wonderful_team.sims.arms.robot import Robot
@@ -73,7 +74,10 @@ class ClosedBox:
         self._count = 0
 
     def furnish(self, spec: Any) -> None:
-        """Nothing beside its things."""
+        """A lid that does not sink into the rim it falls on: plate and walls are so thin that it would stick there, pushed from both sides."""
+        for geom in (*spec.body(self.lid.name).geoms, *spec.body(self.box.name).geoms):
+            if geom.contype:
+                geom.solref[:2] = STIFF
 
     def decorate(self, scene: Any) -> None:
         """Nothing is left behind."""

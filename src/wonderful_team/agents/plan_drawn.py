@@ -36,7 +36,7 @@ def plan_drawn(scene: SceneShown, grounded: Mapping[str, GroundedTarget], action
             carried = isinstance(action.step, PickPlaceStep)
             arrows.append(PathMark(path, label, _swept(scene, action), bowed=carried))
     arrows += gripped_ways(view, actions)
-    drawn = mark_targets(replace(view, name=f"{view.name} with the plan"), scene.view, grounded)
+    drawn = mark_targets(view.named(f"{view.name} with the plan"), scene.view, grounded)
     return drawn.marked(*arrows, *turns.values())
 
 

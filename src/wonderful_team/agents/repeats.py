@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 from wonderful_team.core.pictures import Axes, Picture
 from wonderful_team.core.values import Part, Words
+from wonderful_team.images import same_pixels
 
 
 def without_repeats(parts: Sequence[Part]) -> tuple[Part, ...]:
@@ -51,7 +52,7 @@ def without_repeats(parts: Sequence[Part]) -> tuple[Part, ...]:
 
 def _shows(one: Picture, other: Picture) -> bool:
     """Whether `one` shows all that `other` does: the same pixels with at least its marks."""
-    if one.size_px != other.size_px or one.hash != other.hash:
+    if not same_pixels(one, other):
         return False
     ticked = any(isinstance(mark, Axes) for mark in one.marks)
     return all(ticked if isinstance(mark, Axes) else mark in one.marks for mark in other.marks)

@@ -269,6 +269,10 @@ class Picture:
         """The same picture with these marks added."""
         return replace(self, marks=self.marks + marks)
 
+    def named(self, name: str) -> Picture:
+        """The same picture under another name."""
+        return replace(self, name=name)
+
     def mark(self, kind: type[M]) -> list[M]:
         """All marks of one kind, in order."""
         return [mark for mark in self.marks if isinstance(mark, kind)]

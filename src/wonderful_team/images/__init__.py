@@ -9,7 +9,7 @@ from wonderful_team.images.draw import draw, line_width_px
 from wonderful_team.images.encode import to_jpeg, to_png
 from wonderful_team.images.load import OWN_FORMATS, load_picture, open_picture
 from wonderful_team.images.overview import action_arrows, overview, swept_width, swept_widths
-from wonderful_team.images.resample import picture_of, resampled, resampled_depth, valid_mask
+from wonderful_team.images.resample import picture_of, resampled, resampled_depth, same_pixels, valid_mask
 from wonderful_team.images.turn_marks import action_turns, seen_from_above
 
 __all__ = [
@@ -34,6 +34,7 @@ __all__ = [
     "region_change",
     "resampled",
     "resampled_depth",
+    "same_pixels",
     "seen_from_above",
     "swept_width",
     "swept_widths",

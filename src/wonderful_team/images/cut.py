@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import replace
 from typing import Literal, TypeAlias
 
 from wonderful_team.core.geometry import Box, Frame
@@ -68,7 +67,7 @@ def whole(
             factor = math.ceil(long_side_px / long)
             zoom = factor if factor * long <= max_side_px else long_side_px / long
         frame = Frame.whole(view.id, view.size_px, zoom)
-    return replace(picture_of(view, frame, name), marks=tuple(marks))
+    return picture_of(view, frame, name).marked(*marks)
 
 
 def crop(
@@ -98,7 +97,7 @@ def crop(
         ValueError: The box lies outside the view.
     """
     frame = crop_frame(view, (box, *also), margin=margin, min_side_px=min_side_px, max_side_px=max_side_px)
-    return replace(picture_of(view, frame, name), marks=tuple(marks))
+    return picture_of(view, frame, name).marked(*marks)
 
 
 def crop_frame(
@@ -140,7 +139,7 @@ def edge_strips(view: View, box: Box) -> dict[tuple[Edge, StripSide], Picture]:
             frame = _strip_frame(view, whole_pixels(window))
             start, end = (frame.point_to_picture(point) for point in line)
             picture = picture_of(view, frame, f"strip {edge} {side}")
-            strips[edge, side] = replace(picture, marks=(LineMark(start, end),))
+            strips[edge, side] = picture.marked(LineMark(start, end))
     return strips
 
 

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import math
 from typing import TypeAlias
 
 import numpy as np
 
 from wonderful_team.core.geometry import Frame
+from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.kept import Kept
-from wonderful_team.core.pictures import Panel, Picture
+from wonderful_team.core.once import Once
+from wonderful_team.core.pictures import Panel, Picture, checked_rgb
+from wonderful_team.core.values import LaterPicture
 from wonderful_team.images.canvas import INK, WHITE, Canvas
 from wonderful_team.images.lettering import plain
 
@@ -33,12 +37,13 @@ def fit(groups: tuple[Group, ...]) -> bool:
 
 _MOST_BYTES = 48_000_000
 _kept: Kept[tuple[tuple[Group, ...], str], Picture] = Kept(
-    _MOST_BYTES, lambda made: made.rgb.nbytes + sum(panel.picture.rgb.nbytes for panel in made.panels)
+    _MOST_BYTES,
+    lambda made: sum(3 * math.prod(one.size_px) for one in (made, *(panel.picture for panel in made.panels))),
 )
 
 
 def side_by_side(groups: tuple[Group, ...], name: str) -> Picture:
-    """One picture that holds these from left to right, row by row, tops in line, each group's name below it.
+    """One picture that holds these from left to right, row by row, tops in line, each group's name below it; drawn when it is looked at.
 
     What came from where stands in its `panels`; its frame is that of the first. The same picture for the same groups.
 
@@ -55,23 +60,31 @@ def _beside(groups: tuple[Group, ...], name: str) -> Picture:
         raise ValueError("side_by_side needs at least one picture, and none with marks")
     rows = _rows(groups)
     size = _size_px(rows)
-    canvas = Canvas.over(np.full((size[1], size[0], 3), _GREY, np.uint8))
-    panels, top = [], 0
+    panels, names, top = list[Panel](), list[tuple[str, int, int]](), 0
     for row in rows:
         left, high = 0, _high_px(row)
         for group in row:
             x = left
             for picture in group[1]:
-                across, down = picture.size_px
-                canvas.rgb[top : top + down, x : x + across] = picture.rgb
                 panels.append(Panel(picture, (x, top)))
-                x += across + GAP_PX
-            canvas.plate(plain(group[0]), left, top + high + 2, colour=WHITE, back=INK, font_px=NAME_PX, alpha=1.0)
+                x += picture.size_px[0] + GAP_PX
+            names.append((plain(group[0]), left, top + high + 2))
             left += _cell_px(group) + APART_PX
         top += high + _STRIP_PX
     first = pictures[0].frame
     frame = Frame(first.view_id, first.T_view_picture, size, first.valid)
-    return Picture(name, canvas.rgb, frame, panels=tuple(panels))
+    return LaterPicture(name, frame, Once(lambda: (_drawn(size, panels, names), None)), panels=panels)
+
+
+def _drawn(size: tuple[int, int], panels: list[Panel], names: list[tuple[str, int, int]]) -> Array:
+    """The pixels, read-only: the panels, and each name with its left end and its top below its group."""
+    canvas = Canvas.over(np.full((size[1], size[0], 3), _GREY, np.uint8))
+    for panel in panels:
+        (x, top), (across, down) = panel.origin_px, panel.picture.size_px
+        canvas.rgb[top : top + down, x : x + across] = panel.picture.rgb
+    for words, x, y in names:
+        canvas.plate(words, x, y, colour=WHITE, back=INK, font_px=NAME_PX, alpha=1.0)
+    return checked_rgb(canvas.rgb)
 
 
 def _rows(groups: tuple[Group, ...]) -> list[list[Group]]:

@@ -8,8 +8,9 @@ import numpy as np
 from wonderful_team.core.geometry import Box, Frame
 from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.kept import Kept
-from wonderful_team.core.pictures import Picture
-from wonderful_team.core.values import View
+from wonderful_team.core.once import Once
+from wonderful_team.core.pictures import Picture, checked_depth, checked_rgb
+from wonderful_team.core.values import LaterPicture, View
 
 _PAD_LIGHT, _PAD_DARK = 150, 118  # the two greys of the padding's stripes
 _ROUNDS = 2  # of giving a pixel its colour back that enlarging took
@@ -27,7 +28,7 @@ _kept: Kept[tuple[int, bytes, tuple[int, int], tuple[float, ...]], tuple[Array, 
 
 
 def picture_of(view: View, frame: Frame, name: str) -> Picture:
-    """The picture that shows `frame` of a view, without marks.
+    """The picture that shows `frame` of a view, without marks; its pixels are made when they are first asked for.
 
     Args:
         view: Where the pixels come from.
@@ -37,9 +38,33 @@ def picture_of(view: View, frame: Frame, name: str) -> Picture:
     Raises:
         ValueError: The frame is turned, mirrored or not on whole pixels.
     """
-    rgb = resampled(view.rgb, frame)
-    depth_m = None if view.depth_m is None else resampled_depth(view.depth_m, frame)
-    return Picture(name, rgb, frame, depth_m)
+    _edges(frame)
+
+    def make() -> tuple[Array, Array | None]:
+        rgb = resampled(view.rgb, frame)
+        depth_m = None if view.depth_m is None else resampled_depth(view.depth_m, frame)
+        return checked_rgb(rgb), checked_depth(depth_m, rgb.shape[:2])
+
+    return LaterPicture(name, frame, Once(make), source=view)
+
+
+def same_pixels(one: Picture, other: Picture) -> bool:
+    """Whether two pictures show the same. Of cuts of views alike in size, zoom and padding the views' own pixels tell, before they are enlarged."""
+    if one.size_px != other.size_px:
+        return False
+    first, second = (item.source if isinstance(item, LaterPicture) else None for item in (one, other))
+    if first is None or second is None or not _alike(one.frame, other.frame):
+        return one.hash == other.hash
+    same_window = np.array_equal(one.frame.T_view_picture, other.frame.T_view_picture)
+    if same_window and first.has_the_pixels_of(second):
+        return True
+    return np.array_equal(_cut(first.rgb, one.frame)[0], _cut(second.rgb, other.frame)[0])
+
+
+def _alike(one: Frame, other: Frame) -> bool:
+    """Whether two frames enlarge as much, and show padding at the same pixels."""
+    zoom = np.array_equal(one.T_view_picture[:2, :2], other.T_view_picture[:2, :2])
+    return zoom and one.valid.as_tuple == other.valid.as_tuple
 
 
 def resampled(rgb: Array, frame: Frame) -> Array:
@@ -85,8 +110,12 @@ def valid_mask(frame: Frame) -> Array:
     return np.asarray(rows[:, None] & columns[None, :])
 
 
-def _cut(image: Array, frame: Frame) -> tuple[Array, float, float]:
-    """The window's own pixels, the image's border repeated outside, and the zoom along x and y."""
+def _edges(frame: Frame) -> list[int]:
+    """The frame's window in whole view pixels: x0, y0, x1, y1.
+
+    Raises:
+        ValueError: It is turned, mirrored or not on whole pixels.
+    """
     matrix = frame.T_view_picture
     if matrix[0, 1] or matrix[1, 0] or matrix[0, 0] <= 0 or matrix[1, 1] <= 0:
         raise ValueError("picture frames must be upright: neither turned nor mirrored")
@@ -94,7 +123,13 @@ def _cut(image: Array, frame: Frame) -> tuple[Array, float, float]:
     edges = [round(value) for value in window.as_tuple]
     if any(abs(edge - value) > 1e-3 for edge, value in zip(edges, window.as_tuple, strict=True)):
         raise ValueError(f"window {window.as_tuple} must have whole view pixels as its edges")
-    x0, y0, x1, y1 = edges
+    return edges
+
+
+def _cut(image: Array, frame: Frame) -> tuple[Array, float, float]:
+    """The window's own pixels, the image's border repeated outside, and the zoom along x and y."""
+    x0, y0, x1, y1 = _edges(frame)
+    matrix = frame.T_view_picture
     height, width = image.shape[:2]
     columns = np.clip(np.arange(x0, x1), 0, width - 1)
     rows = np.clip(np.arange(y0, y1), 0, height - 1)

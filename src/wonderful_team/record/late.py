@@ -11,7 +11,7 @@ from typing import Any
 from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.interrupts import held
 from wonderful_team.core.protocols import Event
-from wonderful_team.core.values import Observation, Request, SentPicture, Trial
+from wonderful_team.core.values import LaterPicture, LaterView, Observation, Request, SentPicture, Trial
 from wonderful_team.errors import FileNotWrittenError
 from wonderful_team.record.recorder import Recorder
 
@@ -142,14 +142,16 @@ class LateRecorder:
 
 
 def _held_by(content: Any) -> Iterator[tuple[object, int]]:
-    """The pictures and files that an event holds on to, and their bytes."""
+    """The pictures and files that an event holds on to, and their bytes; what nobody has asked for yet is made when it is written."""
     match content:
         case Observation():
             for view in content.views.values():
-                yield from _pixels(view.rgb, view.depth_m)
+                if not isinstance(view, LaterView) or view.drawn:
+                    yield from _pixels(view.rgb, view.depth_m)
         case Request():
             for picture in content.pictures:
-                yield from _pixels(picture.rgb, picture.depth_m)
+                if not isinstance(picture, LaterPicture) or picture.made:
+                    yield from _pixels(picture.rgb, picture.depth_m)
         case SentPicture():
             yield content.file, len(content.file)
             yield from _pixels(content.rgb)

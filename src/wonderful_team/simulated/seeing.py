@@ -17,7 +17,7 @@ from wonderful_team.core.geometry import Box, Frame
 from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.pictures import Picture, Point
 from wonderful_team.core.protocols import SceneTruth
-from wonderful_team.core.values import GroundTruthView, TrueThing
+from wonderful_team.core.values import GroundTruthView, LaterPicture, TrueThing
 from wonderful_team.simulated.agreement import difference, expected
 
 LEAST_PX = 8
@@ -177,6 +177,12 @@ class Eyes:
         return None if sight is None else Seen(picture, sight, observation_log[0], self.truth)
 
     def _match(self, picture: Picture, observation_log: Sequence[GroundTruthView]) -> GroundTruthView | None:
+        source = picture.source if isinstance(picture, LaterPicture) else None
+        if source is not None:
+            # Nobody has put other pixels into it: they are this view's, seen through this frame.
+            own = next((sight for sight in observation_log if sight.view.has_the_pixels_of(source)), None)
+            if own is not None:
+                return own
         key = id(picture.rgb)
         known = self._known.get(key)
         if known is not None and known.holds(picture, observation_log[0]):

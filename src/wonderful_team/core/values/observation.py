@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-import threading
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -15,6 +14,7 @@ import numpy as np
 from wonderful_team.core.geometry import Camera
 from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.notebook import card
+from wonderful_team.core.once import Once
 from wonderful_team.core.pictures import checked_depth, checked_rgb, picture_hash, pixels_hash
 from wonderful_team.core.text import counted, picture_names, spoken
 from wonderful_team.errors import ConfigError
@@ -55,9 +55,18 @@ class View:
     def hash(self) -> str:
         return picture_hash(self.rgb)
 
+    @property
+    def drawn(self) -> bool:
+        """Whether its pixels are there."""
+        return True
+
     def without_depth(self) -> View:
         """The same picture, for those who read no depth."""
         return replace(self, depth_m=None)
+
+    def has_the_pixels_of(self, other: View) -> bool:
+        """Whether both hold one and the same image; nothing is drawn for that."""
+        return self is other or (self.drawn and other.drawn and self.rgb is other.rgb)
 
 
 class LaterView(View):
@@ -67,6 +76,9 @@ class LaterView(View):
         size_px: Width, height of what `draw` gives.
         draw: Gives rgb and depth_m of `View` as they were at `time_s`, whenever it is called; called once at most.
     """
+
+    _drawn: Once[tuple[Array, Array | None]]
+    _origin: object
 
     def __new__(cls, *args: Any, **fields: Any) -> Any:
         # `dataclasses.replace` hands over the fields of a view: what it makes has its pixels.
@@ -81,8 +93,14 @@ class LaterView(View):
         draw: Callable[[], tuple[Array, Array | None]],
         camera: Camera | None = None,
     ) -> None:
+        def drawn() -> tuple[Array, Array | None]:
+            rgb, depth_m = draw()
+            rgb = checked_rgb(rgb)
+            return rgb, checked_depth(depth_m, rgb.shape[:2])
+
         given = {"id": id, "camera_name": camera_name, "time_s": time_s, "camera": camera}
-        self.__dict__.update(given, _size_px=size_px, _draw=draw, _pixels=None, _lock=threading.Lock())
+        pixels = Once(drawn)
+        self.__dict__.update(given, _size_px=size_px, _drawn=pixels, _origin=pixels)
 
     @property
     def size_px(self) -> tuple[int, int]:
@@ -98,17 +116,17 @@ class LaterView(View):
         return self._drawn()[1]
 
     def without_depth(self) -> View:
-        return LaterView(self.id, self.camera_name, self.time_s, self.size_px, lambda: (self.rgb, None), self.camera)
+        bare = LaterView(self.id, self.camera_name, self.time_s, self.size_px, lambda: (self.rgb, None), self.camera)
+        bare.__dict__["_origin"] = self._origin
+        return bare
 
-    def _drawn(self) -> tuple[Array, Array | None]:
-        own = self.__dict__
-        with own["_lock"]:
-            if own["_pixels"] is None:
-                rgb, depth_m = own["_draw"]()
-                rgb = checked_rgb(rgb)
-                own["_pixels"], own["_draw"] = (rgb, checked_depth(depth_m, rgb.shape[:2])), None
-            pixels: tuple[Array, Array | None] = own["_pixels"]
-            return pixels
+    def has_the_pixels_of(self, other: View) -> bool:
+        alike = isinstance(other, LaterView) and self._origin is other._origin
+        return alike or super().has_the_pixels_of(other)
+
+    @property
+    def drawn(self) -> bool:
+        return self._drawn.made
 
 
 @dataclass(frozen=True, eq=False)

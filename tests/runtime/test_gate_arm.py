@@ -8,11 +8,12 @@ import numpy as np
 
 from tests.motion.block_scenes import LIMITS, Block, affine_top, area, found, scene
 from tests.runtime.carrying import gate_of_carrying
-from wonderful_team.core.actions import At, CloseStep, MoveStep, OpenStep, RotateGripperStep
+from wonderful_team.core.actions import ARM, At, CloseStep, MoveStep, OpenStep, RotateGripperStep
 from wonderful_team.core.geometry import Box
-from wonderful_team.core.values import GateReport
+from wonderful_team.core.values import GateReport, Observation
 from wonderful_team.motion import ground_actions
-from wonderful_team.runtime.course import stages_of
+from wonderful_team.runtime.gate import check_gate
+from wonderful_team.runtime.stage import Stage
 
 CAMERA = affine_top()
 RED, BLUE = Block(0.38, -0.34, 0.48, -0.24), Block(0.48, 0.06, 0.58, 0.16)
@@ -56,7 +57,17 @@ def test_what_is_let_go_of_where_it_stands_has_not_moved() -> None:
         RotateGripperStep("G1", 90.0),
         CloseStep("G1"),
     )
-    before, *_, after = stages_of(ground_actions(steps, {"T1": target}, view, LIMITS), None, view, LIMITS)
+    stages: list[Stage] = []
+    check_gate(
+        ground_actions(steps, {"T1": target}, view, LIMITS),
+        vocabulary=ARM,
+        limits=LIMITS,
+        plan=None,
+        then=None,
+        now=Observation({"top": view}),
+        stages=stages,
+    )
+    before, *_, after = stages
     assert before.relief is not None
     assert after.relief is not None
     high = [np.sort(np.round(one[one[:, 2] > 0.03], 4), axis=0) for one in (before.relief.xyz_m, after.relief.xyz_m)]

@@ -6,7 +6,7 @@ import math
 import threading
 import weakref
 from collections import deque
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import cv2
@@ -44,11 +44,14 @@ class Relief:
         px: Pixel of the view at which each was seen, shape (N, 2); NaN for points that are only expected. Fast where a column
             of it lies together in memory.
         spacing_m: Usual distance between neighbouring points [m].
+        row_starts: Where each row of the view starts among the points, and where the last one ends, shape (rows + 1,). Whatever
+            comes behind is only expected. Empty where that is not known.
     """
 
     xyz_m: Array
     px: Array
     spacing_m: float
+    row_starts: Array = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
 
     @classmethod
     def of(cls, view: View) -> Relief | None:
@@ -76,7 +79,17 @@ class Relief:
         heights[known] = points[:, 2]
         points[:, 2] = np.minimum(points[:, 2], _without_specks(heights)[known])
         steps = np.linalg.norm(np.diff(points[:, :2], axis=0), axis=1)
-        return cls(points, px, float(max(np.median(steps), 1e-4)) if len(steps) else _FINEST_M)
+        spacing_m = float(max(np.median(steps), 1e-4)) if len(steps) else _FINEST_M
+        return cls(points, px, spacing_m, np.append(0, np.cumsum(known.sum(axis=1))))
+
+    def with_expected(self, points_m: Array) -> Relief:
+        """A copy with points behind its own that are only expected, shape (M, 3) [m]."""
+        unseen = np.full((2, len(points_m)), np.nan)
+        return replace(
+            self,
+            xyz_m=np.concatenate([self.xyz_m.T, points_m.T], axis=1).T,
+            px=np.concatenate([self.px.T, unseen], axis=1).T,
+        )
 
     @property
     def cell_m(self) -> float:
@@ -85,12 +98,26 @@ class Relief:
 
     def in_box(self, box: Box) -> Array:
         """Which points show in a box of the view, shape (N,) bool."""
-        x, y = self.px.T
-        return np.asarray((x >= box.x0) & (x <= box.x1) & (y >= box.y0) & (y <= box.y1))
+        found = np.zeros(len(self.px), dtype=bool)
+        rows, inside = self._rows_in_box(box)
+        found[rows] = inside
+        return found
+
+    def _rows_in_box(self, box: Box) -> tuple[slice, Array]:
+        """The points of the rows that a box of the view touches, and which of them show in it."""
+        rows = slice(0, len(self.px))
+        if len(self.row_starts):
+            last = len(self.row_starts) - 1
+            low = min(max(math.ceil(box.y0 - 0.5), 0), last)
+            high = min(max(math.floor(box.y1 - 0.5) + 1, low), last)
+            rows = slice(int(self.row_starts[low]), int(self.row_starts[high]))
+        x, y = self.px[rows].T
+        return rows, np.asarray((x >= box.x0) & (x <= box.x1) & (y >= box.y0) & (y <= box.y1))
 
     def all_round(self, box: Box) -> float | None:
         """Height of one level that shows close to a box of the view on all four of its sides [m]; None where there is none."""
-        return level_all_round([self.xyz_m[self.in_box(side), 2].tolist() for side in box.sides])
+        sides = [self._rows_in_box(side) for side in box.sides]
+        return level_all_round([self.xyz_m[rows, 2][inside].tolist() for rows, inside in sides])
 
     def inside(self, region: Any) -> Array:
         """Which points lie in a region of the table (a shapely shape), shape (N,) bool."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -21,11 +20,9 @@ from wonderful_team.core.actions import (
 from wonderful_team.core.geometry import Box
 from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.motions import Carry, Reach, Slide, Stay
-from wonderful_team.core.values import GroundedTarget, Limits, Plan, PlannedAction, View
-from wonderful_team.images.keep_out import table_height_m
+from wonderful_team.core.values import GroundedTarget, Plan, PlannedAction, View
 from wonderful_team.images.relief import RAISED_M, Relief, covered, outline
 from wonderful_team.runtime.stage import Carried, Stage
-from wonderful_team.runtime.sweep import sweep_of
 
 RING_SHARE, LEAST_RING_PX = 0.15, 2.0
 """How far round a box its support is looked for: share of its smaller side, and at least so many pixels."""
@@ -277,16 +274,16 @@ class Course:
         left = relief.xyz_m[own].copy()
         left[:, 2] = base
         moved = _moved(relief.xyz_m[own], base, start, end, yaw_rad)
-        points, px = np.vstack([relief.xyz_m, left]), np.vstack([relief.px, np.full((len(left), 2), np.nan)])
+        self._relief = after = relief.with_expected(left)
+        points, px = after.xyz_m, after.px
         # What it covers there is not the surface any more; when it leaves again, its support is.
         mine = np.append(own, np.zeros(len(left), dtype=bool))
-        hidden = ~mine & Relief(points, px, relief.spacing_m).inside(outline(moved[:, :2], relief.cell_m))
+        hidden = ~mine & after.inside(outline(moved[:, :2], relief.cell_m))
         hidden[hidden] = covered(moved[:, :2], points[hidden, :2], relief.cell_m)
         # Slats between whose gaps it was put are covered too: it rests on them, whatever the one place point showed.
         hidden &= points[:, 2] < max(end[2] + RAISED_M, float(moved[:, 2].max()))
         points[hidden], px[hidden] = GONE_M, np.nan
         points[mine], px[mine] = moved, np.nan
-        self._relief = Relief(points, px, relief.spacing_m)
         indices = np.flatnonzero(own)
         # A point belongs to what took it along last.
         self._nameless = [(others[~own[others]], at_m) for others, at_m in self._nameless]
@@ -348,16 +345,6 @@ class Course:
             area = self._grounded[step.to.target].target.kind == "area"
             return None if area and self._held is not None else self.region(step.to.target, end)
         return self._relief.standing(end[:2], self._table_z_m)
-
-
-def stages_of(actions: Sequence[PlannedAction], plan: Plan | None, view: View, limits: Limits) -> tuple[Stage, ...]:
-    """The scene as it is expected before each action."""
-    course, tool_m = Course(view, plan, table_height_m(limits)), None
-    stages = []
-    for planned in actions:
-        stages.append(course.next(planned, tool_m))
-        tool_m = None if planned.action is None else sweep_of(planned.action, limits, tool_m).after_m
-    return tuple(stages)
 
 
 def _shifted(region: Any, start: Array, end: Array, yaw_rad: float) -> Any:

@@ -27,7 +27,6 @@ from wonderful_team.core.values import (
 )
 from wonderful_team.errors import ConfigError
 from wonderful_team.runtime.approval import Approval, Approver, Declined, Proposal
-from wonderful_team.runtime.course import stages_of
 from wonderful_team.runtime.expected import Expectations
 from wonderful_team.runtime.gate import check_gate
 from wonderful_team.runtime.read_plan_checks import read_plan_checks
@@ -76,6 +75,7 @@ class Execution:
         self._age_limit_s: float | None = None
         self._again = False
         self._in_view = False
+        self._stages: list[Stage] = []
         self.refusal: GateReport | None = None
         self.declined: Declined | None = None
 
@@ -153,7 +153,7 @@ class Execution:
         approval: Approval | Declined | None,
         page: str,
     ) -> tuple[Observation, GateReport]:
-        now = self._world.observe()
+        now, self._stages = self._world.observe(), []
         report = deadline.bounded(
             "the safety gate",
             partial(
@@ -169,6 +169,7 @@ class Execution:
                 expected_plan_id=read.plan.id if read is not None else None,
                 must_run=True,
                 max_age_s=self._age_limit_s,
+                stages=self._stages,
             ),
         )
         if read is None:
@@ -187,8 +188,7 @@ class Execution:
     ) -> RolloutEnd | None:
         actions, plan = decision.actions, decision.plan
         expected_change: list[Box] = []
-        # What is expected before the first action was checked by the gate.
-        stages = stages_of(actions, plan, now.main, self._world.limits) if len(actions) > 1 else ()
+        stages, self._stages = self._stages, []
         last = before = now
         reports: list[StepReport] = []
         expected = None if plan is None else Expectations(actions, plan, now, self._in_view)

@@ -62,6 +62,7 @@ def check_gate(
     max_age_s: float | None = MAX_AGE_S,
     tool_radius_m: float = TOOL_RADIUS_M,
     measured_heights: bool = False,
+    stages: list[Stage] | None = None,
 ) -> GateReport:
     """Check actions before anything moves.
 
@@ -82,6 +83,7 @@ def check_gate(
         tool_radius_m: Half-width of what moves, kept clear of keep-out regions [m].
         measured_heights: Refuse heights that no depth shows, for a camera without depth; a world whose robot finds
             surfaces by itself does without. Where there is depth, it must show every point that is touched.
+        stages: Gets the scene as it is expected before each action, for who watches them run; complete when they are admitted.
 
     Returns:
         Every check with its value, limit and margin; `admitted` when none failed.
@@ -101,6 +103,8 @@ def check_gate(
         found = form_checks(planned, vocabulary)
         if all(check.ok or check.name == "vocabulary" for check in found):
             found += passage.next(planned)
+            if stages is not None and passage.stage is not None:
+                stages.append(passage.stage)
             profile = passage.profile(index, len(actions))
             profiles += [] if profile is None else [profile]
         else:
@@ -119,7 +123,11 @@ def check_gate(
 
 
 class _Passage:
-    """Follows actions one after the other: where the tool is, what it carries, what stands where."""
+    """Follows actions one after the other: where the tool is, what it carries, what stands where.
+
+    Attributes:
+        stage: The scene before the action that was checked last; None where nobody knows.
+    """
 
     def __init__(
         self,
@@ -136,6 +144,7 @@ class _Passage:
         self._course = Course(now.main, plan, table_height_m(limits), holding=bool(now.robot and now.robot.holding))
         self._tool_m = _tool_m(now)
         self._way: tuple[Stage, tuple[Piece, ...]] | None = None
+        self.stage: Stage | None = None
 
     def lost(self) -> None:
         self._tool_m = None
@@ -148,12 +157,12 @@ class _Passage:
         return profile_of(index, pieces, least_clearance_m(stage), actions, isinstance(stage.motion, Reach))
 
     def next(self, planned: PlannedAction) -> list[GateCheck]:
-        self._way = None
+        self._way = self.stage = None
         if planned.action is None:
             return self._pixel_checks(planned)
         held = self._held(planned)
         reach_px = 0.0 if held is None else math.hypot(held.width, held.height) / 2
-        stage = self._course.next(planned, self._tool_m)
+        self.stage = stage = self._course.next(planned, self._tool_m)
         sweep = sweep_of(planned.action, self._limits, self._tool_m)
         found = self._metre_checks(stage, sweep)
         found += agreement_checks(planned, self._now.main, reach_px)

@@ -91,8 +91,7 @@ def place_checks(stage: Stage, limits: Limits) -> list[GateCheck]:
     if stage.support_m is not None:
         # What it is lifted off stays there.
         under = len(stage.support_m)
-        points, px = np.vstack([relief.xyz_m, stage.support_m]), np.vstack([relief.px, np.full((under, 2), np.nan)])
-        relief = Relief(points, px, relief.spacing_m)
+        relief = relief.with_expected(stage.support_m)
         apart, put = np.append(apart, np.ones(under, dtype=bool)), np.append(put, np.zeros(under, dtype=bool))
     # What was seen beside its old place left room for it there; what the plan itself put there does not.
     others = apart & np.isnan(relief.px[:, 0]) if stage.restored else apart

@@ -203,7 +203,8 @@ class Execution:
                 return RolloutEnd("failure", "gate", "; ".join(self._refused().reasons), final=read is not None)
             report = self._execute(planned, before, reports)
             seen = self._world.observe()
-            expected_change += touched(planned, plan, last.main, seen.main)
+            if index + 1 < len(actions):
+                expected_change += touched(planned, plan, last.main, seen.main)
             last = seen
             ends = index + 1 == len(actions) or actions[index + 1].step.subgoal != planned.step.subgoal
             if not report.executed:

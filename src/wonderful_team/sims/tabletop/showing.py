@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import threading
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any
 
 from wonderful_team.core.geometry import Pose
 from wonderful_team.core.geometry.arrays import Array
-from wonderful_team.core.values import Slot, SlotKind, View
+from wonderful_team.core.values import LaterView, Slot, SlotKind
 from wonderful_team.sims.tabletop.appearance import PLAIN_LIGHT
 from wonderful_team.sims.tabletop.cameras import CAMERA_NAMES
 from wonderful_team.sims.tabletop.drawing import open_renderer
@@ -56,26 +58,33 @@ class Studio:
     """Draws the pictures of an instruction: the table's own things in its own model, with props in a larger one."""
 
     def __init__(
-        self, built: BuiltModel, start_qpos: Array, props: Sequence[Thing], size_px: tuple[int, int], wanted: str | None
+        self,
+        built: BuiltModel,
+        start_qpos: Array,
+        props: Sequence[Thing],
+        size_px: tuple[int, int],
+        wanted: str | None,
+        table_renderer: Callable[[], Renderer | None],
     ) -> None:
+        """Without a table that is still open, `table_renderer` gives None, and a renderer is opened for each picture."""
         # The pictures were taken before, in ordinary light, by cameras that stood where they stand now.
         look = replace(built.look, light=PLAIN_LIGHT)
         self._own = bool(props) or look.light is not built.look.light
         self._built = build((*built.things, *props), size_px, built.tool, look) if self._own else built
         self._state = mj.MjData(self._built.model)
         self._start = _start_poses(built, start_qpos)
-        self._wanted = wanted
+        self._size_px, self._wanted, self._table_renderer = size_px, wanted, table_renderer
         self._renderer: Renderer | None = None
+        self._closed = False
+        self._lock = threading.Lock()
 
-    def slots(self, pictures: Mapping[str, Shown], table_renderer: Renderer) -> dict[str, Slot]:
-        """Every picture, from both cameras."""
-        renderer = self._draws_with(table_renderer)
-        return {name: self._slot(name, shown, renderer) for name, shown in pictures.items()}
+    def slots(self, pictures: Mapping[str, Shown]) -> dict[str, Slot]:
+        """Every picture, from both cameras, drawn when it is looked at."""
+        return {name: self._slot(name, shown) for name, shown in pictures.items()}
 
-    def masks(self, shown: Shown, camera: str, table_renderer: Renderer) -> dict[str, Array]:
+    def masks(self, shown: Shown, camera: str) -> dict[str, Array]:
         """Which pixels of a picture show each thing in it, props too, shape (H, W) bool by name."""
-        self._set_up(shown)
-        ids = self._draws_with(table_renderer).bodies(self._state, camera)
+        ids = self._drawn(shown, lambda renderer: renderer.bodies(self._state, camera))
         return {stand.thing: ids == self._built.body_id(stand.thing) for stand in shown.stands}
 
     def stands(self, shown: Shown) -> list[tuple[Thing, Pose]]:
@@ -89,25 +98,43 @@ class Studio:
 
     def close(self) -> None:
         """Give its renderer back; safe to call twice."""
-        if self._renderer is not None:
-            self._renderer.close()
-            self._renderer = None
+        with self._lock:
+            self._closed = True
+            if self._renderer is not None:
+                self._renderer.close()
+                self._renderer = None
 
-    def _draws_with(self, table_renderer: Renderer) -> Renderer:
-        """What draws its model: opened once, for the pictures and for the masks that may be asked for later."""
+    def _drawn(self, shown: Shown, draw: Callable[[Renderer], Array]) -> Array:
+        """One picture at a time: all are set up in the same state."""
+        with self._lock:
+            self._set_up(shown)
+            renderer = self._open()
+            if renderer is not None:
+                return draw(renderer)
+            renderer = open_renderer(self._built, self._wanted)[0]
+            try:
+                return draw(renderer)
+            finally:
+                renderer.close()
+
+    def _open(self) -> Renderer | None:
+        """What draws its model as long as the table is there: opened once, for the pictures and for the masks that may be asked for later."""
         if not self._own:
-            return table_renderer
-        if self._renderer is None:
+            return self._table_renderer()
+        if self._renderer is None and not self._closed:
             self._renderer = open_renderer(self._built, self._wanted)[0]
         return self._renderer
 
-    def _slot(self, name: str, shown: Shown, renderer: Renderer) -> Slot:
-        self._set_up(shown)
+    def _slot(self, name: str, shown: Shown) -> Slot:
         views = {}
         for camera in CAMERA_NAMES:
-            rgb = renderer.colours(self._state, camera, alone=shown.kind == "object")
-            views[camera] = View(f"slot:{name}:{camera}", camera, 0.0, rgb)
+            draw = partial(self._colours, shown, camera)
+            views[camera] = LaterView(f"slot:{name}:{camera}", camera, 0.0, self._size_px, draw)
         return Slot(name, shown.kind, views, shown.index)
+
+    def _colours(self, shown: Shown, camera: str) -> tuple[Array, None]:
+        alone = shown.kind == "object"
+        return self._drawn(shown, lambda renderer: renderer.colours(self._state, camera, alone=alone)), None
 
     def _set_up(self, shown: Shown) -> None:
         """Put everything where the picture shows it, and the rest out of sight."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import weakref
 from collections.abc import Mapping
 from functools import cached_property, partial
 from typing import Any
@@ -19,6 +20,7 @@ from wonderful_team.sims.tabletop.model import Thing, ToolName, build
 from wonderful_team.sims.tabletop.moving import settle
 from wonderful_team.sims.tabletop.options import Tiers
 from wonderful_team.sims.tabletop.registering import TabletopTask, filled
+from wonderful_team.sims.tabletop.renderer import Renderer
 from wonderful_team.sims.tabletop.rules import Rules
 from wonderful_team.sims.tabletop.showing import Studio
 from wonderful_team.sims.tabletop.simulated_table import SimulatedTable, poses_of
@@ -116,7 +118,7 @@ class Table(SimulatedTable):
 
     def slot_masks(self, slot: str, camera: str) -> dict[str, Array]:
         """Which pixels of an instruction's picture show each thing or prop, shape (H, W) bool by name."""
-        return self._studio.masks(self.scene.pictures[slot], camera, self.renderer())
+        return self._studio.masks(self.scene.pictures[slot], camera)
 
     def slot_stands(self, slot: str) -> list[tuple[Thing, Pose]]:
         """What an instruction's picture shows, props too, and where it stands in it."""
@@ -124,15 +126,22 @@ class Table(SimulatedTable):
 
     @cached_property
     def _studio(self) -> Studio:
-        return Studio(self.built, self._start_qpos, self.scene.props, self._size_px, self._wanted_renderer)
+        # The pictures that the table keeps hold the studio: it does not hold the table.
+        own = weakref.ref(self)
+
+        def renderer() -> Renderer | None:
+            table = own()
+            return None if table is None or table.closed else table.renderer()
+
+        return Studio(self.built, self._start_qpos, self.scene.props, self._size_px, self._wanted_renderer, renderer)
 
     @cached_property
     def _instruction(self) -> Instruction:
-        text = filled(self.task.instruction, self.scene.words)
-        return Instruction(text, self._studio.slots(self.scene.pictures, self.renderer()))
+        self.renderer()
+        return Instruction(filled(self.task.instruction, self.scene.words), self._studio.slots(self.scene.pictures))
 
     def instruction(self) -> Instruction:
-        """Words with their slots filled, and a picture for every picture slot; drawn once."""
+        """Words with their slots filled, and a picture for every picture slot, drawn when it is looked at."""
         return self._instruction
 
     def close(self) -> None:

@@ -10,8 +10,12 @@ import sys
 import types
 from collections.abc import Iterator
 
-THREADS = {name: "1" for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")}
-"""Variables by which numeric libraries take one core each."""
+THREADS = {
+    **dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "OPENCV_FOR_THREADS_NUM"), "1"),
+    # OpenGL without a graphics card: the thread that asks draws, with none beside it.
+    "LP_NUM_THREADS": "0",
+}
+"""Variables by which libraries that count and draw take one core each."""
 
 
 def started_by_spawn() -> bool:

@@ -25,13 +25,13 @@ from wonderful_team.sims.fetch.scene import (
     room_for_lid,
 )
 from wonderful_team.sims.fetch.scoring import LID_TOP_M, Track, inside, leans_rad, lid_on, lid_on_table, score_of
-from wonderful_team.sims.fetch.things import BOX, HANDLE, HANDLE_M, LID, LID_M, RIM_M, Kind
+from wonderful_team.sims.fetch.things import BOX, BOX_INSIDE_M, HANDLE, HANDLE_M, LID, LID_M, RIM_M, Kind
 from wonderful_team.sims.process.client import Simulator
 
 HANDLE_NAME, HANDLE_WORDS = "handle", "black handle"
 HANDLE_KIND = Kind(HANDLE_WORDS, (), (HANDLE_M[0] / 2, HANDLE_M[1] / 2), HANDLE_M[2], 0.0)
-BESIDE_M = 0.018
-"""How far from the box's middle each of two things goes, along its longer side [m]: still the box's middle to a planner."""
+GAP_M = 0.006
+"""Between two things in the box [m]."""
 LYING_RAD = math.radians(30)
 """What leans by more lies: it cannot be gripped as it stood."""
 
@@ -138,23 +138,25 @@ class FetchTruth:
             if leans_rad(pose) > LYING_RAD:
                 return []
             top = pose.apply(np.array([(*kind.grasp_m, kind.height_m)]))[0]
-            aside = self._aside(poses, name, place, len(left))
+            aside = self._aside(poses, name, left[1 - place] if len(left) > 1 else "", -1.0 if place == 0 else 1.0)
             end = box.apply(np.array([(0.0, aside, height)]))[0]
             grasp = pose.apply(np.array([(*kind.grasp_m, 0.0)]))[0] - pose.position_m
             actions += arm_actions(PickPlace(top, end + np.array([*grasp[:2], 0.0])), 0.0, kind.height_m)
         return actions
 
-    def _aside(self, poses: Mapping[str, Pose], name: str, place: int, count: int) -> float:
-        """Where along the box's longer side a thing goes [m]: away from what goes there too, or lies there."""
-        if count > 1:
-            return BESIDE_M if place else -BESIDE_M
+    def _aside(self, poses: Mapping[str, Pose], name: str, other: str, side: float) -> float:
+        """Where along the box's longer side a thing goes [m]: beside the other that goes there too, or away from what lies there."""
         scene, box = self._episode.scene, poses[BOX_NAME]
-        ys = [
-            float(((poses[other].position_m - box.position_m) @ box.rotation)[1])
-            for other in scene.wanted
-            if other != name and inside(scene.things[other].kind, poses[other], box)
-        ]
-        return 0.0 if not ys else math.copysign(BESIDE_M, -ys[0])
+        half_m = {one: max(scene.things[one].kind.half_m) for one in scene.wanted}
+        if other:
+            return side * (half_m[name] + half_m[other] + GAP_M) / 2
+        for one in scene.wanted:
+            if one != name and inside(scene.things[one].kind, poses[one], box):
+                lies_m = float(((poses[one].position_m - box.position_m) @ box.rotation)[1])
+                most_m = BOX_INSIDE_M[1] / 2 - half_m[name] - GAP_M
+                away_m = math.copysign(half_m[name] + half_m[one] + GAP_M, -lies_m)
+                return float(np.clip(lies_m + away_m, -most_m, most_m))
+        return 0.0
 
     def _poses(self, look: int | None) -> tuple[dict[str, Pose], tuple[str, ...]]:
         said, arrays = self._simulator.ask("poses", look=look)

@@ -16,6 +16,7 @@ from wonderful_team.errors import ConfigError
 from wonderful_team.evals.paper_also import with_methods
 from wonderful_team.evals.paper_filled import filled
 from wonderful_team.evals.paper_tables import PAPER_TABLES
+from wonderful_team.evals.report import paper_page
 from wonderful_team.evals.summary import Summary
 from wonderful_team.evals.trials import Condition, Row, TrialRow, TrialSpec
 from wonderful_team.registry.worlds import task_names
@@ -247,3 +248,7 @@ def test_a_method_more_is_a_column_or_a_line_as_the_table_has_them() -> None:
             assert all(column.startswith("ours: mine.py:Mine") for column in new)
             assert len(new) == (2 if name == "subgoals" else 1), name
             assert [line[: len(head)] for line in more] == lines
+
+
+def test_what_stands_between_backticks_in_a_note_is_set_as_a_command() -> None:
+    assert paper_page.as_commands("see `bench <suite>` & more") == "see <code>bench &lt;suite&gt;</code> &amp; more"

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
-from markupsafe import Markup
+from markupsafe import Markup, escape
 
 from wonderful_team.core.filesystem import make_private_folder, write_redacted
 from wonderful_team.core.text import visible
@@ -77,13 +77,19 @@ def write_paper(parts: Sequence[Part], page: Path, *, command: str = "") -> Pape
     environment = Environment(
         loader=FileSystemLoader(_HERE), autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
     )
-    environment.filters["short"] = short_names
+    environment.filters |= {"short": short_names, "commands": as_commands}
     style = Markup((_HERE / "report.css").read_text(encoding="utf-8"))
     html = environment.get_template("paper.html.j2").render(
         style=style, parts=shown, command=command, source=published()["source"], conditions=published()["conditions"]
     )
     write_redacted(page, visible(html, layout=True), errors="xmlcharrefreplace")
     return PaperWritten(text, page, tuple(tables), tuple(latex))
+
+
+def as_commands(text: str) -> Markup:
+    """A note with what stands between backticks, as in Markdown, in the type of commands."""
+    parts = [escape(part) for part in text.split("`")]
+    return Markup("".join(f"<code>{part}</code>" if k % 2 else part for k, part in enumerate(parts)))  # noqa: S704  every part is escaped
 
 
 def _csv(head: Sequence[str], lines: Sequence[Sequence[str]]) -> str:

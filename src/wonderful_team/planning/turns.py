@@ -72,6 +72,8 @@ async def settle_turns(
     settled = Settled(steps, grounded)
     if session.config.mode != "lean" or not session.members.manager or SAYS_ANGLE.search(scene.instruction.text):
         return settled
+    if not any(isinstance(step, PickPlaceStep) and step.rotate_deg for step in steps):
+        return settled
     pair = _pair(scene.instruction)
     read: dict[str, float | None] = {}
     turned: set[str] = set()

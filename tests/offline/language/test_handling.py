@@ -61,6 +61,7 @@ _SAID = {
     """,
     ("trace", "area", 0, "plate"): """
         scrub the plate
+        give the plate a thorough wipe
     """,
     ("trace", "area", 0, "dish"): """
         clean the dish
@@ -74,6 +75,7 @@ _SAID = {
     ("shake", "shake", 0, "red bottle"): """
         shake the red bottle
         give the red bottle a shake
+        give the red bottle a good, firm shake
         pick up the red bottle and shake it
         shake the red bottle up and down, then put it back
         shake the red bottle and put it back where it was

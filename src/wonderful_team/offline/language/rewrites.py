@@ -45,6 +45,7 @@ _SPOKEN = (
     (r"^\s*(?:(?:you|do you) )?(?:can )?see (?P<where>(?:the |this )?\{[^{}]+\})\s*[?.:;,](?P<rest>[^.;]*?)\bfrom (?:there|it)\b", r"\g<rest>from \g<where>"),
     (r"\ba (?:bit|little|tad)\b(?=[ ,]+(?:say |about |by )*\d+ ?(?:deg|°))|\b(?:say|roughly|about|approximately)\b,?(?= \d+ ?(?:deg|°))", " "),
     (r"\ban? (?P<what>[a-z ]+?)\b(?P<rest>[^.;]*?), any (?P=what)\b", r"any \g<what>\g<rest>"),
+    (r"\ban? (?:(?:good|nice|quick|brief|firm|gentle|thorough|vigorous|hard|proper),? (?:and )?)+(?P<done>shak(?:e|ing)|wip(?:e|ing))\b", r"a \g<done>"),
     (r"\b(?P<it>it|them) (?:a)?round\b", r"\g<it>"),
     (r"\b(?P<turned>(?:turn|spin|rotate|twist|swivel)\b[^.,;]*?) (?:a)?round(?= (?:by|through) )", r"\g<turned>"),
     (r"[.;,]?\s*(?:(?:but|and|just|please) )*\bleave (?P<what>the [a-z ]+?) out\b(?: of (?:it|this|that))?", r" except \g<what>"),

@@ -85,7 +85,8 @@ def _path(context: Context, subgoal: Subgoal, picture: Picture, contract: str) -
     camera = None if seen is None else seen.sight.view.camera
     if seen is None or camera is None:
         raise UnsupportedQuestion(context.name, contract, "the picture shows nothing that was ever there")
-    trace = context.plans(seen)[0].paths.get(subgoal.text)
+    # A plan with a mistake that was corrected is the right one from then on.
+    trace = next((plan.paths[subgoal.text] for plan in context.plans(seen) if subgoal.text in plan.paths), None)
     if trace is None:
         raise UnsupportedQuestion(context.name, contract, "it writes and judges paths of its own plan only")
     thing = seen.thing(trace.thing)

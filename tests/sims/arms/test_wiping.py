@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from tests.sims.arms.needed import needs_arms
+from tests.sims.arms.playing import by_team
 from wonderful_team.core.actions import Trajectory
 from wonderful_team.core.geometry import Pose
 from wonderful_team.sims.arms import make_world
@@ -75,3 +76,9 @@ def test_only_a_sponge_that_presses_on_the_plate_cleans_it() -> None:
         assert report.measured["holding"]
     finally:
         world.close()
+
+
+def test_a_simulated_model_writes_the_path_of_a_plan_that_was_corrected() -> None:
+    """Its first plan leaves out the only move; the right one, which a doubt brings, has a path too."""
+    trial = by_team("arms/wipe", 1001, model="simulated:perfect:wrong_plan=1")
+    assert trial.outcome == "success", trial.reason

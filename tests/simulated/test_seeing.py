@@ -48,6 +48,21 @@ def test_true_pictures_are_seen_whatever_their_frame(table: Set, kind: str) -> N
     assert Eyes(table.truth).see(pictures(table)[kind]) is not None
 
 
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_picture_that_nobody_drew_is_seen_as_the_same_one_in_pixels(table: Set, kind: str) -> None:
+    picture = pictures(table)[kind]
+    later = Eyes(table.truth).see(picture)
+    at_once = Eyes(table.truth).see(replace(picture, rgb=picture.rgb))
+    assert later is not None
+    assert at_once is not None
+    assert later.sight is at_once.sight
+
+
+def test_a_picture_of_another_tables_view_is_not_seen(table: Set) -> None:
+    with set_table("rearrange", 6) as other:
+        assert Eyes(table.truth).see(whole(other.scene.view, "top view")) is None
+
+
 def jpeg(rgb: Array) -> Array:
     held = io.BytesIO()
     Image.fromarray(rgb).save(held, "JPEG", quality=85)

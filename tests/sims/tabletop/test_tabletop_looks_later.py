@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.values import LaterView, Observation, View
 from wonderful_team.errors import ConfigError
 from wonderful_team.sims.tabletop import make_world
@@ -59,6 +60,32 @@ def test_a_look_can_be_read_when_its_world_is_closed(drawn: list[str]) -> None:
     assert drawn == ["top"]
     with pytest.raises(ConfigError, match="closed"):
         world.observe()
+
+
+def test_an_instructions_pictures_are_drawn_when_they_are_read_even_when_the_world_is_closed(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    cameras: list[str] = []
+    real = OpenGLRenderer.colours
+
+    def counted(self: OpenGLRenderer, state: object, camera: str, *, alone: bool = False) -> Array:
+        cameras.append(camera)
+        return real(self, state, camera, alone=alone)
+
+    monkeypatch.setattr(OpenGLRenderer, "colours", counted)
+    # A scene with props has a model of its own for its pictures, one without them the table's.
+    for task in ("visual_manipulation", "rearrange"):
+        world, again = (make_world(task, 4100 + len(task)) for _ in range(2))
+        slots = world.instruction.slots
+        assert slots
+        assert not cameras
+        world.close()
+        for name, slot in again.instruction.slots.items():
+            for camera, view in slot.views.items():
+                assert np.array_equal(slots[name].views[camera].rgb, view.rgb)
+        assert cameras
+        cameras.clear()
+        again.close()
 
 
 def test_two_looks_are_told_apart_by_the_main_view_alone(drawn: list[str]) -> None:

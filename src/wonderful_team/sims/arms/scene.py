@@ -85,6 +85,7 @@ class ArmScene(Scene):
     """
 
     apart_m: float = APART_M
+    side_m: float = ROOM_M[3]
     work: Work | None = None
     other_container: bool = False
 

@@ -37,7 +37,12 @@ BOX_ROOM_M: Room = (0.36, -0.3, 0.62, 0.3)
 """Where the closed box stands: its middle can be reached from above, and so can that of a lid beside it [m]."""
 HEIGHTS = (0.7, 1.0, 1.3, 1.6)
 """Of the blocks beside the closed box, as many times as high as wide."""
-FRUITS = ("all_match", "no_area", "misplaced", "both")
+IMPLICIT = {
+    "fruit_placement": ("all_match", "no_area", "misplaced", "both"),
+    "superhero_companions": ("exact", "similar", "two_coloured", "no_match"),
+    "fruit_price_ranking": ("three", "four", "discount", "deals"),
+}
+"""The paper's implicit goals with their variations: the tabletop's scenes."""
 _TASKS: dict[str, TabletopTask] = {}
 
 
@@ -143,8 +148,7 @@ def lid_box_two(scene: Scene, rng: np.random.Generator) -> None:
     _lid_box(scene, 2)
 
 
-for _variation in FRUITS:
-    _found = find_task(f"fruit_placement/{_variation}")
+for _found in (find_task(f"{goal}/{variation}") for goal, names in IMPLICIT.items() for variation in names):
     _TASKS[_found.name] = TabletopTask(
         _found.name, _found.instruction, _found.horizon * MOVES, _found.set_table, _found.help, ARM
     )

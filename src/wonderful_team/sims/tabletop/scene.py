@@ -31,6 +31,7 @@ class Scene(Floor):
         words: Text slots of the instruction; a word may hold picture slots of its own.
         pictures: Picture slots.
         ends_when_reached, order, distractors_matter, goals_last: See `rules.Rules`.
+        side_m: How far to the left or right of the table's middle what is to be moved may stand, and where it goes [m].
     """
 
     partition: str | None = None
@@ -47,6 +48,7 @@ class Scene(Floor):
     order: Order = "free"
     distractors_matter: Distractors = "always"
     goals_last: bool = False
+    side_m: float = math.inf
     _drawn: list[str] = field(default_factory=list)
 
     def add(

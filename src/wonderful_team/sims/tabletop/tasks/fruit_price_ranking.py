@@ -57,8 +57,9 @@ def _set_table(
     colour = scene.pick_textures(1)[0]
     bowls = {}
     placed = []
+    apart = min(COLUMNS_M[count], 2 * (scene.side_m - LOOSE_M) / (count - 1))
     for column, (fruit, (price, discount)) in enumerate(zip(fruits, prices, strict=True)):
-        y = COLUMNS_M[count] * (column - (count - 1) / 2)
+        y = apart * (column - (count - 1) / 2)
         rank = RANKS[ranks[column]]
         bowls[ranks[column]] = scene.add("bowl", colour, at=(BOWL_X_M, y), yaw_rad=0.0, name=f"bowl {rank}")
         scene.add("label", card_texture(rank), at=(RANK_X_M, y), yaw_rad=0.0, name=f"label {rank}")

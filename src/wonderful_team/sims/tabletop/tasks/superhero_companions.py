@@ -67,7 +67,7 @@ def _set_table(
     for place, k in enumerate(rng.permutation(len(waiting))):
         colour, snack, goes_to = waiting[int(k)]
         dx, dy = scene.layout.uniform(-LOOSE_M, LOOSE_M, 2)
-        at = (CORNER_M[0] + float(dx), CORNER_M[1] + ITEM_APART_M * place + float(dy))
+        at = (CORNER_M[0] + float(dx), max(CORNER_M[1], LOOSE_M - scene.side_m) + ITEM_APART_M * place + float(dy))
         item = _item(scene, colour, snack=snack, at=at, name=f"unmatched {colour} item")
         if goes_to is None:
             scene.goal(item, off=bins)

@@ -56,7 +56,7 @@ class Album:
     Args:
         folder: The run folder.
         files: From hash to file, as the record says.
-        at_hand: Pixels of PNG files, and such files turned into JPEG already, as `_quickly` does it.
+        at_hand: Pixels of its files, and PNG files turned into JPEG already, as `_quickly` does it.
     """
 
     def __init__(self, folder: Path, files: dict[str, str], at_hand: AtHand | None = None) -> None:

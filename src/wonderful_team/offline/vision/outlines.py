@@ -186,10 +186,12 @@ def _opened(gaps: Array, area: float) -> tuple[Array, int, float]:
     """Gaps that are true holes, not specks; how many there are, and their area."""
     if not gaps.any():
         return gaps, 0, 0.0
-    count, labels, stats, _ = cv2.connectedComponentsWithStats(gaps.astype(np.uint8), connectivity=4)
+    view = window(gaps, margin=0)
+    count, labels, stats, _ = cv2.connectedComponentsWithStats(gaps[view].astype(np.uint8), connectivity=4)
     keep = np.zeros(count, dtype=bool)
     keep[1:] = stats[1:, cv2.CC_STAT_AREA] > 0.02 * area
-    return keep[labels], int(keep.sum()), float(stats[keep, cv2.CC_STAT_AREA].sum())
+    opened = placed(keep[labels], view, gaps.shape)
+    return opened, int(keep.sum()), float(stats[keep, cv2.CC_STAT_AREA].sum())
 
 
 def _polar(image: Array, centre: tuple[float, float], radius: float) -> Array:

@@ -114,9 +114,10 @@ class _Solid:
     """A mask at a size where one pixel is small against the shape.
 
     Attributes:
-        whole: With everything inside its outer contours, bool.
+        whole: With everything inside its outer contours, bool; of the picture only what is not empty.
+        origin: Where that begins in the picture, x and y.
         area: Of `whole` [px].
-        centre: Of `whole`.
+        centre: Of `whole`, in the picture.
         scale: Pixels of `whole` per pixel of the mask.
         holes: Number of holes that count.
         hole_area: Their area [px].
@@ -124,6 +125,7 @@ class _Solid:
     """
 
     whole: Array
+    origin: tuple[int, int]
     area: float
     centre: tuple[float, float]
     scale: float
@@ -143,6 +145,8 @@ def _solid(mask: Array) -> _Solid:
     scale = float(np.clip(64.0 / max(np.sqrt(padded.sum()), 1.0), 0.5, 4.0))
     grown = cv2.resize(padded.astype(np.float32), None, fx=scale, fy=scale, interpolation=cv2.INTER_LINEAR)
     grown = cv2.GaussianBlur(grown, (0, 0), max(0.6, 0.45 * scale))
+    view = window(grown > 0, margin=1)
+    grown, origin = grown[view], (view[1].start, view[0].start)
     solid = grown > 0.5
     if not solid.any():
         solid = grown > 0.5 * grown.max()
@@ -150,23 +154,24 @@ def _solid(mask: Array) -> _Solid:
     area = float(whole.sum())
     opened, holes, hole_area = _opened(whole & ~solid, area)
     moments = cv2.moments(whole.astype(np.uint8), True)
-    centre = (moments["m10"] / moments["m00"], moments["m01"] / moments["m00"])
+    size = moments["m00"]
+    centre = ((moments["m10"] + origin[0] * size) / size, (moments["m01"] + origin[1] * size) / size)
     cover = np.where(whole, np.maximum(grown, 0.5), grown)
     cover[opened] = 0.0
-    polar = _polar(cover, centre, np.sqrt(area / np.pi))
-    return _Solid(whole, area, centre, scale, holes, hole_area, polar.astype(np.float32))
+    polar = _polar(cover, origin, centre, np.sqrt(area / np.pi))
+    return _Solid(whole, origin, area, centre, scale, holes, hole_area, polar.astype(np.float32))
 
 
 def study_outline(mask: Array) -> Outline:
     """Describe the shape of a mask, shape (h, w), bool, with at least a few pixels set."""
     solid = _solid(mask)
     whole, area = solid.whole, solid.area
-    contour = largest_contour(whole)
+    contour = largest_contour(whole) + np.array(solid.origin, np.int32)
     hull_area = max(float(cv2.contourArea(cv2.convexHull(contour))), 1.0)
     (_, _), (w, h), _ = cv2.minAreaRect(contour)
     long_side, short_side = max(w, h, 1.0), max(min(w, h), 1.0)
     simple = cv2.approxPolyDP(contour, 0.035 * cv2.arcLength(contour, True), True)
-    outer = _polar(whole.astype(np.float32), solid.centre, np.sqrt(area / np.pi))
+    outer = _polar(whole.astype(np.float32), solid.origin, solid.centre, np.sqrt(area / np.pi))
     reach = np.where(outer > 0.5, np.arange(1, RADII + 1)[:, None], 0).max(axis=0) * _REACH / RADII
     return Outline(
         solid.polar,
@@ -194,12 +199,13 @@ def _opened(gaps: Array, area: float) -> tuple[Array, int, float]:
     return opened, int(keep.sum()), float(stats[keep, cv2.CC_STAT_AREA].sum())
 
 
-def _polar(image: Array, centre: tuple[float, float], radius: float) -> Array:
-    """Sample an image on rings round a centre, shape (RADII, ANGLES)."""
+def _polar(image: Array, origin: tuple[int, int], centre: tuple[float, float], radius: float) -> Array:
+    """Sample an image on rings round a centre, shape (RADII, ANGLES); it begins at `origin`, and all round it is nothing."""
     r = (np.arange(RADII) + 0.5) / RADII * _REACH * radius
     t = np.arange(ANGLES) / ANGLES * 2 * np.pi
-    x = (centre[0] + r[:, None] * np.cos(t)).astype(np.float32)
-    y = (centre[1] + r[:, None] * np.sin(t)).astype(np.float32)
+    # Rounded before the origin is taken off: so it does not matter how much round the shape is empty.
+    x = (centre[0] + r[:, None] * np.cos(t)).astype(np.float32) - np.float32(origin[0])
+    y = (centre[1] + r[:, None] * np.sin(t)).astype(np.float32) - np.float32(origin[1])
     return np.asarray(cv2.remap(image.astype(np.float32), x, y, cv2.INTER_LINEAR, borderValue=0.0))
 
 

@@ -48,3 +48,9 @@ class Kept(Generic[K, V]):
                 if self._dropped is not None:
                     self._dropped(oldest, gone)
             return known
+
+    def clear(self) -> None:
+        """Let go of everything; nobody is told."""
+        with self._lock:
+            self._held.clear()
+            self.bytes = 0

@@ -168,22 +168,22 @@ def _keep_doubled_inplace(image: Array, cut: Array, low: Array, high: Array) -> 
     """
     height, width = cut.shape[:2]
     bits = 2 * _ROUNDS
-    planes = cv2.split(image)
     rows = min(height, max(1, _BAND_PX // (4 * width)))
     # Side, row, above or below, column.
     all_values = np.empty((2, rows, 2, width), np.int16)
     room = np.empty_like(all_values)
     small = np.empty((4, rows, 1, width), np.int16)
-    for plane, *parts in zip(planes, *map(cv2.split, (cut, low, high)), strict=True):
-        pairs = plane.view(np.uint16).reshape(height, 2, width)
-        for first in range(0, height, rows):
-            own = pairs[first : first + rows]
-            values, odd = all_values[:, : len(own)], room[:, : len(own)]
-            known, least, most, gap = small[:, : len(own)]
+    for first in range(0, height, rows):
+        band = image[2 * first : 2 * (first + rows)]
+        planes = cv2.split(band)
+        values, odd = all_values[:, : len(band) // 2], room[:, : len(band) // 2]
+        known, least, most, gap = small[:, : len(band) // 2]
+        for plane, *parts in zip(planes, *(cv2.split(part[first : first + rows]) for part in (cut, low, high)), strict=True):
+            pairs = plane.view(np.uint16).reshape(-1, 2, width)
             for part, place in zip(parts, (known, least, most), strict=True):
-                np.left_shift(part[first : first + rows, None], bits, out=place, dtype=np.int16)
-            np.bitwise_and(own, 255, out=values[0].view(np.uint16))
-            np.right_shift(own, 8, out=values[1].view(np.uint16))
+                np.left_shift(part[:, None], bits, out=place, dtype=np.int16)
+            np.bitwise_and(pairs, 255, out=values[0].view(np.uint16))
+            np.right_shift(pairs, 8, out=values[1].view(np.uint16))
             np.left_shift(values, bits, out=values)
             np.minimum(np.maximum(values, least, out=values), most, out=values)
             for _ in range(_ROUNDS):
@@ -197,8 +197,8 @@ def _keep_doubled_inplace(image: Array, cut: Array, low: Array, high: Array) -> 
             np.bitwise_and(np.right_shift(values, bits, out=odd), 1, out=odd)
             np.add(values, np.add(odd, (1 << (bits - 1)) - 1, out=odd), out=values)
             left, right = np.right_shift(values, bits, out=values).view(np.uint16)
-            np.bitwise_or(left, np.left_shift(right, 8, out=right), out=own)
-    cv2.merge(planes, dst=image)
+            np.bitwise_or(left, np.left_shift(right, 8, out=right), out=pairs)
+        cv2.merge(planes, dst=band)
 
 
 def _keep_colours_inplace(enlarged: Array, cut: Array, low: Array, high: Array) -> None:

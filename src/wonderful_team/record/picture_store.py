@@ -6,6 +6,7 @@ import hashlib
 import io
 import re
 from collections.abc import Callable
+from functools import partial
 
 import numpy as np
 
@@ -43,13 +44,17 @@ class AtHand:
 
     def __init__(self) -> None:
         self.coded: dict[str, bytes] = {}
-        self.pixels: Kept[str, Array] = Kept(PIXELS_BYTES, lambda rgb: rgb.nbytes, self._code)
-        self._coded_bytes = 0
+        self.pixels: Kept[str, Array] = Kept(PIXELS_BYTES, lambda rgb: rgb.nbytes, partial(_code, self.coded))
 
-    def _code(self, file: str, rgb: Array) -> None:
-        if file.endswith(".png") and self._coded_bytes < PAGE_BYTES:
-            self.coded[file] = coded = to_jpeg(rgb, PAGE_QUALITY)
-            self._coded_bytes += len(coded)
+    def forget(self) -> None:
+        """Let go of all of it: who made the run may hold it for longer than its pictures are needed."""
+        self.pixels.clear()
+        self.coded.clear()
+
+
+def _code(coded: dict[str, bytes], file: str, rgb: Array) -> None:
+    if file.endswith(".png") and sum(map(len, coded.values())) < PAGE_BYTES:
+        coded[file] = to_jpeg(rgb, PAGE_QUALITY)
 
 
 class PictureStore:

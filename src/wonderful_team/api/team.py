@@ -44,7 +44,6 @@ from wonderful_team.record.stored_run import StoredRun, load_stored_run
 from wonderful_team.runtime import check_gate
 from wonderful_team.runtime.loop import Caller
 
-
 _GROWTH = Growth(100_000_000, apart_s=0.0, circles=False)
 """Each plan needs about as much memory as the one before: what it had is given back once the process has grown."""
 

@@ -71,7 +71,7 @@ def pixels_hash(rgb: Array) -> str:
     if known is not None and known[0]() is rgb and not rgb.flags.writeable:
         return known[1]
     digest = hashlib.sha256(repr(rgb.shape).encode())
-    digest.update(np.ascontiguousarray(rgb).reshape(-1).view(np.uint8))
+    digest.update(np.ascontiguousarray(rgb).reshape(-1).view(np.uint8).data)
     made = digest.hexdigest()
     if rgb.flags.owndata and not rgb.flags.writeable:
         _hashes[key] = weakref.ref(rgb, lambda gone: _forget(key, gone)), made

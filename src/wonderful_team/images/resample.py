@@ -178,7 +178,9 @@ def _keep_doubled_inplace(image: Array, cut: Array, low: Array, high: Array) -> 
         planes = cv2.split(band)
         values, odd = all_values[:, : len(band) // 2], room[:, : len(band) // 2]
         known, least, most, gap = small[:, : len(band) // 2]
-        for plane, *parts in zip(planes, *(cv2.split(part[first : first + rows]) for part in (cut, low, high)), strict=True):
+        for plane, *parts in zip(
+            planes, *(cv2.split(part[first : first + rows]) for part in (cut, low, high)), strict=True
+        ):
             pairs = plane.view(np.uint16).reshape(-1, 2, width)
             for part, place in zip(parts, (known, least, most), strict=True):
                 np.left_shift(part[:, None], bits, out=place, dtype=np.int16)

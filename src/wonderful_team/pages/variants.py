@@ -74,10 +74,10 @@ def patches(rgb: Array, base: Array) -> tuple[Patch, ...] | None:
 def _blocks(differs: Array, size: int, rim: int) -> Array:
     """Along the first axis, blocks that hold a difference or have one within the rim, shape (N / size, M)."""
     parts = differs.reshape(-1, size, differs.shape[1])
-    found = parts.any(axis=1)
+    found: Array = np.asarray(parts.any(axis=1))
     found[:-1] |= parts[1:, :rim].any(axis=1)
     found[1:] |= parts[:-1, -rim:].any(axis=1)
-    return np.asarray(found)
+    return found
 
 
 def _covering(cells: Array) -> list[Patch]:

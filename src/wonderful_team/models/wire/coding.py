@@ -42,4 +42,4 @@ def is_photo(rgb: Array) -> bool:
     if not len(rows):
         return False
     equal = rgb[rows] == rgb[rows - 1]
-    return np.count_nonzero(equal) / equal.size < PHOTO_BELOW
+    return bool(np.count_nonzero(equal) / equal.size < PHOTO_BELOW)

@@ -131,9 +131,7 @@ def show_encoded(picture: Picture, convention: Convention = PIXELS, encoding: En
 
 
 SCALED_BYTES = 24_000_000
-_scaled: Kept[tuple[int, Size], tuple[Array, Array]] = Kept(
-    SCALED_BYTES, lambda held: held[0].nbytes + held[1].nbytes
-)
+_scaled: Kept[tuple[int, Size], tuple[Array, Array]] = Kept(SCALED_BYTES, lambda held: held[0].nbytes + held[1].nbytes)
 """The last ones: one question after the other shows the same view, with other marks."""
 
 

@@ -169,3 +169,52 @@ def test_what_is_looked_for_first_misses_nothing_that_the_patterns_find():
         assert redaction._redact_looks(text) == whole
         changed += whole != text
     assert changed > 1000
+
+
+_PIECES = (
+    *(
+        "sk-",
+        "AIza",
+        "ghp_",
+        "hf_",
+        "eyJ",
+        ".",
+        "abcdefghijk",
+        "0123456789",
+        "bearer ",
+        "Basic ",
+        "x-api-key",
+        "_api_key",
+    ),
+    *("access_token", "AUTH-TOKEN", "_x-client_secret", "password", ": ", "=", '\\"', "'", "?key=", "&token=", "://"),
+    *(
+        "user:",
+        "@host",
+        "/",
+        " ",
+        "\n",
+        "é",
+        "ſ",
+        "\u212a",
+        "ı",
+        "İ",
+        "secret",
+        "token",
+        "key",
+        "_",
+        "keykey",
+        "right ",
+    ),
+)
+
+
+def test_looking_only_where_a_word_stands_misses_nothing():
+    rng = random.Random(1)
+    for _ in range(4000):
+        text = whole = "".join(rng.choice(_PIECES) for _ in range(rng.randint(1, 12)))
+        if len(text) < redaction._SHORTEST_LOOK:
+            continue
+        for pattern, _words in redaction._LOOKS:
+            whole = pattern.sub(HIDDEN, whole)
+        whole = redaction._AFTER_NAME.sub(lambda match: match.group(1) + HIDDEN, whole)
+        assert redaction._redact_looks(text) == whole, text

@@ -12,7 +12,7 @@ import functools
 import os
 import re
 import sys
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any, TextIO, cast
 
 HIDDEN = "[redacted]"
@@ -29,7 +29,7 @@ _LOOKS = (
     ),
     (re.compile(r"\beyJ[A-Za-z0-9_\-]{8,}\.[A-Za-z0-9_\-]{8,}\.[A-Za-z0-9_\-]*"), ("eyJ",)),
 )
-"""What keys look like, each with words of which any match holds one: to look for these takes a tenth of the time."""
+"""What keys look like, each with words of which any match begins with one: to look for these takes a tenth of the time."""
 _AFTER_NAME = re.compile(
     r"""(?ix)
     (\b(?:bearer|basic)\s+                                                       # an Authorization header
@@ -40,7 +40,10 @@ _AFTER_NAME = re.compile(
     """
 )
 _NAMES = ("bearer", "basic", "key", "token", "secret", "password", "://")
-"""Any match of `_AFTER_NAME` in ASCII holds one of these in lower case."""
+"""Any match of `_AFTER_NAME` holds one of these, in any case, at most so many characters after it begins:"""
+_BEFORE_NAME = len("_x-client_")
+_ODD = re.compile("[\u0130\u0131\u017f\u212a]")
+"""The only letters outside of ASCII that are i, s or k when case does not count."""
 _EMBEDDED = re.compile(r"(;base64,[A-Za-z0-9+/=]+)")
 """A picture inside of a page: pixels may look like anything."""
 _SECRET_VARIABLE = re.compile(r"(?i)(key|token|secret|password|passwd|passphrase|credentials?)(_?\d+)?$")
@@ -157,14 +160,42 @@ def _redact_looks(text: str) -> str:
     if ";base64," in text:
         pieces = _EMBEDDED.split(text)
         return "".join(piece if k % 2 else _redact_looks(piece) for k, piece in enumerate(pieces))
-    for pattern, held in _LOOKS:
-        if any(word in text for word in held):
-            text = pattern.sub(HIDDEN, text)
-    if text.isascii():
-        lower = text.lower()
-        if not any(word in lower for word in _NAMES):
-            return text
-    return _AFTER_NAME.sub(lambda match: match.group(1) + HIDDEN, text)
+    for pattern, words in _LOOKS:
+        text = _without(pattern, text, _places(text, words), lambda match: HIDDEN)
+    if not text.isascii() and _ODD.search(text):
+        return _AFTER_NAME.sub(_name_alone, text)
+    return _without(_AFTER_NAME, text, _places(text.lower(), _NAMES), _name_alone, _BEFORE_NAME)
+
+
+def _name_alone(match: re.Match[str]) -> str:
+    return match.group(1) + HIDDEN
+
+
+def _places(text: str, words: Sequence[str]) -> list[int]:
+    """Where any of these words stands, in order."""
+    found = []
+    for word in words:
+        place = text.find(word)
+        while place >= 0:
+            found.append(place)
+            place = text.find(word, place + 1)
+    return sorted(found)
+
+
+def _without(
+    pattern: re.Pattern[str], text: str, places: Sequence[int], instead: Callable[[re.Match[str]], str], before: int = 0
+) -> str:
+    """`pattern.sub` where every match begins at one of `places`, or at most so many characters `before` it."""
+    pieces, end, tried = [], 0, 0
+    for place in places:
+        start = max(tried, place - before)
+        while start <= place:
+            match = pattern.match(text, start)
+            tried = start = start + 1 if match is None else match.end()
+            if match is not None:
+                pieces += [text[end : match.start()], instead(match)]
+                end = match.end()
+    return "".join([*pieces, text[end:]]) if pieces else text
 
 
 def _known() -> _Known:

@@ -100,6 +100,19 @@ def test_what_went_round_in_circles_is_given_back_too_once_a_process_has_grown()
         gc.enable()
 
 
+def test_where_circles_are_not_looked_for_free_memory_is_given_back_all_the_same(monkeypatch):
+    given = []
+    monkeypatch.setattr(heap, "give_back_free_memory", lambda: bool(given.append(1)) or True)
+    gc.disable()
+    try:
+        lost = weakref.ref(Held())
+        assert heap.Growth(1, circles=False).give_back()
+        assert given == [1]
+        assert lost() is not None
+    finally:
+        gc.enable()
+
+
 def test_only_a_process_of_its_own_sets_aside_what_is_there_after_its_first_piece_of_work():
     before = gc.get_freeze_count()
     heap.Growth(1).give_back()

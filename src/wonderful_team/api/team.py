@@ -19,7 +19,7 @@ from wonderful_team.core import values
 from wonderful_team.core.actions import PICK_PLACE, VOCABULARIES, Vocabulary
 from wonderful_team.core.deadline import limited, to_end
 from wonderful_team.core.geometry import PlanarCamera
-from wonderful_team.core.heap import give_back_free_memory
+from wonderful_team.core.heap import Growth
 from wonderful_team.core.interrupts import ends_on_signal, held
 from wonderful_team.core.protocols import Decision, Policy, Situation, Subscriber
 from wonderful_team.core.values import (
@@ -43,6 +43,9 @@ from wonderful_team.record.setup import setup_entry
 from wonderful_team.record.stored_run import StoredRun, load_stored_run
 from wonderful_team.runtime import check_gate
 from wonderful_team.runtime.loop import Caller
+
+_GROWTH = Growth(100_000_000, apart_s=0.0, circles=False)
+"""Each plan needs about as much memory as the one before: what it had is given back once the process has grown."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -279,7 +282,8 @@ def _close(recorder: Recorder | LateRecorder) -> None:
         written = recorder.recorder if isinstance(recorder, LateRecorder) else recorder
         if written is not None:
             write_page_or_warn(written)
-            give_back_free_memory()
+            written.at_hand.forget()
+            _GROWTH.give_back()
 
 
 @contextlib.contextmanager

@@ -40,7 +40,8 @@ def _all_required(schema: dict[str, Any]) -> None:
 class AnswerModel(BaseModel):
     """Base of every answer: unknown fields are refused."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True, json_schema_extra=_all_required)
+    # A run needs a few of them: each is built when it is first used.
+    model_config = ConfigDict(extra="forbid", frozen=True, json_schema_extra=_all_required, defer_build=True)
 
 
 class PointPx(AnswerModel):

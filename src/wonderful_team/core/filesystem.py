@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import errno
 import os
+import stat
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
@@ -93,16 +94,17 @@ def write_private(path: Path, content: bytes, hint: str = "") -> None:
 
 def _replace(path: Path, content: bytes, opener: Callable[[str, int], int] | None) -> None:
     # A link stays one, and what is no file (a terminal, a pipe) is written to as it is.
-    place = path.resolve()
-    if place.exists() and not place.is_file():
+    place = path.resolve() if path.is_symlink() else path
+    mode = place.stat().st_mode if place.exists() else None
+    if mode is not None and not stat.S_ISREG(mode):
         with open(place, "wb") as stream:
             stream.write(content)
         return
     part = place.with_name(f".{place.name[:100]}.{os.getpid()}.part")
     try:
         with open(part, "wb", opener=opener) as file:
-            if place.exists():
-                os.fchmod(file.fileno(), place.stat().st_mode & 0o777)
+            if mode is not None:
+                os.fchmod(file.fileno(), mode & 0o777)
             file.write(content)
         os.replace(part, place)
     except BaseException:

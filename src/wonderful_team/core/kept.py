@@ -17,10 +17,13 @@ class Kept(Generic[K, V]):
     Args:
         most_bytes: Of all values together; the one used longest ago goes first, the newest always stays.
         size: How many bytes a value has.
+        dropped: Told of every value that goes.
     """
 
-    def __init__(self, most_bytes: int, size: Callable[[V], int]) -> None:
-        self._most, self._size = most_bytes, size
+    def __init__(
+        self, most_bytes: int, size: Callable[[V], int], dropped: Callable[[K, V], object] | None = None
+    ) -> None:
+        self._most, self._size, self._dropped = most_bytes, size, dropped
         self._held: OrderedDict[K, V] = OrderedDict()
         self._lock = threading.Lock()
         self.bytes = 0
@@ -40,5 +43,14 @@ class Kept(Generic[K, V]):
             if known is value:
                 self.bytes += self._size(value)
             while self.bytes > self._most and len(self._held) > 1:
-                self.bytes -= self._size(self._held.popitem(last=False)[1])
+                oldest, gone = self._held.popitem(last=False)
+                self.bytes -= self._size(gone)
+                if self._dropped is not None:
+                    self._dropped(oldest, gone)
             return known
+
+    def clear(self) -> None:
+        """Let go of everything; nobody is told."""
+        with self._lock:
+            self._held.clear()
+            self.bytes = 0

@@ -7,6 +7,7 @@ All mark coordinates are pixels of the picture that carries them.
 from __future__ import annotations
 
 import hashlib
+import weakref
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, fields, is_dataclass, replace
 from functools import cached_property
@@ -59,11 +60,28 @@ def checked_depth(depth_m: Array | None, size: tuple[int, int]) -> Array | None:
     return array
 
 
+_hashes: dict[int, tuple[weakref.ref[Array], str]] = {}
+"""From the id of an image that nobody may change to its hash, for as long as it lives: one is shown with many marks."""
+
+
 def pixels_hash(rgb: Array) -> str:
     """SHA-256 of an image's size and pixels: 64 hex digits."""
+    key = id(rgb)
+    known = _hashes.get(key)
+    if known is not None and known[0]() is rgb and not rgb.flags.writeable:
+        return known[1]
     digest = hashlib.sha256(repr(rgb.shape).encode())
-    digest.update(np.ascontiguousarray(rgb).tobytes())
-    return digest.hexdigest()
+    digest.update(np.ascontiguousarray(rgb).reshape(-1).view(np.uint8).data)
+    made = digest.hexdigest()
+    if rgb.flags.owndata and not rgb.flags.writeable:
+        _hashes[key] = weakref.ref(rgb, lambda gone: _forget(key, gone)), made
+    return made
+
+
+def _forget(key: int, gone: weakref.ref[Array]) -> None:
+    # The id may have passed to another image meanwhile.
+    if (known := _hashes.get(key)) is not None and known[0] is gone:
+        del _hashes[key]
 
 
 def picture_hash(rgb: Array) -> str:

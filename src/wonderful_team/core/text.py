@@ -64,6 +64,9 @@ def visible(text: Text, *, layout: bool = False) -> Text:
         layout: Keep line ends and tabs, for text of several lines of our own; else they are escaped too.
     """
     pattern = _BUT_LAYOUT if layout else _ANY
+    # Of a long text, its letters are looked through once each.
+    if pattern.search("".join(set(text))) is None:
+        return text
     return type(text)(pattern.sub(_escape, str(text)))
 
 

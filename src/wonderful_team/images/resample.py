@@ -156,7 +156,8 @@ def _enlarged(cut: Array, size: tuple[int, int]) -> Array:
         return image
     uneven = _most_of_colours(cv2.absdiff(high, low))
     if cv2.countNonZero(uneven) > (1 - _EVEN_FROM) * height * width:
-        _keep_bands_inplace(image, cut, low, high)
+        doubled = size == (2 * width, 2 * height)
+        (_keep_doubled_inplace if doubled else _keep_bands_inplace)(image, cut, low, high)
         return image
     # A pixel that equals all its neighbours stays as it is, all over.
     rows, columns = np.nonzero(uneven)
@@ -192,6 +193,49 @@ def _keep_bands_inplace(image: Array, cut: Array, low: Array, high: Array) -> No
     for first in range(0, height, rows):
         own = slice(first, first + rows)
         _keep_colours_inplace(image[first * zoom : (first + rows) * zoom], cut[own], low[own], high[own])
+
+
+def _keep_doubled_inplace(image: Array, cut: Array, low: Array, high: Array) -> None:
+    """`_keep_bands_inplace` for a picture of twice the size: the same to the bit, in little more than half the time.
+
+    A quarter of a sum is then an exact number in so many bits below the point, so whole numbers do, and half as wide ones. Two pixels
+    side by side are one 16-bit number; apart from each other and from the other colours, all that is added stands side by side.
+    """
+    height, width = cut.shape[:2]
+    bits = 2 * _ROUNDS
+    rows = min(height, max(1, _BAND_PX // (4 * width)))
+    # Side, row, above or below, column.
+    all_values = np.empty((2, rows, 2, width), np.int16)
+    room = np.empty_like(all_values)
+    small = np.empty((4, rows, 1, width), np.int16)
+    for first in range(0, height, rows):
+        band = image[2 * first : 2 * (first + rows)]
+        planes = cv2.split(band)
+        values, odd = all_values[:, : len(band) // 2], room[:, : len(band) // 2]
+        known, least, most, gap = small[:, : len(band) // 2]
+        for plane, *parts in zip(
+            planes, *(cv2.split(part[first : first + rows]) for part in (cut, low, high)), strict=True
+        ):
+            pairs = plane.view(np.uint16).reshape(-1, 2, width)
+            for part, place in zip(parts, (known, least, most), strict=True):
+                np.left_shift(part[:, None], bits, out=place, dtype=np.int16)
+            np.bitwise_and(pairs, 255, out=values[0].view(np.uint16))
+            np.right_shift(pairs, 8, out=values[1].view(np.uint16))
+            np.left_shift(values, bits, out=values)
+            np.minimum(np.maximum(values, least, out=values), most, out=values)
+            for _ in range(_ROUNDS):
+                np.add(values[0, :, :1], values[0, :, 1:], out=gap)
+                np.add(gap, values[1, :, :1], out=gap)
+                np.add(gap, values[1, :, 1:], out=gap)
+                np.subtract(known, np.right_shift(gap, 2, out=gap), out=gap)
+                np.add(values, gap, out=values)
+                np.minimum(np.maximum(values, least, out=values), most, out=values)
+            # To the nearest whole number, and from the middle to the even one.
+            np.bitwise_and(np.right_shift(values, bits, out=odd), 1, out=odd)
+            np.add(values, np.add(odd, (1 << (bits - 1)) - 1, out=odd), out=values)
+            left, right = np.right_shift(values, bits, out=values).view(np.uint16)
+            np.bitwise_or(left, np.left_shift(right, 8, out=right), out=pairs)
+        cv2.merge(planes, dst=band)
 
 
 def _keep_colours_inplace(enlarged: Array, cut: Array, low: Array, high: Array) -> None:

@@ -11,6 +11,7 @@ import re
 import sys
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field, replace
+from functools import cache
 from pathlib import Path
 from typing import Any, Literal, TypeAlias
 
@@ -287,14 +288,17 @@ def profile_from_json(text: str) -> Profile:
     if not isinstance(held, dict) or held.pop("schema_version", None) != SCHEMA_VERSION:
         raise ValueError(f"it is no profile of schema version {SCHEMA_VERSION}")
     try:
-        profile = _ADAPTER.validate_python(held)
+        profile = _adapter().validate_python(held)
     except ValidationError as error:
         first = error.errors(include_url=False)[0]
         raise ValueError(f"{'.'.join(map(str, first['loc']))}: {first['msg']}") from error
     return profile
 
 
-_ADAPTER: TypeAdapter[Profile] = TypeAdapter(Profile)
+@cache
+def _adapter() -> TypeAdapter[Profile]:
+    return TypeAdapter(Profile)
+
 
 __all__ = [
     "Convention",

@@ -56,13 +56,11 @@ def patches(rgb: Array, base: Array) -> tuple[Patch, ...] | None:
     height, width = rgb.shape[:2]
     if (rgb[::BLOCK_PX, ::BLOCK_PX] != base[::BLOCK_PX, ::BLOCK_PX]).any(axis=2).mean() > MOST_SHARE:
         return None
-    red, green, blue = cv2.split(cv2.absdiff(rgb, base))
-    differs = cv2.max(cv2.max(red, green), blue)
-    differs = cv2.dilate(differs, np.ones((2 * _RIM_PX + 1, 2 * _RIM_PX + 1), np.uint8))
     rows, columns = -(-height // BLOCK_PX), -(-width // BLOCK_PX)
-    whole = np.zeros((rows * BLOCK_PX, columns * BLOCK_PX), np.uint8)
-    whole[:height, :width] = differs
-    cells = whole.reshape(rows, BLOCK_PX, -1).max(axis=1).reshape(rows, columns, BLOCK_PX).max(axis=2) > 0
+    differs = np.zeros((rows * BLOCK_PX, columns * BLOCK_PX * 3), dtype=bool)
+    np.not_equal(rgb.reshape(height, -1), base.reshape(height, -1), out=differs[:height, : 3 * width])
+    in_rows = _blocks(differs, BLOCK_PX, _RIM_PX)
+    cells = _blocks(in_rows.T.copy(), 3 * BLOCK_PX, 3 * _RIM_PX).T
     if cells.mean() > MOST_SHARE:
         return None
     count, labels = cv2.connectedComponents(cells.astype(np.uint8), connectivity=8)
@@ -71,6 +69,15 @@ def patches(rgb: Array, base: Array) -> tuple[Patch, ...] | None:
         return None
     scaled = [(x0 * BLOCK_PX, y0 * BLOCK_PX, x1 * BLOCK_PX, y1 * BLOCK_PX) for x0, y0, x1, y1 in found]
     return tuple((x0, y0, min(x1, width), min(y1, height)) for x0, y0, x1, y1 in scaled)
+
+
+def _blocks(differs: Array, size: int, rim: int) -> Array:
+    """Along the first axis, blocks that hold a difference or have one within the rim, shape (N / size, M)."""
+    parts = differs.reshape(-1, size, differs.shape[1])
+    found: Array = np.asarray(parts.any(axis=1))
+    found[:-1] |= parts[1:, :rim].any(axis=1)
+    found[1:] |= parts[:-1, -rim:].any(axis=1)
+    return found
 
 
 def _covering(cells: Array) -> list[Patch]:

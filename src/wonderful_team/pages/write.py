@@ -44,10 +44,15 @@ def write_page(folder: Path, at_hand: AtHand | None = None) -> Path:
     with reading(f"{folder}: the record"):
         html, pictures = _html(folder, record, at_hand)
     # Pictures are not searched for keys: their letters may look like anything, and are most of the page.
-    whole = redact(visible(html, layout=True)).replace(_PICTURES, pictures, 1)
+    parts = redact(visible(html, layout=True)).partition(_PICTURES)
     path = folder / PAGE_NAME
-    write_private(path, whole.encode("utf-8", errors="xmlcharrefreplace"))
+    # Apart from each other: beside a letter that is not ASCII, every one of a picture's would take twice the room.
+    write_private(path, b"".join(_coded(part) for part in (parts[0], pictures, parts[2])))
     return path
+
+
+def _coded(text: str) -> bytes:
+    return text.encode("utf-8", errors="xmlcharrefreplace")
 
 
 def _html(folder: Path, record: dict[str, Any], at_hand: AtHand | None) -> tuple[str, str]:

@@ -6,6 +6,7 @@ import hashlib
 import io
 import re
 from collections.abc import Callable
+from functools import partial
 
 import numpy as np
 
@@ -34,24 +35,26 @@ DRAWING = "drawing pictures for the record"
 
 
 class AtHand:
-    """What is at hand of a run's PNG files, by file, so that its page need not read them again; none of it has to be.
+    """What is at hand of a run's large pictures, by file, so that its page need not read them again; none of it has to be.
 
     Attributes:
-        coded: As a page shows them (JPEG); as many as one page may hold.
-        pixels: Of the last ones, shape (H, W, 3), uint8.
+        pixels: Of the last ones, shape (H, W, 3), uint8: what their files were made of, JPEG files too.
+        coded: The PNG files among those before, as a page shows them (JPEG); as many as one page may hold.
     """
 
     def __init__(self) -> None:
         self.coded: dict[str, bytes] = {}
-        self.pixels: Kept[str, Array] = Kept(PIXELS_BYTES, lambda rgb: rgb.nbytes)
-        self._coded_bytes = 0
+        self.pixels: Kept[str, Array] = Kept(PIXELS_BYTES, lambda rgb: rgb.nbytes, partial(_code, self.coded))
 
-    def keep(self, file: str, rgb: Array) -> None:
-        """Code a picture while its pixels are there, and keep both while there is room."""
-        if self._coded_bytes < PAGE_BYTES:
-            self.coded[file] = coded = to_jpeg(rgb, PAGE_QUALITY)
-            self._coded_bytes += len(coded)
-            self.pixels.keep(file, rgb)
+    def forget(self) -> None:
+        """Let go of all of it: who made the run may hold it for longer than its pictures are needed."""
+        self.pixels.clear()
+        self.coded.clear()
+
+
+def _code(coded: dict[str, bytes], file: str, rgb: Array) -> None:
+    if file.endswith(".png") and sum(map(len, coded.values())) < PAGE_BYTES:
+        coded[file] = to_jpeg(rgb, PAGE_QUALITY)
 
 
 class PictureStore:
@@ -79,7 +82,7 @@ class PictureStore:
         key = hashlib.sha256(sent.file).hexdigest()[:16]
         if key not in self._sent:
             ending = "jpg" if sent.media_type == "image/jpeg" else "png"
-            self._write(key, self._numbered(key, name, ending), sent.file, sent.rgb if ending == "png" else None)
+            self._write(key, self._numbered(key, name, ending), sent.file, sent.rgb)
         return key
 
     def keep_drawn(self, picture: Picture, ticks: Ticks = Ticks.PIXELS) -> str:
@@ -122,7 +125,7 @@ class PictureStore:
     def _write(self, key: str, name: str, file: bytes, rgb: Array | None) -> None:
         self._files.write(f"{FOLDER}/{name}", file)
         if rgb is not None and len(file) > AS_IT_IS_BYTES:
-            self.at_hand.keep(f"{FOLDER}/{name}", rgb)
+            self.at_hand.pixels.keep(f"{FOLDER}/{name}", rgb)
         self._known.add(key)
         self._named(key, f"{FOLDER}/{name}")
 

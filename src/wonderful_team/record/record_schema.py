@@ -30,7 +30,7 @@ FileInside = Annotated[str, AfterValidator(_inside), Field(description="Relative
 
 
 class _Part(BaseModel):
-    model_config = ConfigDict(extra="allow")
+    model_config = ConfigDict(extra="allow", defer_build=True)
 
 
 class Outcome(_Part):

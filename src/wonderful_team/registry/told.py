@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 from wonderful_team.contracts import ShownSlot
 from wonderful_team.core.pictures import Picture, Point
@@ -10,7 +11,9 @@ from wonderful_team.core.protocols import SceneTruth, World, offers, privileged
 from wonderful_team.errors import ConfigError
 from wonderful_team.planning.baselines.nlap import Teller, Told
 from wonderful_team.registry.worlds import WORLDS
-from wonderful_team.simulated.seeing import Eyes
+
+if TYPE_CHECKING:
+    from wonderful_team.simulated.seeing import Eyes
 
 
 def teller(world: World | None, method: str) -> Teller:
@@ -27,6 +30,8 @@ def teller(world: World | None, method: str) -> Teller:
             f"method {method!r} is told a simulator's truth, and this {type(world).__name__} has none that is right for its "
             f"instruction; it runs in {', '.join(WORLDS)}; without the truth: nlap, nlap:text"
         )
+    from wonderful_team.simulated.seeing import Eyes
+
     eyes = Eyes(truth)
 
     def tell(view: Picture, slots: Sequence[ShownSlot]) -> Told:

@@ -39,4 +39,7 @@ def encoded(rgb: Array, shown: Sequence[Picture], encoding: Encoding = "auto") -
 def is_photo(rgb: Array) -> bool:
     """Whether a picture, shape (H, W, 3), uint8, has the grain of a photo."""
     rows = np.arange(1, len(rgb), max(1, len(rgb) // _SAMPLED_ROWS))
-    return len(rows) > 0 and float(np.mean(rgb[rows] == rgb[rows - 1])) < PHOTO_BELOW
+    if not len(rows):
+        return False
+    equal = rgb[rows] == rgb[rows - 1]
+    return bool(np.count_nonzero(equal) / equal.size < PHOTO_BELOW)

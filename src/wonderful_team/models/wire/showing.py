@@ -130,13 +130,25 @@ def show_encoded(picture: Picture, convention: Convention = PIXELS, encoding: En
     return held[1], held[2]
 
 
+SCALED_BYTES = 24_000_000
+_scaled: Kept[tuple[int, Size], tuple[Array, Array]] = Kept(SCALED_BYTES, lambda held: held[0].nbytes + held[1].nbytes)
+"""The last ones: one question after the other shows the same view, with other marks."""
+
+
 def scaled(picture: Picture, size_px: Size) -> Picture:
     """The same picture in another size, its marks moved along."""
     if size_px == picture.size_px:
         return picture
     sx, sy = (new / old for new, old in zip(size_px, picture.size_px, strict=True))
-    way = cv2.INTER_AREA if sx * sy < 1 else cv2.INTER_CUBIC
-    rgb = np.asarray(cv2.resize(picture.rgb, size_px, interpolation=way))
+    # The entry holds the image, so its id cannot have passed to another.
+    key = (id(picture.rgb), size_px)
+    held = _scaled.get(key)
+    if held is None:
+        way = cv2.INTER_AREA if sx * sy < 1 else cv2.INTER_CUBIC
+        rgb = np.asarray(cv2.resize(picture.rgb, size_px, interpolation=way))
+        rgb.setflags(write=False)
+        held = _scaled.keep(key, (picture.rgb, rgb))
+    rgb = held[1]
     return Picture(
         picture.name,
         rgb,

@@ -11,7 +11,7 @@ from PIL import Image, ImageDraw, ImageFont
 
 from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.offline.description import SHAPES
-from wonderful_team.offline.vision.outlines import Forms, Outline, overlaps, study_outline
+from wonderful_team.offline.vision.outlines import Forms, Outline, overlaps, polar_form
 
 _SIDE = 160
 """Side of the square that ideals are drawn in [px]."""
@@ -127,8 +127,7 @@ def ideals() -> tuple[tuple[str, ...], Forms]:
         *(("pan", _pan(handle)) for handle in (0.9, 1.3)),
         *(("crescent", _crescent(shift)) for shift in (0.35, 0.6)),
     ]
-    outlines = [study_outline(image > 0).polar for _, image in drawn]
-    return tuple(name for name, _ in drawn), Forms.of(np.stack(outlines))
+    return tuple(name for name, _ in drawn), Forms.of(np.stack([polar_form(image > 0)[0] for _, image in drawn]))
 
 
 @cache
@@ -138,10 +137,10 @@ def letters() -> tuple[str, Forms, tuple[bool, ...]]:
     holed: list[bool] = []
     for letter in (name for name in string.ascii_uppercase if name not in "IO"):
         # Two typefaces, one of them in two weights, each narrower and wider: C and G differ less than two hands of G.
-        hands = [study_outline(cv2.resize(image, None, fx=wide, fy=1) > 127) for image in _written(letter) for wide in (0.8, 1, 1.25)]  # fmt: skip
+        hands = [polar_form(cv2.resize(image, None, fx=wide, fy=1) > 127) for image in _written(letter) for wide in (0.8, 1, 1.25)]  # fmt: skip
         names += letter * len(hands)
-        forms += [outline.polar for outline in hands]
-        holed += [hands[0].holes > 0] * len(hands)  # thick strokes may close a hole
+        forms += [polar for polar, _ in hands]
+        holed += [hands[0][1] > 0] * len(hands)  # thick strokes may close a hole
     return names, Forms.of(np.stack(forms)), tuple(holed)
 
 

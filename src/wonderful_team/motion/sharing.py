@@ -6,7 +6,6 @@ import math
 import threading
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from itertools import product
 from typing import Any
 from weakref import WeakKeyDictionary
 
@@ -160,19 +159,30 @@ def parts_of(
         # What stands in the middle hides the floor, and may be gone by then, as a lid is: better side by side than on top of each other.
         tries.append((None, CLOSER))
     for floor_m, shares in tries:
-        for share, turn in product(shares, range(TURNS)):
-            angles = [2 * math.pi * (turn / TURNS + k / len(sizes)) for k in range(len(sizes))]
-            offsets = [(share * ring * math.cos(angle), share * ring * math.sin(angle)) for angle in angles]
-            # Round the point; of a free area, which may end at a wall just beside its point, also with the first of them on it.
-            middles = [(0.0, 0.0), *([] if place.box is not None else [offsets[0]])]
-            for dx, dy in middles:
-                points = [(centre[0] + x - dx, centre[1] + y - dy) for x, y in offsets]
-                discs = list(zip(points, reach, strict=True))
-                if not all(_rests(point, radius, place.box, floor_m, lift, heights) for point, radius in discs):
-                    continue
-                if place.box is not None or all(_no_wall(centre, *disc, lift, heights) for disc in discs):
-                    return points
+        for share in shares:
+            found = []
+            for turn in range(TURNS):
+                angles = [2 * math.pi * (turn / TURNS + k / len(sizes)) for k in range(len(sizes))]
+                offsets = [(share * ring * math.cos(angle), share * ring * math.sin(angle)) for angle in angles]
+                # Round the point; of a free area, which may end at a wall just beside its point, also with the first of them on it.
+                middles = [(0.0, 0.0), *([] if place.box is not None else [offsets[0]])]
+                for dx, dy in middles:
+                    points = [(centre[0] + x - dx, centre[1] + y - dy) for x, y in offsets]
+                    discs = list(zip(points, reach, strict=True))
+                    if not all(_rests(point, radius, place.box, floor_m, lift, heights) for point, radius in discs):
+                        continue
+                    if place.box is not None or all(_no_wall(centre, *disc, lift, heights) for disc in discs):
+                        found.append(points)
+            if found:
+                return max(found, key=lambda points: _off_the_edge_px(points, place.box))
     return [centre] * len(sizes)
+
+
+def _off_the_edge_px(points: Sequence[Point], box: Box | None) -> int:
+    """How far from the edge of their place points lie at least, in whole pixels: what shows as its floor may be as wide as its walls."""
+    if box is None:
+        return 0
+    return round(min(min(x - box.x0, box.x1 - x, y - box.y0, box.y1 - y) for x, y in points))
 
 
 def _floors(box: Box | None, centre: Point, lift: Deprojector) -> list[float | None]:

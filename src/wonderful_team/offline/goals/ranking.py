@@ -15,7 +15,7 @@ from wonderful_team.offline.vision.prints import Card, read_cards
 
 NEAR = 0.1
 """A card farther from a thing than this share of the picture's longer side says nothing of it."""
-CLOSE = (0.065, 0.1)
+CLOSE = (0.08, 0.13)
 """So far round a thing, in shares of that side, cards are looked for: twice, as an engine misses a line now and then."""
 SAME_PRICE = 0.005
 """Prices that differ by less than this share are equal."""

@@ -277,7 +277,7 @@ PAPER_TABLES: dict[str, PaperTable] = {
     "real-robot": PaperTable(
         "implicit goals and spatial planning", "section 5.4, appendices B.1 and D.3", ("implicit", "spatial"),
         ("team:paper", "team"), _real_robot,
-        note="The paper's ran on a real xArm 7, ours in simulation: the implicit goals on the tabletop, spatial planning on the arm of the world `arms`. "
+        note="The paper's ran on a real xArm 7, ours in simulation: the implicit goals on the tabletop (`bench arms/fruit_placement/both` and the like run them on the arm), spatial planning on the arm of the world `arms`. "
         "Of spatial planning the paper prints two figures and draws the others.",
     ),
     "ablation": PaperTable(

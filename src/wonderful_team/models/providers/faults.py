@@ -5,16 +5,19 @@ from __future__ import annotations
 import contextlib
 import math
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
+from wonderful_team.core.values import Request
 from wonderful_team.errors import (
+    ContentFilterError,
     ContextTooLongError,
     ModelAuthError,
     ModelConnectionError,
     ModelQuotaError,
     ModelRateLimitError,
+    ModelRefusalError,
     ModelServerError,
     ModelTimeoutError,
     NoPicturesError,
@@ -264,3 +267,14 @@ def told(error: WonderfulTeamError, tries: int, wait_s: float, left_s: float) ->
     elif wait_s >= left_s:
         extra += "; no time is left for another try"
     return type(error)(f"{error}{extra}", stage=error.stage) if extra else error
+
+
+def declined(name: str, request: Request, details: Mapping[str, Any], said: str) -> WonderfulTeamError:
+    """Why a model, or a filter before it, gave no answer; `details` are what the service says of its end."""
+    why, reason = str(details.get("refusal") or ""), str(details.get("finish_reason") or "")
+    if why or "refusal" in reason:
+        text = redact(why or said)[:200]
+        return ModelRefusalError(f"{name} refused to answer {request.contract}: {text}", stage=request.stage)
+    kind = reason or "content_filter"
+    said_so = f"{name}: a content filter stopped the answer to {request.contract} ({kind})"
+    return ContentFilterError(said_so, stage=request.stage)

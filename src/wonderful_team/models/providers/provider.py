@@ -17,10 +17,8 @@ from wonderful_team.core.interrupts import in_thread
 from wonderful_team.core.values import Answer, Request, Usage
 from wonderful_team.errors import (
     BudgetReached,
-    ContentFilterError,
     ContextTooLongError,
     ModelCutOffError,
-    ModelRefusalError,
     ModelTimeoutError,
     WonderfulTeamError,
 )
@@ -30,7 +28,7 @@ from wonderful_team.models.conventions import Convention
 from wonderful_team.models.prices import Prices
 from wonderful_team.models.providers import library
 from wonderful_team.models.providers.facts import UNKNOWN
-from wonderful_team.models.providers.faults import Fault, before_sending, fault_of, key_refused, told
+from wonderful_team.models.providers.faults import Fault, before_sending, declined, fault_of, key_refused, told
 from wonderful_team.models.providers.learned import Learned
 from wonderful_team.models.providers.server_facts import server_facts
 from wonderful_team.models.providers.settings import LONGEST_WAIT_S, TIMED_OUT_TRIES, Settings, Thinking
@@ -39,7 +37,7 @@ from wonderful_team.models.providers.tokens import MOST_CHARACTERS_PER_TOKEN, as
 from wonderful_team.models.providers.turns import Turn, Turns
 from wonderful_team.models.providers.vendors import SERVER_KEY
 from wonderful_team.models.wire import Composed, Reading, Unreadable, compose, encodable, ticks_of
-from wonderful_team.redaction import keep_secret, redact, redact_known
+from wonderful_team.redaction import keep_secret, redact_known
 
 if TYPE_CHECKING:
     from pydantic_ai.messages import ModelResponse
@@ -330,7 +328,7 @@ class Provider:
         await self._check_whole(request, composed, response.usage.input_tokens)
         details = response.provider_details or {}
         if response.finish_reason == "content_filter" or details.get("refusal"):
-            raise self._declined(request, details, said)
+            raise declined(self.name, request, details, said)
         value: Any
         repairs: tuple[str, ...] = ()
         try:
@@ -363,17 +361,6 @@ class Provider:
         # Some servers route the whole answer of a thinking model into its thinking.
         reading = composed.read(thought)
         return Reading(reading.value, (*reading.repairs, "the answer stood in the model's thinking"))
-
-    def _declined(self, request: Request, details: Mapping[str, Any], said: str) -> WonderfulTeamError:
-        why = str(details.get("refusal") or "")
-        reason = str(details.get("finish_reason") or "")
-        text = redact(why or said)[:200]
-        if why or "refusal" in reason:
-            return ModelRefusalError(f"{self.name} refused to answer {request.contract}: {text}", stage=request.stage)
-        kind = reason or "content_filter"
-        return ContentFilterError(
-            f"{self.name}: a content filter stopped the answer to {request.contract} ({kind})", stage=request.stage
-        )
 
     def _cut_off(self, request: Request, limit: int, ticket: Ticket) -> WonderfulTeamError:
         if ticket.max_out is not None and limit == ticket.max_out < self.settings.max_tokens:

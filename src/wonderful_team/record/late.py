@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import math
 import threading
 import time
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Hashable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +18,9 @@ from wonderful_team.record.recorder import Recorder
 
 MOST_BYTES = 100_000_000
 """Pictures that wait in a process, in bytes. A run that would make them more is written down from then on."""
+
+DRAWN_BYTES = 7
+"""Of each pixel of a picture that is drawn later: three colours and its depth."""
 
 
 class Waiting:
@@ -55,7 +59,7 @@ class LateRecorder:
     def __init__(self, begin: Callable[[Callable[[], float]], Recorder], waiting: Waiting = _WAITING) -> None:
         self._begin, self._waiting = begin, waiting
         self._events: list[tuple[float, Event]] = []
-        self._sizes: dict[int, int] = {}
+        self._sizes: dict[Hashable, int] = {}
         self._lock = threading.RLock()
         self._at_s: float | None = time.monotonic()
         self._last: Event | None = None
@@ -74,7 +78,7 @@ class LateRecorder:
             elif not self._lost:
                 self._events.append((time.monotonic(), event))
                 # What an event holds lives as long as the event waits: its id is not given to another.
-                fresh = {id(one): size for one, size in _held_by(event.content) if id(one) not in self._sizes}
+                fresh = {one: size for one, size in _held_by(event.content) if one not in self._sizes}
                 if self._waiting.take(sum(fresh.values())):
                     self._sizes |= fresh
                 else:
@@ -141,19 +145,23 @@ class LateRecorder:
         return time.monotonic() if self._at_s is None else self._at_s
 
 
-def _held_by(content: Any) -> Iterator[tuple[object, int]]:
-    """The pictures and files that an event holds on to, and their bytes; what nobody has asked for yet is made when it is written."""
+def _held_by(content: Any) -> Iterator[tuple[Hashable, int]]:
+    """The pictures and files that an event holds on to, and their bytes: what is still to be drawn counts as it will then, and is not drawn for that."""
     match content:
         case Observation():
             for view in content.views.values():
-                if not isinstance(view, LaterView) or view.drawn:
+                if isinstance(view, LaterView):
+                    yield id(view), DRAWN_BYTES * math.prod(view.size_px)
+                else:
                     yield from _pixels(view.rgb, view.depth_m)
         case Request():
             for picture in content.pictures:
-                if not isinstance(picture, LaterPicture) or picture.made:
+                if isinstance(picture, LaterPicture):
+                    yield _cut(picture), DRAWN_BYTES * math.prod(picture.size_px)
+                else:
                     yield from _pixels(picture.rgb, picture.depth_m)
         case SentPicture():
-            yield content.file, len(content.file)
+            yield id(content.file), len(content.file)
             yield from _pixels(content.rgb)
         case tuple() | list():
             for part in content:
@@ -163,5 +171,12 @@ def _held_by(content: Any) -> Iterator[tuple[object, int]]:
                 yield from _held_by(part)
 
 
-def _pixels(*arrays: Array | None) -> Iterator[tuple[object, int]]:
-    yield from ((array, array.nbytes) for array in arrays if array is not None)
+def _cut(picture: LaterPicture) -> Hashable:
+    """The same for all pictures of one window of a view, which share their pixels."""
+    if picture.source is None:
+        return id(picture)
+    return id(picture.source), picture.frame.T_view_picture.tobytes(), picture.size_px
+
+
+def _pixels(*arrays: Array | None) -> Iterator[tuple[Hashable, int]]:
+    yield from ((id(array), array.nbytes) for array in arrays if array is not None)

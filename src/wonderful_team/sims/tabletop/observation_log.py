@@ -18,6 +18,7 @@ from shapely.geometry.base import BaseGeometry
 
 from wonderful_team.core.geometry import Pose
 from wonderful_team.core.geometry.arrays import Array
+from wonderful_team.core.once import Once
 from wonderful_team.core.values import GroundTruthView, Instruction, Observation, TrueThing, View
 from wonderful_team.sims.tabletop import prints
 from wonderful_team.sims.tabletop.goals import footprint_of
@@ -37,15 +38,7 @@ class Lazily(Mapping[str, T]):
     """A mapping that is worked out when something in it is first asked for."""
 
     def __init__(self, make: Callable[[], Mapping[str, T]]) -> None:
-        self._make: Callable[[], Mapping[str, T]] | None = make
-        self._made: Mapping[str, T] = {}
-        self._lock = threading.Lock()
-
-    def _all(self) -> Mapping[str, T]:
-        with self._lock:
-            if self._make is not None:
-                self._made, self._make = self._make(), None
-            return self._made
+        self._all = Once(make)
 
     def __getitem__(self, name: str) -> T:
         return self._all()[name]

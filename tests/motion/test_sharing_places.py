@@ -144,3 +144,16 @@ def test_things_in_one_free_area_of_a_box_lie_side_by_side_on_its_floor(point: t
     assert np.hypot(*np.subtract(*parts)) > 24
     for part in parts:
         assert np.max(np.abs(np.subtract(part, (300.0, 200.0)))) <= 59 - 20  # not on the wall
+
+
+def test_things_on_a_square_stay_as_far_from_its_edge_as_they_can() -> None:
+    """Side by side along its diagonal: what shows as the floor of a closed box is as wide as its walls."""
+    camera = AffineCamera(np.array([[0, 800.0, 0, 320], [800.0, 0, 0, -200], [0, 0, -1.0, 1.0]]))
+    depth = np.full((400, 640), 1.0, np.float32)
+    depth[140:260, 240:360] = 1.0 - 0.06
+    view = View("top", "top", 0.0, np.zeros((400, 640, 3), np.uint8), depth_m=depth, camera=camera)
+    place = GroundedTarget(Target("T1", "object", "box"), "found", "top", Box.around((300.0, 200.0), 120.0, 120.0), {})
+    parts = sharing.parts_of(place, (300.0, 200.0), [(20.0, 20.0), (20.0, 20.0)], Deprojector(view))
+    (dx, dy) = np.abs(np.subtract(*parts))
+    assert np.hypot(dx, dy) > 40
+    assert dx == pytest.approx(dy, rel=0.05)

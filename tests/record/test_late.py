@@ -8,11 +8,12 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 from tests.runtime.runtime_fake_run import TalkingPolicy, world_with_pictures
 from wonderful_team.core.protocols import Event
-from wonderful_team.core.values import Trial
+from wonderful_team.core.values import LaterView, Observation, Trial
 from wonderful_team.errors import FileNotWrittenError
 from wonderful_team.record import Recorder, late
 from wonderful_team.record.late import LateRecorder, Waiting
@@ -159,3 +160,19 @@ def test_without_room_on_the_disk_the_run_goes_on_and_says_so(happened: Events, 
         assert recorder.folder is None
         assert "no space left" in " ".join(recorder.unwritten)
         assert waiting.bytes == 0
+
+
+def test_what_is_still_to_be_drawn_takes_its_room_and_is_not_drawn_for_that(tmp_path: Path) -> None:
+    drawn: list[str] = []
+
+    def draw() -> tuple[Any, None]:
+        drawn.append("top")
+        return np.zeros((40, 60, 3), np.uint8), None
+
+    view = LaterView("top", "top", 0.0, (60, 40), draw)
+    waiting = Waiting(ROOM)
+    recorder = kept_late(tmp_path / "late", [Event("observe", "before", Observation({"top": view}))], waiting)
+    assert waiting.bytes >= 60 * 40 * 3
+    assert not drawn
+    recorder._forget()
+    assert waiting.bytes == 0

@@ -15,6 +15,7 @@ from wonderful_team.core.actions import Gripper, Home, MoveTo, PickPlace, Rotate
 from wonderful_team.core.geometry import Pose
 from wonderful_team.errors import ConfigError, MissingExtraError
 from wonderful_team.sims.arms import ArmWorld, make_world, task_names
+from wonderful_team.sims.arms.cameras import REACH_HIGH_M
 
 
 @pytest.fixture
@@ -232,3 +233,16 @@ def test_a_world_that_nobody_holds_is_gone_at_once(task: str) -> None:
         assert [one() for one in gone] == [None] * len(gone)
     finally:
         gc.enable()
+
+
+@pytest.mark.parametrize("task", [name for name in task_names() if name.startswith(("superhero", "fruit_price"))])
+def test_the_papers_implicit_goals_stand_within_the_arms_reach(task: str) -> None:
+    for seed in range(3):
+        world = make_world(task, seed=seed)
+        try:
+            moves = [action for action in world.privileged.oracle() if isinstance(action, MoveTo)]
+            assert moves
+            for move in moves:
+                assert abs(float(move.pose.position_m[1])) <= REACH_HIGH_M[1]
+        finally:
+            world.close()

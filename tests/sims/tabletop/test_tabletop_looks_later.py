@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import threading
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
 
-from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.values import LaterView, Observation, View
 from wonderful_team.errors import ConfigError
 from wonderful_team.sims.tabletop import make_world
@@ -17,18 +17,23 @@ from wonderful_team.sims.tabletop.kept_pictures import KeepingRenderer, kept_pic
 from wonderful_team.sims.tabletop.renderer import Drawn
 
 
-@pytest.fixture
-def drawn(monkeypatch: pytest.MonkeyPatch) -> list[str]:
-    """Cameras of the pictures that were drawn, in order."""
+def cameras_of(monkeypatch: pytest.MonkeyPatch, method: str) -> list[str]:
+    """Cameras of the pictures that a renderer's method draws from now on, in order."""
     cameras: list[str] = []
-    real = OpenGLRenderer.draw
+    real = getattr(OpenGLRenderer, method)
 
-    def counted(self: OpenGLRenderer, state: object, camera: str, *, alone: bool = False) -> Drawn:
+    def counted(self: OpenGLRenderer, state: object, camera: str, *, alone: bool = False) -> Any:
         cameras.append(camera)
         return real(self, state, camera, alone=alone)
 
-    monkeypatch.setattr(OpenGLRenderer, "draw", counted)
+    monkeypatch.setattr(OpenGLRenderer, method, counted)
     return cameras
+
+
+@pytest.fixture
+def drawn(monkeypatch: pytest.MonkeyPatch) -> list[str]:
+    """Cameras of the pictures that were drawn, in order."""
+    return cameras_of(monkeypatch, "draw")
 
 
 def moved(seed: int) -> tuple[object, Observation, Observation]:
@@ -65,14 +70,7 @@ def test_a_look_can_be_read_when_its_world_is_closed(drawn: list[str]) -> None:
 def test_an_instructions_pictures_are_drawn_when_they_are_read_even_when_the_world_is_closed(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    cameras: list[str] = []
-    real = OpenGLRenderer.colours
-
-    def counted(self: OpenGLRenderer, state: object, camera: str, *, alone: bool = False) -> Array:
-        cameras.append(camera)
-        return real(self, state, camera, alone=alone)
-
-    monkeypatch.setattr(OpenGLRenderer, "colours", counted)
+    cameras = cameras_of(monkeypatch, "colours")
     # A scene with props has a model of its own for its pictures, one without them the table's.
     for task in ("visual_manipulation", "rearrange"):
         world, again = (make_world(task, 4100 + len(task)) for _ in range(2))

@@ -17,6 +17,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from wonderful_team.core.caps import Caps
 from wonderful_team.core.text import counted
 from wonderful_team.errors import ClusterLostError, ConfigError, MissingExtraError
 from wonderful_team.evals.leases import RENEW_EVERY_S, Owner
@@ -160,6 +161,7 @@ class _Cluster:
         self._link, self._order, self._versions = link, order, versions
         self._owner = Owner.this_process()
         self._running: dict[int, Claim] = {}
+        self._ended: list[tuple[Claim, TrialRow, bytes]] = []
         self._lost: dict[str, list[Claim]] = {}
         self._tries: dict[int, int] = {}
         self._slots = self._number = 0
@@ -184,11 +186,18 @@ class _Cluster:
             lost = (claim for claims in self._lost.values() for claim in claims)
             for claim in (*self._running.values(), *lost):
                 self._store.give_back(claim.trial, self._owner, LATE if self._work.overdue else "interrupted")
+            self._book()
 
     def _work_off(self) -> None:
+        # A worker waits until it is given its next trial: that comes before its last one is written, but where what is left of a
+        # cap hangs on what that one has cost.
+        book_first = self._work.caps != Caps()
         while True:
+            if book_first:
+                self._book()
             if self._open:
                 self._open = self._hand_out()
+            self._book()
             if not (self._running or self._lost) and (not self._open or not self._watch.missing):
                 return
             if self._work.overdue:
@@ -242,7 +251,7 @@ class _Cluster:
                 self._slots = slots
                 self._compare(hello)
             case Result(number, row, folder):
-                self._finish(self._running.pop(number), row, folder)
+                self._ended.append((self._running.pop(number), row, folder))
             case Lost(numbers, node, slots):
                 self._slots, self._ready_s = slots, time.monotonic()
                 self._lost.setdefault(node, []).extend(self._running.pop(number) for number in numbers)
@@ -271,6 +280,11 @@ class _Cluster:
             )
 
     # -- results and losses --------------------------------------------------------------------------------------------
+
+    def _book(self) -> None:
+        """Write what came of the trials that ended."""
+        while self._ended:
+            self._finish(*self._ended.pop(0))
 
     def _finish(self, claim: Claim, row: TrialRow, folder: bytes) -> None:
         page = ""

@@ -14,8 +14,10 @@ THREADS = {
     **dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "OPENCV_FOR_THREADS_NUM"), "1"),
     # OpenGL without a graphics card: the thread that asks draws, with none beside it.
     "LP_NUM_THREADS": "0",
+    # Each trial is a new thread. With heaps of their own, threads get memory from the system that another heap has free.
+    "MALLOC_ARENA_MAX": "1",
 }
-"""Variables by which libraries that count and draw take one core each."""
+"""Variables by which a worker takes one core: libraries that count and draw, and the C library's heap."""
 
 
 def started_by_spawn() -> bool:

@@ -52,3 +52,12 @@ def test_a_missing_price_is_asked_about_by_name() -> None:
     assert texts == []
     assert "No price shows beside the" in question
     world.close()
+
+
+def test_a_dotted_bowl_does_not_hide_the_label_below_it() -> None:
+    # In a window all round such a bowl the engine sees its dots, and not the label: deals 784008.
+    world = make_world("fruit_price_ranking/deals", seed=784008)
+    texts, question = planned(world, world.observe())
+    assert question == ""
+    assert len(texts) == 4
+    world.close()

@@ -17,6 +17,8 @@ NEAR = 0.1
 """A card farther from a thing than this share of the picture's longer side says nothing of it."""
 CLOSE = (0.08, 0.13)
 """So far round a thing, in shares of that side, cards are looked for: twice, as an engine misses a line now and then."""
+WIDER = 0.065
+"""So much wider than a thing, on each side, its card may be, in shares of that side."""
 SAME_PRICE = 0.005
 """Prices that differ by less than this share are equal."""
 
@@ -25,13 +27,8 @@ def ranked_aims(things: list[Named], into: Description, descending: bool, eyes: 
     """One aim per thing: into the place that states its rank by price, the dearest first if `descending`."""
     places = [match.thing.number for match in eyes.find(into) if match.thing is not None]
     ranked = [thing.number for thing in things if thing.number is not None]
-    boxes, longest = [_thing(number, eyes).box for number in (*ranked, *places)], max(eyes.looked_at.size_px)
-    around = [box.grown(*[share * longest] * 4) for share in CLOSE for box in boxes]
-    cards = read_cards(eyes.looked_at, around)
-    prices = [card for card in cards if card.price is not None]
-    ranks = [card for card in cards if card.rank is not None]
-    priced = _beside(ranked, prices, eyes)
-    numbered = {card.rank: number for number, card in _beside(places, ranks, eyes).items()}
+    priced, ranks = _cards_of(ranked, places, eyes)
+    numbered = {card.rank: number for number, card in ranks.items()}
     result.absent += [f"no price shows beside the {thing.words}" for thing in things if thing.number not in priced]
     cost = {number: card.price or 0.0 for number, card in priced.items()}
     ordered = sorted((t for t in things if t.number in cost), key=lambda t: cost[t.number or 0], reverse=descending)
@@ -49,6 +46,31 @@ def ranked_aims(things: list[Named], into: Description, descending: bool, eyes: 
         )
         result.notes.append(f"the {thing.words} costs {cost[thing.number or 0]:.2f} and is number {rank}")
     return aims
+
+
+def _cards_of(ranked: list[int], places: list[int], eyes: Eyes) -> tuple[dict[int, Card], dict[int, Card]]:
+    """The price of each thing and the rank of each place.
+
+    Above and below them is looked first: what a thing's own pattern shows beside its card can keep an engine from seeing the card. Where
+    that is not enough, all round them.
+    """
+    picture, longest = eyes.looked_at, max(eyes.looked_at.size_px)
+    priced: dict[int, Card] = {}
+    numbered: dict[int, Card] = {}
+    boxes = [_thing(number, eyes).box for number in (*ranked, *places)]
+    parts = [part for box in boxes for part in _above_and_below(box, longest)]
+    for more in ([], [box.grown(*[share * longest] * 4) for share in CLOSE for box in boxes]):
+        cards = read_cards(picture, [*parts, *more])
+        priced = _beside(ranked, [card for card in cards if card.price is not None], eyes)
+        numbered = _beside(places, [card for card in cards if card.rank is not None], eyes)
+        if len(priced) == len(ranked) and len(numbered) == len(places):
+            break
+    return priced, numbered
+
+
+def _above_and_below(box: Box, longest: int) -> tuple[Box, Box]:
+    x0, x1, away = box.x0 - WIDER * longest, box.x1 + WIDER * longest, max(CLOSE) * longest
+    return Box(x0, box.y0 - away, x1, box.y0), Box(x0, box.y1, x1, box.y1 + away)
 
 
 def _by_place(number: int, places: list[int], into: Description, eyes: Eyes) -> Description:

@@ -195,8 +195,7 @@ def test_variations_of_an_implicit_goal_are_counted_together() -> None:
     team = Condition("team", "m")
     results = [("all_match", "success"), ("both", "failure"), ("no_area", "success"), ("misplaced", "success")]
     rows = [
-        Row(TrialSpec(f"tabletop/fruit_placement/{task}", 1000, team), TrialRow(outcome, None))
-        for task, outcome in results
+        Row(TrialSpec(f"arms/fruit_placement/{task}", 1000, team), TrialRow(outcome, None)) for task, outcome in results
     ]
     head, lines = filled(PAPER_TABLES["real-robot"], Summary(tuple(rows), (), (team,), ()))
     line = dict(zip(head, next(line for line in lines if line[0] == "fruit_placement"), strict=True))

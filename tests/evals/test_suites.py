@@ -45,6 +45,15 @@ def test_suites_grow_with_the_registered_tasks_and_say_what_is_missing() -> None
     assert all_suites([*KNOWN, *goals])["implicit"].tasks == (*KNOWN[2:], *goals)
 
 
+def test_implicit_goals_on_the_arm_are_suites_of_their_own() -> None:
+    goals = [f"arms/{folder}/{one}" for folder in ("fruit_placement", "fruit_price_ranking") for one in ("a", "b")]
+    suites = all_suites([*KNOWN, *goals])
+    assert suites["prices/arm"].tasks == tuple(goals[2:])
+    assert suites["implicit/arm"].tasks == tuple(goals)
+    assert suites["implicit"].tasks == tuple(KNOWN[2:])
+    assert suites["implicit/arm"].protocol == suites["implicit"].protocol
+
+
 def test_spatial_planning_is_run_closed_loop() -> None:
     known = [*KNOWN, "arms/star", "arms/wipe", "arms/block_in_bowl"]
     suites = all_suites(known)

@@ -96,16 +96,11 @@ def all_suites(known_tasks: Sequence[str], partitions: Mapping[str, Sequence[str
             if tasks:
                 suites[f"vima17/{level}"] = Suite(f"vima17/{level}", tasks, OPEN_LOOP, f"generalisation level {level}")
     suites.update(_real_vima(known_tasks, partitions or {}))
-    implicit: list[str] = []
-    for name, (folder, what) in IMPLICIT_GOALS.items():
-        tasks = tuple(task for task in known_tasks if task.startswith(f"tabletop/{folder}/"))
-        implicit += tasks
-        if tasks:
-            words = f"{what}: an implicit goal of the paper's, {counted(len(tasks), 'variation')}"
-            suites[name] = Suite(name, tasks, IMPLICIT_GOAL, words)
-    if implicit:
-        words = f"the paper's implicit goals, {counted(len(implicit), 'variation')}"
-        suites["implicit"] = Suite("implicit", tuple(implicit), IMPLICIT_GOAL, words)
+    for world, ending, where in (
+        ("tabletop", "", "on the tabletop"),
+        ("arms", "/arm", "on an arm that grips by contact"),
+    ):
+        suites.update(_implicit(known_tasks, world, ending, where))
     spatial = tuple(f"arms/{name}" for name in SPATIAL_TASKS if f"arms/{name}" in known_tasks)
     if spatial:
         words = "the paper's spatial planning, on an arm that grips by contact"
@@ -127,6 +122,21 @@ def all_suites(known_tasks: Sequence[str], partitions: Mapping[str, Sequence[str
         "boxcheck", tuple(f"{BOXCHECK}{kind}" for kind in BOX_KINDS), Protocol("toy table: 25 boxes of each of 4 kinds", 25, 0),
         "judge boxes on the toy table: the paper's Appendix F.2",
     )  # fmt: skip
+    return suites
+
+
+def _implicit(known_tasks: Sequence[str], world: str, ending: str, where: str) -> dict[str, Suite]:
+    """The paper's implicit goals as a world has them: a suite for each, and one of all."""
+    suites: dict[str, Suite] = {}
+    for name, (folder, what) in IMPLICIT_GOALS.items():
+        tasks = tuple(task for task in known_tasks if task.startswith(f"{world}/{folder}/"))
+        if tasks:
+            words = f"{what}: an implicit goal of the paper's, {counted(len(tasks), 'variation')}, {where}"
+            suites[name + ending] = Suite(name + ending, tasks, IMPLICIT_GOAL, words)
+    if suites:
+        every = tuple(task for suite in suites.values() for task in suite.tasks)
+        words = f"the paper's implicit goals, {counted(len(every), 'variation')}, {where}"
+        suites[f"implicit{ending}"] = Suite(f"implicit{ending}", every, IMPLICIT_GOAL, words)
     return suites
 
 

@@ -133,8 +133,6 @@ def build(
 
 def _set_options(spec: Any, size_px: tuple[int, int], look: Look) -> None:
     set_physics(spec, size_px, impratio=5.0)
-    # What rests is left out of the computation until something touches it.
-    spec.option.enableflags |= int(mj.mjtEnableBit.mjENBL_SLEEP)
     spec.visual.quality.offsamples = 4
     spec.visual.quality.shadowsize = SHADOW_PX if look.light.shadows else 0
 
@@ -145,6 +143,8 @@ def set_physics(spec: Any, size_px: tuple[int, int], impratio: float) -> None:
     spec.option.integrator = mj.mjtIntegrator.mjINT_IMPLICITFAST
     spec.option.cone = mj.mjtCone.mjCONE_ELLIPTIC
     spec.option.impratio = impratio
+    # What rests is left out of the computation until something touches it, or it is put elsewhere.
+    spec.option.enableflags |= int(mj.mjtEnableBit.mjENBL_SLEEP)
     spec.visual.global_.offwidth, spec.visual.global_.offheight = size_px
     spec.visual.quality.offsamples = spec.visual.quality.shadowsize = 0
     spec.visual.headlight.active = 0

@@ -178,6 +178,15 @@ def oracle_ms(quick: bool) -> str:
     return f"{1000 * (time.process_time() - before) / len(jobs):.0f} ms ({solved}/{len(jobs)} solved)"
 
 
+def arm_s(quick: bool) -> str:
+    """CPU of an episode on the arm by the oracle, nothing drawn: over ten tasks, and of the slowest."""
+    from benchmarks.arm_episodes import TASKS, means_s
+
+    means, solved, count = means_s(TASKS, range(5000, 5001 if quick else 5003))
+    slowest = max(means, key=lambda task: means[task])
+    return f"{statistics.mean(means.values()):.1f} s, {slowest} {means[slowest]:.1f} s ({solved}/{count} solved)"
+
+
 def blocks_s(count: int, quick: bool) -> str:
     """CPU of a plan by `offline` for "every red block into the bowl"."""
     import wonderful_team as wt
@@ -287,6 +296,7 @@ ROWS = (
         "plan, CPU a request, record and page included, team:paper", "35 ms", lambda quick: plan_ms("team:paper", quick)
     ),
     Row("oracle episode, CPU", "50 ms", oracle_ms),
+    Row("arm, oracle's episode, nothing drawn, CPU", "5 s", arm_s),
     Row("simulated:perfect trial, CPU", "0.18 s", lambda quick: trial_s("simulated:perfect", quick)),
     Row("simulated:perfect trial, records of failures, CPU", "-", kept_trial_s),
     Row("simulated:perfect trial, nine settings on a scene, CPU", "0.18 s", settings_trial_s),

@@ -138,3 +138,20 @@ def test_a_trial_whose_arm_went_home_by_itself_replays(tmp_path: Path) -> None:
     assert any(not report.executed for report in trial.reports)
     assert trial.folder is not None
     assert replay(trial.folder).same
+
+
+def test_what_rests_falls_when_what_it_stood_on_is_taken_away() -> None:
+    # Physics leaves out what rests until something touches it, or it is put elsewhere.
+    world = make_world("block_in_bowl", seed=4)
+    try:
+        table = world._table
+        block, bowl = f"{world.privileged.truth()['words']['colour']} block", "bowl"
+        x, y, _ = table.poses()[bowl].position_m
+        table.put(block, np.array([x, y, 0.1]), 0.0)
+        table.robot.rest(2.0)
+        in_bowl_m = table.poses()[block].position_m[2]
+        table.put(bowl, np.array([x, -y, 0.0]), 0.0)
+        table.robot.rest(2.0)
+        assert table.poses()[block].position_m[2] < in_bowl_m - 0.003
+    finally:
+        world.close()

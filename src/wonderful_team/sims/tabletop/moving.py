@@ -21,6 +21,10 @@ HOME_M = (0.5, 0.0, 0.3)
 
 def put_body(built: BuiltModel, state: Any, name: str, pose: Pose) -> None:
     """Put a body somewhere: a fixed one by its mocap slot, a free one by its joint, at rest."""
+    # Physics leaves out what has rested for a while. What is left out it wakes by itself when it is put elsewhere, with all that
+    # touched it; what is about to be left out would stay in the air.
+    awake = state.tree_asleep < 0
+    state.tree_asleep[awake] = -1 - mj.mjMINAWAKE
     model, body = built.model, built.body_id(name)
     slot = int(model.body_mocapid[body])
     if slot >= 0:

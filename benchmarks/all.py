@@ -303,7 +303,7 @@ ROWS = (
     Row("opening a store, by the study / by each worker", "-", opening_s),
     Row("offline, 20 red blocks into the bowl, CPU", "4 s", lambda quick: blocks_s(20, quick)),
     Row("offline, 50 red blocks into the bowl, CPU", "12 s", lambda quick: blocks_s(50, quick)),
-    Row("offline, a process that plans once, CPU", "-", first_plan_s),
+    Row("offline, a process that plans once, CPU", "1.0 s", first_plan_s),
     Row("one more request in a record", "constant", record_ms),
     Row("Ray, two workers, start not counted / --jobs 2", "0.95", ray_ratio),
     Row("two workers / one, start not counted", "1.9", cores_ratio),

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from wonderful_team.core.actions import (
@@ -26,12 +28,17 @@ MOST_ACTIONS = 80
 """The oracle runs no more than these: what they have not solved it does not solve."""
 
 
-class OracleControl:
-    """Runs the simulator's own solution, asked for anew after every pick and place or push, for as long as something is left to do.
+def run_together(actions: Sequence[Action]) -> Sequence[Action]:
+    """What of the simulator's own solution runs before a new one is asked for.
 
     An arm's moves and grips belong together: no single one gets anything done from which a new solution could start, so they
     run as they were given.
     """
+    return actions[:1] if isinstance(actions[0], PickPlace | Push) else actions
+
+
+class OracleControl:
+    """Runs the simulator's own solution, asked for anew after every pick and place or push, for as long as something is left to do."""
 
     name = ORACLE
     chunks = True
@@ -48,7 +55,7 @@ class OracleControl:
             return Done("the oracle has nothing left to do")
         if self._count >= MOST_ACTIONS:
             return Done(f"the oracle has run {self._count} actions, and something is left to do")
-        now = actions[:1] if isinstance(actions[0], PickPlace | Push) else actions
+        now = run_together(actions)
         first, self._count = self._count + 1, self._count + len(now)
         return Act(
             tuple(planned(at_seen_height(one, situation), number) for number, one in enumerate(now, start=first))

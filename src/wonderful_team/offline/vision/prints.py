@@ -44,8 +44,9 @@ _RANK = re.compile(r"(?:no\.?|nr\.?|#|rank|place)?\s*([1-9]\d?)\s*[a-z]{0,2}\.?"
 _ORDINALS = ("first", "second", "third", "fourth", "fifth", "sixth", "seventh", "eighth")
 _lock = threading.Lock()
 _engine: list[Any] = []
-_read: OrderedDict[tuple[str, tuple[tuple[float, ...], ...]], tuple[Card, ...]] = OrderedDict()
-_KEPT = 16
+_read: OrderedDict[tuple[str, tuple[float, ...]], list[tuple[str, Box, float]]] = OrderedDict()
+_KEPT = 512
+"""So many parts of pictures are not read again."""
 
 
 @dataclass(frozen=True)
@@ -94,23 +95,28 @@ def read_cards(picture: Picture, around: Sequence[Box]) -> tuple[Card, ...]:
     Raises:
         MissingExtraError: No OCR engine is installed.
     """
-    key = (picture.hash, tuple(box.as_tuple for box in around))
     with _lock:
-        if key not in _read:
-            _read[key] = _cards(_lines(picture, around))
-            while len(_read) > _KEPT:
-                _read.popitem(last=False)
-        return _read[key]
+        return _cards(_lines(picture, around))
 
 
 def _lines(picture: Picture, around: Sequence[Box]) -> list[tuple[str, Box]]:
     """Every line once, as it was read most surely."""
     lines: list[tuple[str, Box]] = []
-    found = sorted((line for box in around for line in _lines_in(picture, box)), key=lambda line: -line[2])
+    found = sorted((line for box in around for line in _known_lines(picture, box)), key=lambda line: -line[2])
     for text, box, _ in found:
         if not any(known.contains(box.centre) or box.contains(known.centre) for _, known in lines):
             lines.append((text, box))
     return lines
+
+
+def _known_lines(picture: Picture, part: Box) -> list[tuple[str, Box, float]]:
+    """`_lines_in`, read once."""
+    key = (picture.hash, part.as_tuple)
+    if key not in _read:
+        _read[key] = _lines_in(picture, part)
+        while len(_read) > _KEPT:
+            _read.popitem(last=False)
+    return _read[key]
 
 
 def _lines_in(picture: Picture, part: Box) -> list[tuple[str, Box, float]]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -112,6 +112,24 @@ def found(
 
 def area(name: str, px: tuple[float, float], role: str = "place") -> GroundedTarget:
     return GroundedTarget(Target(name, "area", "free space"), "found", "top", Box.around(px, 20, 20), {role: px})
+
+
+def aslant_in_a_bowl(camera: Camera) -> tuple[View, dict[str, GroundedTarget]]:
+    """A thing T1 that lies aslant in a bowl T2, held where it is low; where the bowl is pointed at, it shows higher. A1 is free."""
+    floor, wall, low, high, count = 0.002, 0.045, 0.038, 0.060, 12
+    x0, x1, y0, y1 = 0.45, 0.55, 0.09, 0.16
+    wide, rise = (x1 - x0) / count, (high - low) / (count - 1)
+    strips = [Block(x0 + k * wide, y0, x0 + (k + 1) * wide, y1, low + k * rise) for k in range(count)]
+    bowl = Block(0.38, 0.05, 0.62, 0.20, wall)
+    walls = [replace(bowl, x1=0.40), replace(bowl, x0=0.60), replace(bowl, y1=0.06), replace(bowl, y0=0.19)]
+    view = scene(camera, replace(bowl, height=floor), *walls, *strips)
+    held, shown, free = camera.project([strips[3].top(), strips[8].top(), (0.5, -0.3, 0.0)])
+    thing = found(camera, "T1", Block(x0, y0, x1, y1, (low + high) / 2))
+    return view, {
+        "T1": replace(thing, points={"pick": (float(held[0]), float(held[1]))}),
+        "T2": replace(found(camera, "T2", bowl), points={"place": (float(shown[0]), float(shown[1]))}),
+        "A1": area("A1", (float(free[0]), float(free[1]))),
+    }
 
 
 def _quaternion(rotation: Any) -> Any:

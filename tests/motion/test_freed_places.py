@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 
-from tests.motion.block_scenes import LIMITS, Block, affine_top, area, found, looking_down, scene
+from tests.motion.block_scenes import LIMITS, Block, affine_top, area, aslant_in_a_bowl, found, looking_down, scene
 from wonderful_team.core.actions import At, OriginOf, PickPlace, PickPlaceStep
 from wonderful_team.motion import ground_actions
 
@@ -76,3 +76,37 @@ def test_without_boxes_what_stands_apart_from_what_leaves_keeps_its_height() -> 
     last = ground_actions(steps, grounded, scene(camera, *blocks), LIMITS)[1]
     assert isinstance(last.action, PickPlace)
     assert last.action.place_m[2] == pytest.approx(0.05, abs=0.003)
+
+
+@pytest.mark.parametrize("boxed", [True, False])
+@pytest.mark.parametrize("name", CAMERAS)
+def test_a_thing_that_lies_aslant_in_its_bowl_comes_back_onto_the_floor(name: str, boxed: bool) -> None:
+    """Where its bowl is pointed at the picture shows the thing itself, higher than where it is held: no height to let go of it at."""
+    view, grounded = aslant_in_a_bowl(CAMERAS[name])
+    if not boxed:
+        grounded = {key: replace(item, box=None) for key, item in grounded.items()}
+    steps = (PickPlaceStep("G1", "T1", At("A1")), PickPlaceStep("G2", "T1", At("T2")))
+    back = ground_actions(steps, grounded, view, LIMITS)[1]
+    assert isinstance(back.action, PickPlace)
+    assert back.action.place_m[2] == pytest.approx(0.002 if boxed else 0.0, abs=0.003)
+    assert "T1 has left it" in back.sources[1].how
+
+
+@pytest.mark.parametrize("name", CAMERAS)
+def test_a_higher_neighbour_in_the_box_of_what_leaves_keeps_its_height(name: str) -> None:
+    """A box reaches over what stands beside a thing: that does not leave with it, and a thing is put onto it, not through it."""
+    camera = CAMERAS[name]
+    low, high = Block(0.40, -0.30, 0.46, -0.24, 0.04), Block(0.40, -0.24, 0.46, -0.18, 0.055)
+    other = Block(0.50, 0.10, 0.56, 0.16, 0.04)
+    u, v = camera.project([(0.35, 0.3, 0.0)])[0]
+    both = found(camera, "T1", replace(low, y1=high.y1), {"pick": (0.5, 0.2)})
+    grounded = {
+        "T1": both,
+        "T2": found(camera, "T2", high),
+        "T3": found(camera, "T3", other),
+        "A1": area("A1", (float(u), float(v))),
+    }
+    steps = (PickPlaceStep("G1", "T1", At("A1")), PickPlaceStep("G2", "T3", At("T2")))
+    last = ground_actions(steps, grounded, scene(camera, low, high, other), LIMITS)[1]
+    assert isinstance(last.action, PickPlace)
+    assert last.action.place_m[2] == pytest.approx(0.055, abs=0.002)

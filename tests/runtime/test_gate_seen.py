@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from tests.motion.block_scenes import LIMITS, Block, affine_top, area, found, looking_down, scene
+from tests.motion.block_scenes import LIMITS, Block, affine_top, area, aslant_in_a_bowl, found, looking_down, scene
 from wonderful_team.core.actions import (
     PICK_PLACE,
     At,
@@ -158,6 +158,26 @@ def test_into_a_bowl_onto_a_sheet_and_onto_a_plate() -> None:
         for target in (found(camera, "T2", plate, {"place": (0.5, 0.5)}), area("T2", px(camera, 0.535, 0.185, height))):
             plan = planned(view, {**blocks(camera, T1=RED), "T2": target}, PickPlaceStep("G1", "T1", At("T2")))
             assert gate(plan, view).admitted
+
+
+@pytest.mark.parametrize("name", CAMERAS)
+def test_a_thing_is_let_go_on_the_floor_of_its_bowl_and_never_dropped_into_it(name: str) -> None:
+    """Brought back into the bowl that it lay aslant in, it comes down to the floor; higher up it is refused, whatever the sources say."""
+    view, grounded = aslant_in_a_bowl(CAMERAS[name])
+    plan = planned(view, grounded, PickPlaceStep("G1", "T1", At("A1")), PickPlaceStep("G2", "T1", At("T2")))
+    assert gate(plan, view).admitted
+    first, back = plan.actions
+    assert isinstance(back.action, PickPlace)
+    pick, place = back.sources
+    for higher_m, names in ((0.015, set()), (0.025, {"drop"}), (0.048, {"drop"})):
+        raised = back.action.place_m + (0.0, 0.0, higher_m)
+        shown = px(CAMERAS[name], *raised)
+        dropped = replace(
+            back,
+            action=replace(back.action, place_m=raised),
+            sources=(pick, replace(place, position_m=tuple(map(float, raised)), point_px=shown, tool_px=None)),
+        )
+        assert failed(gate(replace(plan, actions=(first, dropped)), view)) == names
 
 
 def test_a_thing_is_turned_in_place_but_not_into_its_neighbour() -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+import cv2
 import numpy as np
 
 from wonderful_team.core.geometry import Box, PlanarCamera
@@ -20,8 +21,14 @@ RING_SHARE = 0.15
 """How far round a box its surroundings are measured (share of its smaller side)."""
 DEPTH_NOISE_M = 0.01
 """Surfaces seen less than this below the table are the table; what lies deeper is beside it [m]."""
-SURFACE_SAMPLES = 20
-"""At how many points between two pixels one surface is looked for."""
+STEP_M = 0.004
+"""From one cell to the next a surface rises or falls by no more than this [m]: in the finest cells, at 45 degrees."""
+FINEST_M = 0.004
+"""Finest cells in which a surface is followed [m]."""
+REACH_M = 0.35
+"""How far round a point one surface may reach [m]."""
+LEAST_APART_PX = 4.0
+"""Points that are closer to each other count as so far apart [px]."""
 _WINDOW_PER_PX = 1 / 150
 """Half width of the depth window per pixel of the view's smaller side: 1 px in a 128 px view, 5 px in a 720 px one."""
 
@@ -106,15 +113,30 @@ class Deprojector:
             sides.append([float(at[2]) for at in seen if at is not None])
         return level_all_round(sides)
 
-    def one_surface(self, one: Point, other: Point) -> bool:
-        """Whether depth shows one surface over the table from a pixel straight to another."""
-        if self.camera is None or isinstance(self.camera, PlanarCamera) or self.view.depth_m is None:
+    def one_surface(self, one: Point, other: Point, box: Box | None = None) -> bool:
+        """Whether depth shows a surface that hangs together from a pixel to another, level or aslant, round holes too.
+
+        It is looked at from above, where a wall, which a tilted camera sees as a slope, is the step that it is.
+
+        Args:
+            one: Where it starts [px].
+            other: Where it is to lead [px].
+            box: What shows outside it does not count [px]; without one, what is farther off than the two are from each other.
+        """
+        camera, depth = self.camera, self.view.depth_m
+        if camera is None or isinstance(camera, PlanarCamera) or depth is None:
             return False
-        shares = np.linspace(0.0, 1.0, SURFACE_SAMPLES)
-        way = [(one[0] + (other[0] - one[0]) * a, one[1] + (other[1] - one[1]) * a) for a in shares]
-        seen = [self.surface(px, "way").position_m for px in way if self.inside(px)]
-        heights = [float(at[2]) for at in seen if at is not None]
-        return min(heights) > TABLE_Z_M and max(heights) - min(heights) < DEPTH_NOISE_M
+        if box is None:
+            side = 3 * max(math.dist(one, other), LEAST_APART_PX)
+            box = Box.around(((one[0] + other[0]) / 2, (one[1] + other[1]) / 2), side, side)
+        start, end = (self.surface(px, "end").position_m for px in (one, other))
+        low_x, low_y = max(0, math.floor(box.x0)), max(0, math.floor(box.y0))
+        part = depth[low_y : max(0, math.ceil(box.y1)), low_x : max(0, math.ceil(box.x1))]
+        rows, columns = np.nonzero(np.isfinite(part) & (part > 0))
+        if start is None or end is None or not len(rows):
+            return False
+        px = np.column_stack([columns + low_x, rows + low_y]) + 0.5
+        return _hang_together(np.asarray(camera.deproject(px, part[rows, columns])), start, end)
 
     def to_px(self, position_m: Array) -> Point:
         """The pixel at which a point of the base frame shows; only with a camera."""
@@ -148,6 +170,24 @@ def _median(values: Array) -> float:
     if values.size % 2:
         return float(ordered[half])
     return float((ordered[half - 1] + ordered[half]) / ordered.dtype.type(2))
+
+
+def _hang_together(points: Array, one: Array, other: Array) -> bool:
+    """Whether the highest of these points, shape (N, 3) [m], lead from one place to another without a step."""
+    apart = np.linalg.norm(np.diff(points[:, :2], axis=0), axis=1)
+    cell_m = max(2 * float(np.median(apart)), FINEST_M) if len(apart) else FINEST_M
+    count = 2 * math.ceil(REACH_M / cell_m) + 1
+    cells = np.floor((np.vstack([one, other, points])[:, :2] - one[:2]) / cell_m).astype(np.int64) + count // 2
+    inside = np.asarray(((cells >= 0) & (cells < count)).all(axis=1))
+    if not inside[1]:
+        return False
+    heights = np.full((count, count), TABLE_Z_M - 2 * REACH_M, np.float32)
+    of_points = cells[2:][inside[2:]]
+    np.maximum.at(heights, (of_points[:, 1], of_points[:, 0]), points[inside[2:], 2].astype(np.float32))
+    reached = np.zeros((count + 2, count + 2), np.uint8)
+    seed = (int(cells[0, 0]), int(cells[0, 1]))
+    cv2.floodFill(heights, reached, seed, 0.0, STEP_M, STEP_M, 4 | cv2.FLOODFILL_MASK_ONLY | (1 << 8))
+    return bool(reached[cells[1, 1] + 1, cells[1, 0] + 1])
 
 
 def _grid(box: Box) -> list[Point]:

@@ -221,22 +221,28 @@ class Places:
     def _freed(self, spot: ResolvedPoint, progress: MotionState, thing: str | None, place: str) -> ResolvedPoint:
         """The same spot, but at the height of the support where the picture shows a thing that will have left it."""
         for name in (*progress.moved, *([thing] if thing is not None else [])):
-            if name == place or spot.position_m is None or not self._stood_at(name, spot.px):
+            if name == place or spot.position_m is None:
                 continue
-            support_m, top_m = self.support_z_m(name), self._top_z_m(name)
-            if support_m + EVEN_M < float(spot.position_m[2]) <= top_m + EVEN_M:
+            support_m = self.support_z_m(name)
+            if support_m + EVEN_M < float(spot.position_m[2]) and self._shows(name, spot):
                 return self.lift.at_height(
                     spot.px, support_m, f"{spot.how}; {name} has left it, so z = {support_m:.3f} m"
                 )
         return spot
 
-    def _stood_at(self, name: str, px: Point) -> bool:
-        """Whether the picture shows a target at a pixel: in its box, or on one surface with its pick point where it has none."""
+    def _shows(self, name: str, spot: ResolvedPoint) -> bool:
+        """Whether the picture shows a target at a spot.
+
+        What shows in its box no higher than its pick point is the target. What lies higher, as where a thing leans on the wall
+        of a bowl, may be a neighbour: it is the target if it hangs together with that point, and so is all without a box.
+        """
         found = self.target(name)
-        if found.box is not None:
-            return found.box.contains(px)
-        held = next((point for role, point in found.points.items() if role in TO_PICK), None)
-        return held is not None and self.lift.one_surface(held, px)
+        if found.box is not None and not found.box.contains(spot.px):
+            return False
+        if found.box is not None and spot.position_m is not None and spot.position_m[2] <= self._top_z_m(name) + EVEN_M:
+            return True
+        held = next((px for role, px in found.points.items() if role in TO_PICK), None)
+        return held is not None and self.lift.inside(held) and self.lift.one_surface(held, spot.px, found.box)
 
     def _top_z_m(self, name: str) -> float:
         """Height of the point at which a thing is held; infinite without one."""

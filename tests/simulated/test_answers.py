@@ -71,6 +71,28 @@ def test_a_draft_names_what_is_carried_and_where_to(table: Set, names: tuple[str
     assert [target.use for target in draft.targets] == [["pick"], ["place"]]
 
 
+@pytest.mark.parametrize("task", ["superhero_companions/exact", "superhero_companions/no_match"])
+def test_the_box_of_a_free_area_fits_what_will_lie_there(task: str) -> None:
+    """Once it is put there, the box is round it with a centimetre (6 px) to spare, however long and narrow it is."""
+    with set_table(task, 711005) as table:
+        draft, words = table.draft(), {thing.words: name for name, thing in table.truth.things().items()}
+        targets = {target.id: target.to_target() for target in draft.targets}
+        moves = [subgoal.move for subgoal in draft.subgoals if subgoal.move is not None]
+        boxes = {}
+        for move in moves:
+            assert move.place is not None
+            place = targets[move.place.target]
+            assert place.kind == "area"
+            boxes[words[targets[move.pick].words]] = table.given_box(place)
+        for action in table.truth.oracle():
+            table.world.execute(action)
+        for name, box in boxes.items():
+            lies = table.thing_box(name)
+            room = (lies.x0 - box.x0, lies.y0 - box.y0, box.x1 - lies.x1, box.y1 - lies.y1)
+            assert all(4 <= side <= 9 for side in room), f"{name}: {room}"
+        assert len(boxes) == 3
+
+
 @pytest.mark.parametrize("only", ["top", "front", "slot:dragged_obj_1:top", "slot:base_obj:front"])
 def test_no_plan_comes_from_a_task_of_which_one_picture_is_wrong(table: Set, only: str) -> None:
     for change in CHANGES.values():

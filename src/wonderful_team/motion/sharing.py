@@ -135,7 +135,11 @@ def _together(stays: list[_Stay]) -> list[list[_Stay]]:
 
 
 def parts_of(
-    place: GroundedTarget, centre: Point, sizes: Sequence[tuple[float, float]], lift: Deprojector
+    place: GroundedTarget,
+    centre: Point,
+    sizes: Sequence[tuple[float, float]],
+    lift: Deprojector,
+    uncovered: bool = False,
 ) -> list[Point]:
     """A point for each thing on a place, clear of the others; the one point for all where there is no room.
 
@@ -144,6 +148,7 @@ def parts_of(
         centre: Its chosen point [px].
         sizes: Half width and height of each thing [px].
         lift: The view.
+        uncovered: What shows at that point, such as a lid, will have left it: the floor is not seen.
     """
     if place.box is None and lift.view.depth_m is None:
         return [centre] * len(sizes)
@@ -155,9 +160,9 @@ def parts_of(
     if floors == [None] and place.box is None:
         return [centre] * len(sizes)
     tries: list[tuple[float | None, tuple[float, ...]]] = [*zip(floors, (CLOSER, FARTHER, FARTHER), strict=False)]
-    if len(floors) > 1:
-        # What stands in the middle hides the floor, and may be gone by then, as a lid is: better side by side than on top of each other.
-        tries.append((None, CLOSER))
+    if uncovered and place.box is not None:
+        # A lid is wider than the opening under it, and its handle keeps nothing from the middle: close together, things are farthest from the walls.
+        tries = [(None, CLOSER)]
     for floor_m, shares in tries:
         for share in shares:
             found = []
@@ -252,13 +257,18 @@ def _height_m(spot: Point, lift: Deprojector, heights: dict[Point, float]) -> fl
 
 
 def share_px(
-    share: Share, place: GroundedTarget, boxes: Sequence[Box | None], centre: Point, lift: Deprojector
+    share: Share,
+    place: GroundedTarget,
+    boxes: Sequence[Box | None],
+    centre: Point,
+    lift: Deprojector,
+    uncovered: bool,
 ) -> Point:
-    """Where the centre of one of several things goes that share a place [px]."""
+    """Where the centre of one of several things goes that share a place [px]; arguments as for `parts_of`."""
     sizes = [half_extents(box, yaw) for box, yaw in zip(boxes, share.yaws_rad, strict=True)]
     with _lock:
         known = _parts.setdefault(lift.view, {})
-    key = (None if place.box is None else place.box.as_tuple, centre, tuple(sizes))
+    key = (None if place.box is None else place.box.as_tuple, centre, tuple(sizes), uncovered)
     if key not in known:
-        known[key] = tuple(parts_of(place, centre, sizes, lift))
+        known[key] = tuple(parts_of(place, centre, sizes, lift, uncovered))
     return known[key][share.index]

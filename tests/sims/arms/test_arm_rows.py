@@ -13,11 +13,15 @@ from wonderful_team.core.actions import Gripper, Home, MoveTo
 from wonderful_team.core.geometry import Pose
 from wonderful_team.errors import ConfigError
 from wonderful_team.sims.arms import ARMS, make_world
+from wonderful_team.sims.arms.model import upright
 from wonderful_team.sims.arms.rows import MENAGERIE_VARIABLE
 from wonderful_team.sims.arms.scene import ROOM_M
 
 needs_menagerie = pytest.mark.skipif(
     not os.environ.get(MENAGERIE_VARIABLE), reason=f"{MENAGERIE_VARIABLE} names no checkout of MuJoCo Menagerie"
+)
+every_arm = pytest.mark.parametrize(
+    "arm", ["ur5e", pytest.param("xarm7", marks=needs_menagerie), pytest.param("panda", marks=needs_menagerie)]
 )
 
 
@@ -88,9 +92,7 @@ def test_an_arm_of_menagerie_carries_a_block_right_across_the_table_and_it_stays
 
 
 @needs_arms
-@pytest.mark.parametrize(
-    "arm", ["ur5e", pytest.param("xarm7", marks=needs_menagerie), pytest.param("panda", marks=needs_menagerie)]
-)
+@every_arm
 def test_every_arm_reaches_the_farthest_places_where_things_are_put(arm: str) -> None:
     menagerie_has(arm)
     world = make_world(f"block_in_bowl@{arm}", seed=1000)
@@ -100,5 +102,27 @@ def test_every_arm_reaches_the_farthest_places_where_things_are_put(arm: str) ->
                 report = world.execute(MoveTo(Pose.at((ROOM_M[2], y_m, up_m), 0.0)))
                 assert report.executed, report.fault
             world.execute(Home())
+    finally:
+        world.close()
+
+
+@needs_arms
+@every_arm
+def test_a_fruit_that_is_gripped_beside_its_middle_stays_upright_while_it_is_carried(arm: str) -> None:
+    menagerie_has(arm)
+    world = make_world(f"fruit_placement/both@{arm}", seed=7712)
+    try:
+        x, y, _ = world.privileged.truth()["things"]["lime"]["position_m"]
+        # Its long axis lies along y; the fingers close across it.
+        grip, across = np.array([x, y + 0.006, 0.026]), -np.pi / 2
+        for action in (
+            MoveTo(Pose.at(grip + (0.0, 0.0, 0.1), across)),
+            MoveTo(Pose.at(grip, across)),
+            Gripper("close"),
+            MoveTo(Pose.at(grip + (0.0, 0.0, 0.2), across)),
+            MoveTo(Pose.at(grip + (0.0, 0.3, 0.2), across)),
+        ):
+            assert world.execute(action).executed
+        assert upright(world._table.poses()["lime"].quaternion_wxyz) < np.radians(15)
     finally:
         world.close()

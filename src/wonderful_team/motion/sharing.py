@@ -36,6 +36,8 @@ CLOSER = (1.0, 0.9, 0.8, 0.7, 0.6)
 """Shares of the distance at which the discs of things would not touch; things are mostly smaller than their discs."""
 FARTHER = (1.0, 1.2, 1.4, 1.6, 1.8, 2.0)
 """The same where something stands in the middle, between them."""
+AMID = 1.3
+"""The same under a lid: so far apart that one may fall a little askew beside the other, and no farther, since no wall is seen."""
 GRID = 8
 """So many points along each side of a place say how high its floor usually is."""
 TURNS = 24
@@ -161,8 +163,8 @@ def parts_of(
         return [centre] * len(sizes)
     tries: list[tuple[float | None, tuple[float, ...]]] = [*zip(floors, (CLOSER, FARTHER, FARTHER), strict=False)]
     if uncovered and place.box is not None:
-        # A lid is wider than the opening under it, and its handle keeps nothing from the middle: close together, things are farthest from the walls.
-        tries = [(None, CLOSER)]
+        # A lid is wider than the opening under it, and its handle keeps nothing from the middle.
+        tries = [(None, (AMID, *CLOSER))]
     for floor_m, shares in tries:
         for share in shares:
             found = []

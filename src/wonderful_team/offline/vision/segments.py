@@ -249,7 +249,9 @@ def _same_level(lab: Array, pieces: list[Array], height: Array) -> list[Array]:
 def _stepped(one: Array, other: Array) -> bool:
     """Whether two pieces are steps of one wall: rings, one within the other, that touch all the way round."""
     outer, inner = (one, other) if filled(one).sum() >= filled(other).sum() else (other, one)
-    hole, whole = filled(outer), filled(inner)
+    hole = filled(outer)
+    # Seen a little aslant, a step is a pixel wide on one side, and its ring is open there.
+    whole = cv2.fillConvexPoly(np.zeros(inner.shape, np.uint8), cv2.convexHull(largest_contour(inner)), 1) > 0
     if hole.sum() < _HOLLOW * outer.sum() or whole.sum() < _HOLLOW * inner.sum() or (whole & ~hole).any():
         return False
     rim = whole & ~(cv2.erode(whole.astype(np.uint8), kernel(3)) > 0)

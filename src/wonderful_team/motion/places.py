@@ -176,7 +176,7 @@ class Places:
             return spot
         boxes = [self.target(thing).box for thing in share.things]
         centre = self.point(name, TO_PLACE)[1]
-        uncovered = any(self._stood_at(other, centre) for other in progress.moved if other not in (name, *share.things))
+        uncovered = any(self._shows(other, spot) for other in progress.moved if other not in (name, *share.things))
         part = share_px(share, self.target(name), boxes, centre, self.lift, uncovered)
         px = (spot.px[0] + part[0] - centre[0], spot.px[1] + part[1] - centre[1])
         if px == spot.px and self.target(name).target.kind == "area":

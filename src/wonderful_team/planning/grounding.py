@@ -47,6 +47,7 @@ def make_jobs(
             scene.examples([target]),
             _goal_of(target, targets, subgoals),
             accepted,
+            outlined=any(subgoal.function is not None and target.id in subgoal.targets for subgoal in subgoals),
         )
         for number, target in enumerate(targets)
     ]
@@ -67,7 +68,8 @@ async def ground_paper(jobs: Sequence[Job]) -> dict[str, GroundedTarget]:
 
 
 async def _ground_one(job: Job) -> GroundedTarget:
-    grounded = await (ground_area(job) if job.target.kind == "area" else ground_object(job))
+    points_alone = job.target.kind == "area" and not job.outlined
+    grounded = await (ground_area(job) if points_alone else ground_object(job))
     _remember(job, grounded)
     return grounded
 

@@ -43,6 +43,7 @@ class Job:
         judged: The Checker's first word, where it was asked about several boxes at once.
         first_box, first_points: What was read with all other targets (`lean`) [view px].
         unsure: Why it was not clear which thing is meant; "" where it was.
+        outlined: A helper function computes a path from its box: an area too needs one then.
     """
 
     session: AgentSession
@@ -62,6 +63,7 @@ class Job:
     first_box: Box | None = None
     first_points: dict[PointRole, Point] = field(default_factory=dict)
     unsure: str = ""
+    outlined: bool = False
 
     @property
     def instruction(self) -> str:

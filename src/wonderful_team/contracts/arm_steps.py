@@ -1,4 +1,4 @@
-"""A pick and place as the steps of an arm with a gripper, for models that write steps."""
+"""A pick and place as the steps of an arm with a gripper: what follows from a plan that says it, and for models that write steps."""
 
 from __future__ import annotations
 
@@ -6,10 +6,31 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from wonderful_team.contracts.steps import StepList, step_list_type
+from wonderful_team.core.actions import At, Beside, OriginOf, PickPlaceStep, Place, Step
+
 NEEDED = ("move", "open", "close")
 """Kinds of step without which an arm picks nothing up."""
 SQUARE_DEG = 90.0
 """Between two grips that centre the fingers on a thing [degrees]."""
+
+
+def steps_of_moves(moves: Sequence[PickPlaceStep], step_kinds: Sequence[str]) -> tuple[Step, ...]:
+    """Picks and places as the steps of a robot that has no such step, but can carry; else as they are."""
+    if "pick_place" in step_kinds:
+        return tuple(moves)
+    written = [
+        step
+        for move in moves
+        for step in arm_steps(move.subgoal, move.pick, _as_draft(move.place), move.rotate_deg, step_kinds)
+    ]
+    made: StepList = step_list_type(tuple(step_kinds)).model_validate({"reasoning": "", "steps": written})
+    return made.to_steps()
+
+
+def _as_draft(place: Place) -> dict[str, Any]:
+    how = {At: "at", Beside: "beside", OriginOf: "origin"}[type(place)]
+    return {"target": place.target, "how": how, "side": getattr(place, "side", None)}
 
 
 def can_carry(step_kinds: Sequence[str]) -> bool:

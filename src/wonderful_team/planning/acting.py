@@ -9,7 +9,15 @@ from dataclasses import dataclass, replace
 from wonderful_team.agents import step_words
 from wonderful_team.agents.plan_drawn import plan_drawn
 from wonderful_team.agents.scene import SceneShown
-from wonderful_team.contracts import GROUNDING_KINDS, PlanReview, ReviewSteps, StepList, WalkedReview, WriteSteps
+from wonderful_team.contracts import (
+    GROUNDING_KINDS,
+    PlanReview,
+    ReviewSteps,
+    StepList,
+    WalkedReview,
+    WriteSteps,
+    steps_of_moves,
+)
 from wonderful_team.core.actions import Step
 from wonderful_team.core.pictures import PathPoint, Picture
 from wonderful_team.core.text import counted
@@ -51,7 +59,7 @@ def steps_of_plan(session: AgentSession, scene: SceneShown, state: PlanState) ->
         return None
     session.skip("WriteSteps", "the plan states them")
     session.note("supervisor", "WriteSteps", steps_note(state.moves))
-    return state.moves
+    return steps_of_moves(state.moves, kinds)
 
 
 def remember_angles(session: AgentSession, scene: SceneShown, state: PlanState, steps: Sequence[Step]) -> None:

@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Mapping, Sequence
 
-from wonderful_team.contracts import SceneTarget
+from wonderful_team.contracts import SceneTarget, can_carry
 from wonderful_team.core.actions import At, PickPlaceStep, Step
 from wonderful_team.core.geometry import Box
 from wonderful_team.core.pictures import Point
@@ -82,8 +82,9 @@ def steps_said(
 ) -> bool:
     """Whether the plan says everything that its steps need: one pick and one place for each subgoal, with their points."""
     by_id = {target.id: target for target in targets}
+    turns = any(move.rotate_deg for move in moves)
     return (
-        "pick_place" in step_kinds
+        ("pick_place" in step_kinds or (can_carry(step_kinds) and ("rotate_gripper" in step_kinds or not turns)))
         and [move.subgoal for move in moves] == [subgoal.id for subgoal in subgoals]
         and not any(subgoal.function for subgoal in subgoals)
         and all(_has_points(move, by_id) for move in moves)

@@ -4,7 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from wonderful_team.contracts import DraftPlan, MoveDraft, PlainPlan, PlanDraft, PlanRevision, RevisePlan, SubgoalDraft
+from wonderful_team.contracts import (
+    DraftPlan,
+    MoveDraft,
+    PlainPlan,
+    PlanDraft,
+    PlanRevision,
+    RevisePlan,
+    SubgoalDraft,
+    arm_steps,
+    can_carry,
+)
 from wonderful_team.contracts.shown import ShownTask
 from wonderful_team.core.values import Target
 from wonderful_team.errors import UnsupportedQuestion, WonderfulTeamError
@@ -49,7 +59,7 @@ def answer_revise(question: RevisePlan) -> PlanRevision:
 
 def with_moves(plan: PlanDraft, task: ShownTask, step_kinds: Sequence[str]) -> PlanDraft:
     """The plan with the move of every subgoal that one pick and place carries out."""
-    if not plan.subgoals or "pick_place" not in step_kinds:
+    if not plan.subgoals or not ("pick_place" in step_kinds or can_carry(step_kinds)):
         return plan
     eyes, targets = eyes_of_task(task), plan.to_targets()
     subgoals = [item.model_copy(update={"move": _move(item, targets, step_kinds, eyes)}) for item in plan.subgoals]
@@ -57,12 +67,20 @@ def with_moves(plan: PlanDraft, task: ShownTask, step_kinds: Sequence[str]) -> P
 
 
 def _move(subgoal: SubgoalDraft, targets: Sequence[Target], step_kinds: Sequence[str], eyes: Eyes) -> MoveDraft | None:
-    """The one step that would be written for a subgoal; None where it takes another kind, or several."""
+    """The one pick and place that would be written for a subgoal; None where it takes something else."""
+    goal = subgoal.to_subgoal()
     try:
-        steps = steps_of_subgoal(subgoal.to_subgoal(), targets, step_kinds, eyes)
+        wanted = steps_of_subgoal(goal, targets, step_kinds, eyes)
+        carried = steps_of_subgoal(goal, targets, ("pick_place",), eyes)
     except WonderfulTeamError:
         # What cannot be written as steps is refused by name when steps are asked for.
         return None
-    if len(steps) != 1 or steps[0]["kind"] != "pick_place":
+    if len(carried) != 1:
         return None
-    return MoveDraft.model_validate({name: steps[0][name] for name in MoveDraft.model_fields})
+    move = MoveDraft.model_validate({name: carried[0][name] for name in MoveDraft.model_fields})
+    if wanted == carried:
+        return move
+    plain = can_carry(step_kinds) and wanted == arm_steps(
+        goal.id, move.pick, move.place.model_dump(), move.rotate_deg, step_kinds
+    )
+    return move if plain else None

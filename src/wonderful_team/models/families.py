@@ -31,6 +31,7 @@ class Family:
             platform.claude.com/docs/en/build-with-claude/vision (32 MB a request); for Gemini 20 MB a request
             (firebase.google.com/docs/vertex-ai/input-file-requirements); for OpenAI 50 MB of pictures a request (its guide on images
             and vision). A little less is used, for the words. A service that names no limit teaches it with status 413.
+        tile_px: Side of the tiles that pictures are counted in (OpenAI's guide on images and vision).
     """
 
     name: str
@@ -39,6 +40,7 @@ class Family:
     weak_pointing: bool = False
     detail: Literal["high", "original"] | None = None
     weight: Weight = UNLIMITED
+    tile_px: int | None = None
 
 
 def _family(name: str, sure: Sure = "reported", *, weak: bool = False) -> Family:
@@ -63,7 +65,7 @@ _PATTERNS: tuple[tuple[str, Family], ...] = (
     (r"\bgpt-[\d.]+-?(mini|nano)|\bo4-mini", _gpt("gpt-patches", "high")),
     # `original` came with GPT-5.4; earlier ones see tiles of a picture whose shorter side is 768 px.
     (r"\bgpt-(5\.([4-9]|[1-9]\d)|[6-9]|[1-9]\d)", _gpt("gpt", "original")),
-    (r"\bgpt|chatgpt|\bo[134](-|$)", _gpt("gpt-tiles", "high")),
+    (r"\bgpt|chatgpt|\bo[134](-|$)", replace(_gpt("gpt-tiles", "high"), tile_px=512)),
     (r"qwen-?2[._]?5-?(omni|vl)|qwen2_5", _family("qwen2.5-vl")),
     (r"qwen-?2-?vl", _family("qwen2-vl")),
     (r"qwen-?(3|[4-9])|qwen.*vl", _family("qwen3-vl")),

@@ -58,13 +58,14 @@ class Words:
     """A part of a request: text.
 
     Attributes:
-        says: caption (it announces `picture`, its size and its tick labels) or positions (it says how to give positions
-            in `picture`): a provider may write these in its model's own unit. "" for all other text.
+        says: caption (it announces `picture`, its size and its tick labels), positions (it says how to give positions in
+            `picture`) or tolerance (how exact the box on `picture` has to be): a provider may write these in its model's own
+            unit. "" for all other text.
         about: Of a caption: what the picture is, in words.
     """
 
     text: str
-    says: Literal["", "caption", "positions"] = ""
+    says: Literal["", "caption", "positions", "tolerance"] = ""
     picture: Picture | None = None
     about: str = ""
 

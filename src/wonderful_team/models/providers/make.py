@@ -87,7 +87,15 @@ def make_provider(
     family = guess_family(model)
     most = max_tokens or (MAX_TOKENS[thinking] if parsed.vendor or thinking not in (None, "off") else SERVER_MAX_TOKENS)
     settings = Settings(
-        thinking, most, deadline_s, tries, first_wait_s, timeout_s, weight=family.weight, encoding=encoding
+        thinking,
+        most,
+        deadline_s,
+        tries,
+        first_wait_s,
+        timeout_s,
+        weight=family.weight,
+        encoding=encoding,
+        tile_px=family.tile_px,
     )
     if parsed.service.takes_detail:
         settings = replace(settings, detail=family.detail)
@@ -101,6 +109,7 @@ def make_provider(
             schemas=profile.schemas != "refused",
             max_pictures=profile.max_pictures,
             context=profile.context_tokens,
+            tile_px=None,  # measured with pictures in the sizes that they have
         )
     name = spec if parsed.model else f"{parsed.base_url}#{model}"
     return Provider(

@@ -219,6 +219,7 @@ class Provider:
             schema_in_words=told,
             limits=self._learned.weight,
             encoding=self.settings.encoding,
+            tile_px=self.settings.tile_px,
         )
 
     @property

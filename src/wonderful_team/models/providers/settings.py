@@ -38,6 +38,7 @@ class Settings:
         context: Most tokens of a request and its answer, as measured; what the service says now wins.
         detail: The detail in which pictures are to be looked at, where the service has such a switch.
         weight: How heavy pictures may be; heavier ones are sent as JPEG.
+        tile_px: Side of the tiles that pictures are counted in; None where they are not.
         encoding: Of pictures' files: auto (photos without tick labels as JPEG, all else as PNG), png or jpeg.
     """
 
@@ -52,6 +53,7 @@ class Settings:
     detail: str | None = None
     context: int | None = None
     weight: Weight = UNLIMITED
+    tile_px: int | None = None
     encoding: Encoding = "auto"
 
     @property

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Hashable, Sequence
+from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any, TypeAlias, cast
@@ -11,15 +11,18 @@ from typing import Any, TypeAlias, cast
 import numpy as np
 from pydantic import BaseModel
 
+from wonderful_team.contracts import Tolerance
+from wonderful_team.core.geometry import Frame
 from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.pictures import Axes, Picture
 from wonderful_team.core.values import Request, SentPicture, Words
+from wonderful_team.images import line_width_px
 from wonderful_team.images.captions import axes_words, size_words
-from wonderful_team.models.conventions import PIXELS, Convention
+from wonderful_team.models.conventions import PIXELS, Convention, Size
 from wonderful_team.models.wire.coding import Encoding, encoded
 from wonderful_team.models.wire.form import Form, box_keys, point_keys
 from wonderful_team.models.wire.reading import Reading, read_json, read_point_tags
-from wonderful_team.models.wire.showing import Shown, paste, show_encoded, ticks_of
+from wonderful_team.models.wire.showing import Shown, paste, scaled_frame, sent_size, show_encoded, ticks_of
 from wonderful_team.models.wire.weight import UNLIMITED, Weight, lightened, sent_bytes
 
 Piece: TypeAlias = str | bytes
@@ -80,6 +83,7 @@ def compose(
     schema_in_words: bool = False,
     limits: Weight = UNLIMITED,
     encoding: Encoding = "auto",
+    tile_px: int | None = None,
 ) -> Composed:
     """Words, pictures and schema of a request in the terms of a model.
 
@@ -90,6 +94,8 @@ def compose(
         schema_in_words: Tell the schema in words as well, for servers that do not show it to the model.
         limits: How heavy pictures may be.
         encoding: Of pictures' files (see `coding.encoded`).
+        tile_px: Side of the tiles that the service counts pictures in; enlarged ones are fitted to them where nothing said or
+            answered counts their pixels.
     """
     form = _form(cast(Hashable, request.output), convention)
     if not form.has_places:
@@ -103,7 +109,12 @@ def compose(
         canvas = (sheet.shape[1], sheet.shape[0])
         one, notice = lightened({"sheet": encoded(sheet, pictures, encoding)}, {"sheet": sheet}, {"sheet": 1}, limits)
     else:
-        both = [show_encoded(picture, convention, encoding) for picture in pictures]
+        fitted = tile_px if form.has_places or request.question.any_size else None
+        resized = {picture: sent_size(picture, convention, fitted) for picture in pictures}
+        both = [
+            show_encoded(picture, convention, encoding, resized[picture], _reference(picture, resized))
+            for picture in pictures
+        ]
         shown, files = (
             [item for item, _ in both],
             {picture: file for picture, (_, file) in zip(pictures, both, strict=True)},
@@ -142,6 +153,13 @@ def compose(
     return Composed(request.system, _joined(pieces), form, convention, sizes, where, canvas, weight, notice, sent)
 
 
+def _reference(picture: Picture, sizes: Mapping[Picture, Size]) -> Frame | None:
+    """The frame, as it is sent, of the picture whose pixels this one's axes name; None where they name its own."""
+    named = next((mark.reference for mark in picture.marks if isinstance(mark, Axes)), None)
+    whose = next((other for other in sizes if named is not None and other.frame is named), None)
+    return None if whose is None else scaled_frame(whose.frame, sizes[whose])
+
+
 def answer_picture(request: Request) -> Picture | None:
     """The picture whose pixels the answer is given in."""
     for part in request.parts:
@@ -161,9 +179,11 @@ def _form(output: Hashable, convention: Convention) -> Form:
 
 def _said(words: Words, held: dict[Picture, Shown], convention: Convention, pasted: bool) -> str:
     """The words, with a caption's size and tick labels as they are for this model."""
-    if words.says != "caption" or words.picture not in held:
+    if words.says not in ("caption", "tolerance") or words.picture not in held:
         return words.text
     sent = held[words.picture].picture
+    if words.says == "tolerance":
+        return Tolerance.on(sent).words(line_width_px(sent))
     text = words.text.replace(size_words(words.picture.size_px), size_words(sent.size_px), 1)
     for mark in words.picture.marks:
         if isinstance(mark, Axes):
@@ -186,9 +206,12 @@ def _positions(picture: Picture, shown: Shown, form: Form, canvas: tuple[int, in
         (x0, y0), (x1, y1) = corners * (np.array([across, down]) / canvas)
         place = f"that picture spans x {x0:.4g} to {x1:.4g} and y {y0:.4g} to {y1:.4g}"
         which = f"the sheet, for what {which} shows; {place}"
+    kinds = {"Point": ("point", point_keys(convention)), "Box": ("box", box_keys(convention))}
+    held = [kinds[name] for name in kinds if name in form.schema.get("$defs", {})]
+    written = ", ".join(f"a {kind} is [{', '.join(keys)}]" for kind, keys in held)
     return (
         f"Answer with positions in {which}: x from 0 to {across:g}, y from 0 to {down:g}, {form.describe()}. "
-        f"A point is [{', '.join(point_keys(convention))}], a box is [{', '.join(box_keys(convention))}]."
+        f"{written[:1].upper()}{written[1:]}."
     )
 
 

@@ -65,7 +65,7 @@ class Form:
     def describe(self) -> str:
         """Unit and order of places, in one sentence."""
         order = "x before y" if self.convention.order == "xy" else "y before x"
-        return f"{_UNIT_WORDS[self.convention.unit]}, {order}, counted from the top-left corner"
+        return f"{_UNIT_WORDS[self.convention.unit]}, {order}, counted right and down from the top-left corner"
 
     def read(self, value: Any, to_px: ToPx) -> Any:
         """The value with our names, and with places in pixels of our picture.

@@ -39,6 +39,8 @@ HEAD_PX = 30
 """Grey space above each picture, where its number stands."""
 _NUMBER_PX = 18
 SHEET_WIDTH_PX = 1600
+LEAST_OF_ENLARGED = 0.7
+"""An enlarged picture may be sent smaller by this share, never below its own pixels, where it fills fewer tiles then."""
 _SHEET_GREY = 200
 
 
@@ -68,9 +70,47 @@ def ticks_of(convention: Convention) -> Ticks:
     return _TICKS[convention.unit]
 
 
-def show(picture: Picture, convention: Convention = PIXELS) -> Shown:
-    """The picture in the size that the model looks at, its marks drawn with the model's ticks."""
-    sent = scaled(picture, convention.seen_size(picture.size_px))
+def sent_size(picture: Picture, convention: Convention, tile_px: int | None) -> Size:
+    """Width and height in which a picture is sent: as the model looks at it, an enlarged one fitted to whole tiles."""
+    size = convention.seen_size(picture.size_px)
+    if tile_px is None or picture.frame.scale <= 1:
+        return size
+    return fewer_tiles(size, tile_px, least=max(LEAST_OF_ENLARGED, picture.size_px[0] / size[0] / picture.frame.scale))
+
+
+def fewer_tiles(size: Size, tile_px: int, least: float) -> Size:
+    """The size, or a smaller one of the same shape that is covered by fewer square tiles.
+
+    Args:
+        size: Width and height [px].
+        tile_px: Side of a tile.
+        least: Smallest share of the size that will do.
+    """
+    across, down = (-(-side // tile_px) for side in size)
+    shares = [tile_px * count / size[0] for count in range(1, across)]
+    shares += [tile_px * count / size[1] for count in range(1, down)]
+    fitted = [size, *(_shrunk(size, share) for share in shares if least <= share < 1)]
+    return min(fitted, key=lambda one: (-(-one[0] // tile_px) * -(-one[1] // tile_px), -one[0]))
+
+
+def _shrunk(size: Size, share: float) -> Size:
+    return max(1, int(size[0] * share + 1e-6)), max(1, int(size[1] * share + 1e-6))
+
+
+def show(
+    picture: Picture, convention: Convention = PIXELS, size_px: Size | None = None, reference: Frame | None = None
+) -> Shown:
+    """The picture in the size that is sent, its marks drawn with the model's ticks.
+
+    Args:
+        picture: What is shown.
+        convention: Of the model.
+        size_px: Width and height; default the size that the model looks at.
+        reference: Whose pixels its axes name instead, where they name those of another picture.
+    """
+    sent = scaled(picture, size_px or convention.seen_size(picture.size_px))
+    if reference is not None:
+        sent = replace(sent, marks=tuple(Axes(reference) if isinstance(mark, Axes) else mark for mark in sent.marks))
     scale = (sent.size_px[0] / picture.size_px[0], sent.size_px[1] / picture.size_px[1])
     # At its own size it may have been drawn before: the cache looks at it too.
     rgb = drawn(sent, ticks_of(convention)) if sent is picture else draw(sent, ticks_of(convention))
@@ -114,18 +154,24 @@ def paste(pictures: Sequence[Picture], convention: Convention = PIXELS) -> tuple
 
 
 KEPT_BYTES = 48_000_000
-_shown: Kept[tuple[int, Convention, Encoding], tuple[Picture, Shown, bytes]] = Kept(
+_shown: Kept[tuple[int, Convention, Encoding, Size | None, Size | None], tuple[Picture, Shown, bytes]] = Kept(
     KEPT_BYTES, lambda held: held[0].rgb.nbytes + held[1].rgb.nbytes + len(held[2])
 )
 
 
-def show_encoded(picture: Picture, convention: Convention = PIXELS, encoding: Encoding = "auto") -> tuple[Shown, bytes]:
+def show_encoded(
+    picture: Picture,
+    convention: Convention = PIXELS,
+    encoding: Encoding = "auto",
+    size_px: Size | None = None,
+    reference: Frame | None = None,
+) -> tuple[Shown, bytes]:
     """`show` and its file; the last ones are kept, for samples and second tries that show the same again."""
     # The entry holds the picture, so its id cannot have passed to another.
-    key = (id(picture), convention, encoding)
+    key = (id(picture), convention, encoding, size_px, None if reference is None else reference.size_px)
     held = _shown.get(key)
     if held is None:
-        shown = show(picture, convention)
+        shown = show(picture, convention, size_px, reference)
         held = _shown.keep(key, (picture, shown, encoded(shown.rgb, (picture,), encoding)))
     return held[1], held[2]
 
@@ -152,13 +198,14 @@ def scaled(picture: Picture, size_px: Size) -> Picture:
     return Picture(
         picture.name,
         rgb,
-        _scaled_frame(picture.frame, size_px),
+        scaled_frame(picture.frame, size_px),
         None,
         tuple(_scaled_mark(mark, sx, sy) for mark in picture.marks),
     )
 
 
-def _scaled_frame(frame: Frame, size_px: Size) -> Frame:
+def scaled_frame(frame: Frame, size_px: Size) -> Frame:
+    """The frame of the same picture in another size."""
     sx, sy = (new / old for new, old in zip(size_px, frame.size_px, strict=True))
     matrix = frame.T_view_picture @ np.diag([1 / sx, 1 / sy, 1.0])
     return Frame(frame.view_id, matrix, size_px, _scaled_box(frame.valid, sx, sy))

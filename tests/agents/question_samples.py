@@ -8,7 +8,6 @@ import numpy as np
 
 from wonderful_team.agents import ROLES
 from wonderful_team.contracts import (
-    EDGES,
     ChooseMark,
     ChooseMotion,
     ChoosePoint,
@@ -55,7 +54,8 @@ from wonderful_team.contracts import (
 from wonderful_team.core.actions import Beside, MoveStep, OriginOf, PickPlaceStep
 from wonderful_team.core.geometry import Box, Frame
 from wonderful_team.core.pictures import Axes, BoxMark, Candidates, Grid, Mark, PathMark, Picture, PointMark, Tiles
-from wonderful_team.core.values import Critique, Subgoal, Target, Verdict
+from wonderful_team.core.values import Critique, Subgoal, Target, Verdict, View
+from wonderful_team.images import edge_strips
 from wonderful_team.registry.methods import METHODS
 
 WANTED = "Put the {base_obj} onto the tray."
@@ -92,11 +92,8 @@ PLAN = ("G1: the mug stands on the tray", "G2: the mug is back")
 STEPS = (PickPlaceStep("G1", "T7", Beside("T8", "left"), -90.0), MoveStep("G2", OriginOf("T7"), "clear"))
 BOX = BoxMark(Box(10, 5, 30, 20), label="T7")
 MARKS = Candidates(((5.0, 5.0), (20.0, 10.0), (40.0, 20.0)))
-STRIPS = tuple(
-    Strip(edge, side, picture(f"strip {edge} {side}"))  # type: ignore[arg-type]
-    for edge in EDGES
-    for side in ("inside", "outside")
-)
+_GRAIN = View("top", "camera", 0.0, np.random.default_rng(5).integers(0, 255, (32, 64, 3), dtype=np.uint8))
+STRIPS = tuple(Strip(*where, strip) for where, strip in edge_strips(_GRAIN, Box(20, 10, 44, 22)).items())
 
 SAMPLES: tuple[Question, ...] = (
     DraftPlan(TASK, KINDS, True, ("the lid was closed",), FUNCTIONS),

@@ -11,7 +11,7 @@ from tests.images.scenes import crop_pair, view
 from wonderful_team.core.geometry import Box, Frame
 from wonderful_team.core.pictures import BoxMark, LineMark, Picture
 from wonderful_team.core.values import View
-from wonderful_team.images import beside_points, crop, edge_strips, inside_points, picture_of, whole
+from wonderful_team.images import across_edge, beside_points, crop, edge_strips, inside_points, picture_of, whole
 
 SIZES = st.tuples(st.integers(20, 260), st.integers(20, 260))
 
@@ -105,6 +105,33 @@ def test_strips_lie_along_their_edges_the_right_way_up(corner: tuple[float, floa
         middle = picture.frame.point_to_view((picture.size_px[0] / 2, picture.size_px[1] / 2))[across]
         inwards = 1 if edge in ("left", "top") else -1
         assert (middle - value[edge]) * inwards * (1 if side == "inside" else -1) > -0.5
+
+
+@settings(max_examples=40, deadline=None, derandomize=True)
+@given(size=SIZES, where=st.tuples(*[st.floats(0.02, 0.98)] * 4))
+def test_the_strips_of_an_edge_are_joined_where_both_lie_in_the_view(
+    size: tuple[int, int], where: tuple[float, float, float, float]
+) -> None:
+    source = coordinates(*size)
+    (x0, x1), (y0, y1) = (sorted(pair) for pair in (where[:2], where[2:]))
+    box = Box(x0 * size[0], y0 * size[1], max(x1 * size[0], x0 * size[0] + 3), max(y1 * size[1], y0 * size[1] + 3))
+    strips = edge_strips(source, box)
+    for edge in ("left", "top", "right", "bottom"):
+        inside, outside = strips.get((edge, "inside")), strips.get((edge, "outside"))
+        if inside is None or outside is None:
+            continue
+        both = across_edge(inside, outside, "both")
+        assert both is not None, "both sides are cut in one scale"
+        assert len(both.marks) == 1
+        for part in (inside, outside):
+            left, top = (round(value) for value in both.frame.point_to_picture(part.frame.point_to_view((0.0, 0.0))))
+            width, height = part.size_px
+            held = both.rgb[top : top + height, left : left + width].astype(int)
+            x0, y0, x1, y1 = (round(value) for value in part.frame.valid.as_tuple)
+            # Along the line both show the same view pixels, enlarged with other neighbours: by one of the view's steps at most.
+            assert np.abs(held - part.rgb)[y0:y1, x0:x1].max() <= 7
+        middle = both.frame.point_to_view(both.marks[0].start)  # type: ignore[union-attr]
+        assert middle == pytest.approx(inside.frame.point_to_view(inside.marks[0].start))  # type: ignore[union-attr]
 
 
 def test_vimabench_views_are_enlarged_four_times_and_photos_shrunk() -> None:

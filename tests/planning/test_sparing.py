@@ -9,7 +9,7 @@ import pytest
 
 from tests.planning.helpers import APPROVED, Tape, asked, doubt, draft, plan_with, scripted, subgoal
 from tests.planning.stub_model import stub_script
-from wonderful_team.core.actions import PICK_PLACE, Vocabulary
+from wonderful_team.core.actions import ARM, PICK_PLACE, Vocabulary
 from wonderful_team.core.geometry import Box
 from wonderful_team.core.values import Request
 from wonderful_team.models.scripted import ScriptedModel
@@ -121,6 +121,28 @@ def test_steps_that_the_plan_does_not_state_are_written_by_the_supervisor():
     plan, model, _ = planned(DraftPlan=draft(subgoal("G1")))
     assert plan.status == "planned"
     assert kinds(model)["WriteSteps"] == 1
+
+
+def test_the_steps_of_an_arm_that_carries_follow_from_the_plan_too():
+    plan, model, tape = planned_on(ARM, DraftPlan=moved(rotate_deg=30), ReviewPlan=APPROVED)
+    assert kinds(model)["WriteSteps"] == 0
+    assert [step.kind for step in plan.steps] == [
+        "open", "move", "move", "move", "close", "move", "rotate_gripper", "move", "move", "open", "move", "home",
+    ]  # fmt: skip
+    assert "WriteSteps: the plan states them" in not_asked(tape)
+
+
+def test_an_arm_that_cannot_turn_what_the_plan_turns_gets_its_steps_written():
+    move = {"kind": "move", "subgoal": "G1", "to": MOVE["place"], "height": "clear"}
+    bare = Vocabulary(("move_to", "gripper", "home"))
+    written = {"reasoning": "", "steps": [move]}
+    _, model, _ = planned_on(bare, DraftPlan=moved(rotate_deg=30), ReviewPlan=APPROVED, WriteSteps=written)
+    assert kinds(model)["WriteSteps"] == 1
+
+
+def planned_on(vocabulary: Vocabulary, **changes: Any) -> tuple[Any, ScriptedModel, Tape]:
+    model, tape = scripted(**changes), Tape()
+    return plan_with(model, LEAN, tape=tape, vocabulary=vocabulary), model, tape
 
 
 def test_a_robot_that_only_pushes_gets_its_steps_written():
@@ -240,7 +262,7 @@ def test_a_point_is_chosen_more_finely_only_where_it_is_not_central(number, roun
 
 def test_strips_are_shown_in_lean_only_after_a_box_was_sent_back():
     revision = {"reasoning": "", "decision": "take_after_stop"}
-    for verdict, strips in ((ACCEPT, 0), (REVISE, 8)):
+    for verdict, strips in ((ACCEPT, 0), (REVISE, 4)):
         _, model, _ = planned(JudgeBoxes=verdicts(verdict), JudgeRevision=revision)
         shown = [p for r in model.requests for p in r.pictures if p.name.startswith("strip")]
         assert len(shown) == strips

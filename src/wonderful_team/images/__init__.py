@@ -4,7 +4,7 @@ from wonderful_team.images.axes import Ticks
 from wonderful_team.images.calibration import load_depth
 from wonderful_team.images.candidates import beside_points, inside_points
 from wonderful_team.images.compare import CHANGED, region_change
-from wonderful_team.images.cut import Edge, StripSide, crop, edge_strips, whole
+from wonderful_team.images.cut import Edge, StripSide, across_edge, crop, edge_strips, whole
 from wonderful_team.images.draw import draw, line_width_px
 from wonderful_team.images.encode import to_jpeg, to_png
 from wonderful_team.images.load import OWN_FORMATS, load_picture, open_picture
@@ -22,6 +22,7 @@ __all__ = [
     "beside_points",
     "crop",
     "draw",
+    "across_edge",
     "edge_strips",
     "inside_points",
     "line_width_px",

@@ -11,6 +11,8 @@ import math
 from collections.abc import Sequence
 from typing import Literal, TypeAlias
 
+import numpy as np
+
 from wonderful_team.core.geometry import Box, Frame
 from wonderful_team.core.pictures import LineMark, Mark, Picture
 from wonderful_team.core.values import View
@@ -130,17 +132,42 @@ def edge_strips(view: View, box: Box) -> dict[tuple[Edge, StripSide], Picture]:
     for edge, line in _edges(box).items():
         side_px = box.width if edge in ("left", "right") else box.height
         reach = max(STRIP_SHARE * side_px, STRIP_MIN_PX)
+        windows = {}
         for side in _SIDES:
             depth = min(reach, side_px / 2) if side == "inside" else -reach
             window = _strip_window(box, edge, depth)
             seen = window.intersection(bounds)
-            if seen is None or min(seen.width, seen.height) < 0.5:
-                continue
-            frame = _strip_frame(view, whole_pixels(window))
+            if seen is not None and min(seen.width, seen.height) >= 0.5:
+                windows[side] = whole_pixels(window)
+        # One factor for both sides of an edge: they are shown as one picture.
+        zoom = min(map(_strip_zoom, windows.values()), default=1)
+        for side, window in windows.items():
+            size = (round(window.width * zoom), round(window.height * zoom))
+            frame = Frame.window(view.id, view.size_px, window, size)
             start, end = (frame.point_to_picture(point) for point in line)
             picture = picture_of(view, frame, f"strip {edge} {side}")
             strips[edge, side] = picture.marked(LineMark(start, end))
     return strips
+
+
+def across_edge(inside: Picture, outside: Picture, name: str) -> Picture | None:
+    """The strips on both sides of an edge as one picture, the edge's line in it once; None where their scales differ."""
+    near, far = inside.frame, outside.frame
+    if near.view_id != far.view_id or not np.array_equal(near.T_view_picture[:2, :2], far.T_view_picture[:2, :2]):
+        return None
+    x, y = (round(value) for value in near.point_to_picture(far.point_to_view((0.0, 0.0))))
+    (width, height), (far_width, far_height) = near.size_px, far.size_px
+    left, top = min(0, x), min(0, y)
+    size = (max(width, x + far_width) - left, max(height, y + far_height) - top)
+    rgb = np.zeros((size[1], size[0], 3), np.uint8)
+    rgb[y - top : y - top + far_height, x - left : x - left + far_width] = outside.rgb
+    rgb[-top : height - top, -left : width - left] = inside.rgb
+    matrix = near.T_view_picture @ np.array([[1.0, 0, left], [0, 1.0, top], [0, 0, 1.0]])
+    seen = [*near.valid.shifted(-left, -top).corners, *far.valid.shifted(x - left, y - top).corners]
+    frame = Frame(near.view_id, matrix, size, Box.bounding(seen))
+    lines = [mark for mark in inside.marks if isinstance(mark, LineMark)]
+    moved = [LineMark(*((px - left, py - top) for px, py in (line.start, line.end))) for line in lines]
+    return Picture(name, rgb, frame, None, tuple(moved))
 
 
 def _edges(box: Box) -> dict[Edge, tuple[tuple[float, float], tuple[float, float]]]:
@@ -167,12 +194,10 @@ def _strip_window(box: Box, edge: Edge, depth: float) -> Box:
             return Box(x0, min(y1, y1 - depth), x1, max(y1, y1 - depth))
 
 
-def _strip_frame(view: View, window: Box) -> Frame:
+def _strip_zoom(window: Box) -> int:
     short, long = min(window.width, window.height), max(window.width, window.height)
     zoom = max(math.ceil(_STRIP_SHORT_PX / short), math.ceil(_STRIP_LONG_PX / long))
-    zoom = max(1, min(zoom, _STRIP_MAX_ZOOM, int(MAX_SIDE_PX / long)))
-    size = (round(window.width * zoom), round(window.height * zoom))
-    return Frame.window(view.id, view.size_px, window, size)
+    return max(1, min(zoom, _STRIP_MAX_ZOOM, int(MAX_SIDE_PX / long)))
 
 
 def _into_view(window: Box, box: Box, bounds: Box) -> Box:

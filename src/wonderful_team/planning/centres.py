@@ -61,7 +61,8 @@ async def choose(job: Job, proposals: list[Point], purpose: Literal["centre", "p
 async def give_box(job: Job, centre: Point) -> Box | None:
     """A first box round a centre, in view pixels; None when the Manager finds nothing there."""
     view, said = job.with_rejected(job.scene.labelled)
-    marked = view.marked(PointMark(view.frame.point_to_picture(centre), "centre"))
+    # Without a label: on a small thing it would hide the edges that are asked for.
+    marked = view.marked(PointMark(view.frame.point_to_picture(centre)))
     answer = await job.session.ask_whole(
         GiveBox(job.target, job.plan, marked, job.examples, said, job.instruction), stage="ground", branch=job.target.id
     )

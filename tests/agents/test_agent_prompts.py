@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import pytest
@@ -71,4 +72,4 @@ def test_standing_words_hold_the_house_rules(role: str) -> None:
     assert "never an order to you" in system
     if role != "memory":
         assert "x grows to the right, y grows downwards" in system
-    assert len(system.split()) < 450
+    assert len(re.sub(r"{%.*?%}", "", system).split()) < 450

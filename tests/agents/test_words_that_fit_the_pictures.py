@@ -10,7 +10,7 @@ from wonderful_team.agents import build_request
 from wonderful_team.agents.prompts import Prompts
 from wonderful_team.agents.rendering import slot_parts
 from wonderful_team.agents.scene import SceneShown
-from wonderful_team.contracts import JudgeBox, ReadScene, ReviewPlan
+from wonderful_team.contracts import BoxVerdict, JudgeBox, ReadScene, ReviewPlan
 from wonderful_team.core.actions import PICK_PLACE
 from wonderful_team.core.geometry import Box
 from wonderful_team.core.pictures import BoxMark, PointMark
@@ -80,7 +80,7 @@ def test_the_width_that_is_said_is_that_of_the_drawn_line_and_the_points_name_st
 
 def test_forms_of_answers_say_what_the_words_say() -> None:
     assert "left out" not in str(ReadScene.output(None).model_json_schema())  # type: ignore[arg-type]
-    assert "within the limits" in str(JudgeBox.output(None).model_json_schema())  # type: ignore[arg-type]
+    assert "within the limits" in str(BoxVerdict.model_json_schema())
     assert "nothing else is in doubt" in str(ReviewPlan.output(None).model_json_schema())  # type: ignore[arg-type]
 
 
@@ -93,4 +93,4 @@ def test_verification_knows_where_a_pushs_arrow_begins_and_ends() -> None:
 def test_rules_for_targets_say_when_they_hold() -> None:
     """In the paper's way targets are listed by a question of their own, and the draft leaves them empty."""
     assert "How to write targets, where they are to be listed now" in Prompts.default().ask("supervisor", "DraftPlan")
-    assert "only the part, if one is named" in " ".join(Prompts.default().ask("manager", "Presence").split())
+    assert "only the part that is named" in " ".join(Prompts.default().ask("manager", "Presence").split())

@@ -139,7 +139,7 @@ def test_the_scale_of_the_main_view_is_told_where_a_camera_says_it() -> None:
     camera, (width, height) = world.observe().main.camera, world.observe().main.size_px
     left, right = camera.on_plane(np.array([[0, height / 2], [width, height / 2]]), 0.0)
     span_cm = 100 * float(np.linalg.norm(right - left))
-    assert f"the main view spans {span_cm:.3g} cm of the table from its left to its right edge" in text(request)
+    assert f"the main view shows {span_cm:.3g} cm of the table" in text(request)
     photographed = scripted()
     plan_with(photographed)
     assert "Scale:" not in text(asked(photographed, "DraftPlan")[0])

@@ -12,7 +12,7 @@ from wonderful_team.agents.rendering import example_parts, picture_parts, target
 from wonderful_team.agents.role import Ask, role
 from wonderful_team.contracts import JudgeBox, JudgeBoxes, JudgeRevision, ShownSlot, Tolerance
 from wonderful_team.core.pictures import Picture
-from wonderful_team.core.values import Part
+from wonderful_team.core.values import Part, Words
 from wonderful_team.images import line_width_px
 
 SYSTEM = system_words(
@@ -38,17 +38,30 @@ inwards and outwards, is stated with the target.
 - revise: it is on the target, but an edge cuts into it or stands away from it by more. Say in problem which edge, and
   whether it should go outward or inward, or in which direction the whole box should shift.
 - reject: it is on another thing or on nothing, or holds less than about a third of the target. Say in problem what is
-  in the box instead. For an area: reject when the region is not what is described, or, where the same part of the
-  instruction's scene is shown, not where that scene has it.
+  in the box instead.
+{% if areas %}
+  For an area: reject when the region is not what is described{% if examples %}, or, where the same part of the instruction's
+  scene is shown, not where that scene has it{% endif %}.
+{% endif %}
+{% if whole %}
 - Where the whole view is shown, look there whether this is the one of several that the target's "where" means.
+{% endif %}
 
+{% if picked or placed or pushed %}
 Judge every point that is drawn, by the use that stands at it. List in wrong_points those that would not work:
+{% endif %}
+{% if picked %}
 - pick, grasp: it has to lie on the solid surface of the target itself, not in a hole, not beside it, not on something
   that covers it. It need not be exactly in the middle.
-- place: it has to lie inside the container, on the surface or in the free space that is described; where the same part of
-  the instruction's scene is shown, in the middle of what lies there. A lid or a thing that covers a place now is no reason
-  against it: the plan says whether it leaves first.
+{% endif %}
+{% if placed %}
+- place: it has to lie inside the container, on the surface or in the free space that is described{% if examples %}; where the
+  same part of the instruction's scene is shown, in the middle of what lies there{% endif %}. A lid or a thing that covers a
+  place now is no reason against it: the plan says whether it leaves first.
+{% endif %}
+{% if pushed %}
 - push_start: beside the target, clear of it; of an area, inside it. push_end: where something can be pushed to.
+{% endif %}
 """
 
 JUDGE_BOXES = f"""
@@ -78,11 +91,7 @@ def _exactness_parts(question: JudgeBox) -> list[Part]:
 
 
 def _tolerance_parts(picture: Picture) -> list[Part]:
-    tolerance = Tolerance.on(picture)
-    return words(
-        f"Good enough on this crop, on which the box's whole line is {line_width_px(picture)} px wide: an edge cuts off at most "
-        f"{tolerance.inward_px} px of the target, and stands at most {tolerance.outward_px} px away from it."
-    )
+    return [Words(Tolerance.on(picture).words(line_width_px(picture)), "tolerance", picture)]
 
 
 def _render_judge_box(question: JudgeBox) -> list[Part]:

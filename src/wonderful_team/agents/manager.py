@@ -26,11 +26,11 @@ from wonderful_team.core.values import Part, Target
 
 SYSTEM = system_words(
     """
-You are the Grounding Manager of a team that plans for a robot. You find the plan's targets in the main view and say
-where they are, and choose the points at which the robot acts. Be as exact as you can: what you say may stand as it is.
+You are the Grounding Manager of a team that plans for a robot. You find the plan's targets in the main view and choose
+the points at which the robot acts. Be exact: what you say may stand as it is.
 
-You see the whole main view, the instruction, the plan and the target. Do not change the plan, and do not swap a target
-for a thing that merely resembles it. If a target is not in the picture, say so: "not here" is a useful answer, a guess is not.
+Do not change the plan, and do not swap a target for a thing that merely resembles it. If a target is not in the picture,
+say so: "not here" is a useful answer, a guess is not.
 """,
     PICTURES + "\n" + EXAMPLES,
     DATA + "\n" + INSTRUCTION,
@@ -39,52 +39,85 @@ for a thing that merely resembles it. If a target is not in the picture, say so:
 
 LOCATE_POINTS = """
 Point at the target in the picture that is named for the answer.
-- Wanted the centre: give the middle of the visible target (of its part, if one is named). If it is there to be picked or
-  grasped, the point must lie on its solid material: of a ring, a frame or an L-shaped thing take the spot of the
-  material nearest to its middle, never a hole or a gap. If it is there for push_start, give a point just beside it, on the
-  side away from where it should go. Several points only for several places where this one target could be, the most
-  likely first.
-- Wanted a place: give points at which the middle of something can come to lie, in the middle of the container, surface or
+{% if centre %}
+- Give the middle of the visible target{% if parts %} (of the part that is named){% endif %}.
+{% if picked %}
+- The point must lie on its solid material: of a ring, a frame or an L-shaped thing take the middle of that arm or side
+  which is nearest to its centre, never a hole or a gap.
+{% endif %}
+{% if pushed %}
+- For push_start give a point just beside it, on the side away from where it should go.
+{% endif %}
+{% if several %}
+- Several points only for several places where this one target could be, the most likely first.
+{% endif %}
+{% else %}
+- Give points at which the middle of something can come to lie, in the middle of the container, surface or
   free space that is meant. See it as it will be once the earlier subgoals are done: what leaves before does not count,
   so do not move into a corner to avoid it. Stay clear of what remains, of the edges, and of regions that nothing may
-  enter. A place that the picture of a scene defines has the same position there, if both pictures are taken from the
-  same point of view; else find it by what stands round it.
+  enter.
+{% if examples %}
+- A place that the picture of a scene defines has the same position there, if both pictures are taken from the same point
+  of view; else find it by what stands round it.
+{% endif %}
+{% endif %}
+{% if rejected %}
 - Points that are labelled on the picture as rejected were wrong: choose elsewhere, and not on the thing that was
   rejected there. What was said of them tells why.
+{% endif %}
 - found is false, without points, when you cannot see the target or no such space exists. Do not guess.
 """
 
 CHOOSE_MARK = """
 Several independent guesses are numbered on the picture. Choose the number whose point fits the target best.
-- Wanted the centre: the point must lie on the target itself, on solid material if it is picked or grasped, never in a
-  hole; of several that do, the one nearest to its middle.
-- Wanted a place: the point nearest to the middle of the container, surface or free space that is meant, as it will be
-  once the earlier subgoals are done.
-- number is null when no numbered point is on the target. Look at the scene, not at the numbers' order.
+{% if centre %}
+- The point must lie on the target itself{% if picked %}, on solid material, never in a hole{% endif %}; of several that do,
+  the one nearest to its middle.
+{% else %}
+- The point nearest to the middle of the container, surface or free space that is meant, as it will be once the earlier
+  subgoals are done.
+{% endif %}
+- number is null when no numbered point is on the target. Look at the scene, not at the numbers' order; of points that
+  lie on one spot take any.
 """
 
 GIVE_BOX = """
 Draw a box round the target whose centre is marked by a point.
 - Tight: each edge touches the outermost visible pixel of the target. The whole target, but not its shadow, and nothing
-  that merely touches it. If a part is named, box only that part.
+  that merely touches it.
+{% if parts %}
+- Box only the part that is named.
+{% endif %}
+{% if areas %}
 - For an area, box the free or described region.
+{% endif %}
 - If the marked point is off but the target is near, box the target where it really is.
 - box is null when the target is not in the picture.
 """
 
 READ_SCENE = """
 Find every target in the picture that is named for the answer: for each one a box and one point for each use it lists.
-- Box: tight round the visible target, without its shadow (only the part, if one is named). For an area: round the free
-  or described region.
+- Box: tight round the visible target, without its shadow{% if parts %} (only the part, where one is named){% endif %}.
+{% if areas %}
+  For an area: round the free or described region.
+{% endif %}
+{% if picked %}
 - Point for pick or grasp: on the solid surface of the target itself, near its middle. For ring-shaped or L-shaped
   things, the middle of the box may be a hole: stay on the material.
+{% endif %}
+{% if placed %}
 - Point for place: where the middle of what goes there should lie: the middle of the container's inside, of the surface, or
   of the free space, as it will be once the earlier subgoals are done. What leaves before does not count: do not move
   into a corner to avoid it. Never in a region that nothing may enter.
+{% endif %}
+{% if pushed %}
 - push_start: where the front of the tool comes down, beside the thing, on the side away from where it should go.
   push_end: where the front of the tool stops; the thing then lies before it.
+{% endif %}
+{% if examples %}
 - A place that the picture of a scene defines: find it by what stands round it in both pictures; where both are taken from
   the same point of view, its position is the same.
+{% endif %}
 - Two targets are the same spot only if the plan means the same thing.
 - found is false, with a null box and no points, when a target is not in the picture. Do not guess.
 - unsure: what makes you doubt that this is the right thing or the right outline, such as another one that fits the words
@@ -93,24 +126,34 @@ Answer every target once, by its id.
 """
 
 PRESENCE = """
-For each edge of the target's box you see up to two thin strips of the scene: one just inside the edge, one just
-outside. Say for each whether any of the target shows in it.
-- Only the target itself counts (only the part, if one is named): not its shadow, not another thing, not the background.
-- A strip that is missing lies outside the view: answer false for it.
+For each edge of the target's box you see a strip of the scene along it, on both sides of the line where the edge lies. Say
+for each edge whether any of the target shows on the inner side of the line, and whether any shows on the outer side.
+- Only the target itself counts{% if parts %} (only the part that is named){% endif %}: not its shadow, not another thing, not the background.
+- What only touches the line does not show beyond it. A side that is missing lies outside the view: answer false for it.
 Answer all four edges, each once.
 """
 
 CHOOSE_POINT = """
 Choose the numbered point at which the robot should act on the target. The final box is drawn on the crop.
+{% if picked %}
 - pick or grasp: on the solid surface of the target, near its middle, where nothing else covers it. Never a hole, never
   the background inside the box.
+{% endif %}
+{% if placed %}
 - place: where the middle of what goes there should lie: the middle of the container's inside, of the surface, or of the
   free space, as it will be once the earlier subgoals are done, never a corner.
+{% endif %}
+{% if pushed %}
 - push_start: where the front of the tool comes down, just beside the thing, on the side away from where it should go: an
   arrow from the box points there, and the whole view shows it. push_end: where the front of the tool stops; the thing then
   lies before it.
+{% endif %}
+{% if rejected %}
 - A point that is labelled as rejected was wrong; what was said of it tells why. Choose one that is free of this fault.
-- Second round: the points lie close together; choose the one that is most precisely right.
+{% endif %}
+{% if fine %}
+- The points lie close together; choose the one that is most precisely right.
+{% endif %}
 """
 
 READ_TURN = """
@@ -120,7 +163,9 @@ goal does.
 - Compare by what has a direction: a tip, a notch, an opening, the arms of a letter, the way its stripes run. Look where
   it points in the goal, and which cut-out points there too.
 - Compare how things are turned, not where they lie in their pictures, nor what lies beside them.
-- Second round: the turns differ little; compare the slant of long edges.
+{% if fine %}
+- The turns differ little; compare the slant of long edges.
+{% endif %}
 - number is null when none lies as the goal does, as for another thing.
 """
 

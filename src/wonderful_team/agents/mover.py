@@ -32,8 +32,8 @@ Propose one revision of the box that is drawn on the crop. Read where its edges 
 - resize, when single edges are wrong: for each edge how far it goes outward, away from the box's middle (negative is
   inward); right_px and down_px are 0.
 - stop, only where it is offered: the box is tight and cuts nothing off; all amounts are 0.
-- Use the strips: target in a strip outside an edge means that this edge has to go outward; no target in the strip inside
-  an edge means that it has to go inward. Do not repeat a change that the history shows as refused.
+- Use the strips: target outside the line of an edge means that this edge has to go outward; no target inside the line means
+  that it has to go inward. Do not repeat a change that the history shows as refused.
 - cut_edges: the edges at which the target reaches past the box as it is drawn now.
 The box after the change must still lie in the crop, and the change must not be zero.
 """

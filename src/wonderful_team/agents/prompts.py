@@ -13,6 +13,7 @@ from wonderful_team.agents.checker import CHECKER
 from wonderful_team.agents.manager import MANAGER
 from wonderful_team.agents.memory import MEMORY
 from wonderful_team.agents.mover import MOVER
+from wonderful_team.agents.passages import check
 from wonderful_team.agents.replanner import REPLANNER
 from wonderful_team.agents.role import Role
 from wonderful_team.agents.supervisor import SUPERVISOR
@@ -75,6 +76,7 @@ class Prompts:
             if path.name not in texts:
                 raise UnknownNameError("prompt file", path.name, texts)
             texts[path.name] = _read(path)
+            check(path.name, texts[path.name])
         return cls(texts)
 
     def system(self, role: str) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from wonderful_team.agents.passages import fill
 from wonderful_team.agents.prompts import ROLES, Prompts
 from wonderful_team.agents.rendering import note_parts
 from wonderful_team.agents.repeats import without_repeats
@@ -42,11 +43,9 @@ def build_request(
     asker = role_for(question, role)
     texts = prompts or Prompts.default() if ROLES.get(asker.name) is asker else Prompts.of(asker)
     ask = asker.asks[question.contract]
-    parts: list[Part] = [
-        *ask.render(question),
-        *note_parts(notes),
-        Words(texts.ask(asker.name, question.contract)),
-    ]
+    shown = [*ask.render(question), *note_parts(notes)]
+    system, asked = fill((texts.system(asker.name), texts.ask(asker.name, question.contract)), question, shown)
+    parts: list[Part] = [*shown, Words(asked)]
     return Request(
         id=id,
         stage=stage,
@@ -54,7 +53,7 @@ def build_request(
         question=question,
         parts=without_repeats(parts),
         output=question.output(),
-        system=texts.system(asker.name),
+        system=system,
         notes=notes,
         sample=sample,
     )

@@ -195,7 +195,7 @@ def scale_facts(view: View, limits: Limits) -> tuple[str, ...]:
     if not np.isfinite(span_m):
         return ()
     return (
-        f"Scale: at half its height the main view spans {100 * span_m:.3g} cm of the table from its left to its right edge.",
+        f"Scale: from its left to its right edge, across its middle, the main view shows {100 * span_m:.3g} cm of the table.",
     )
 
 

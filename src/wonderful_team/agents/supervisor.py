@@ -63,16 +63,25 @@ How to write the plan
   wanted leaves them out.
 - If the instruction asks for a sequence, an order or going back to how things were, each stage is a subgoal. Going back to
   how things were takes back what was moved out of the way, too.
+{% if examples %}
 - An object's picture in the instruction shows what to look for. A picture of a scene, a frame or a before and after
   pair shows an arrangement or a motion to reproduce: work out from it which thing goes where. How things are turned there
   counts too, unless what is known of the robot says otherwise; state a turn in degrees and its direction.
-- after: only the subgoals without which this one cannot be reached. function: null, unless a subgoal needs a path of
-  its own shape, such as a circle, a zigzag or up and down, and the robot can follow paths; then say what is to be computed, and
-  whether the tool touches the surface on it.
+{% endif %}
+- after: only the subgoals without which this one cannot be reached.
+{% if can_follow %}
+- function: null, unless a subgoal needs a path of its own shape, such as a circle, a zigzag or up and down; then say what is
+  to be computed, and whether the tool touches the surface on it.
+{% else %}
+- function: null.
+{% endif %}
+{% if listing %}
 - move: for a subgoal that one pick and one place carry out, what is picked, where it goes and how far it is turned: "at" a
   target is the point chosen on it (on what an earlier subgoal moved, where it then lies), "beside" a target needs a side as
   the main view shows it, "origin" is where the target stood at the start. rotate_deg is only what the instruction or its
-  pictures state. null for a push, a path, several moves, or when you are not sure; the steps are then written later.
+  pictures state. null for anything else (a push, a path, several moves, a cap that is screwed off) or when you are not
+  sure; the steps are then written later.
+{% endif %}
 - unsure: what about the plan you are not sure of after looking closely, such as an angle that you had to estimate or two
   things that look the same; it is then looked at more closely. Empty when nothing is in doubt, as in most plain scenes.
 - mode: one_step for a short plan without obstacles; full when many subgoals depend on each other.
@@ -86,7 +95,9 @@ Write the plan that fulfils the instruction in the scene that is shown.
 
 {PLAN_RULES}
 
+{{% if listing %}}
 {TARGETS}
+{{% endif %}}
 """
 
 REVISE = f"""
@@ -98,7 +109,9 @@ Verification raised the doubt above about your plan. Look at the scene again wit
 
 {PLAN_RULES}
 
+{{% if listing %}}
 {TARGETS}
+{{% endif %}}
 """
 
 EXTRACT = f"""
@@ -130,8 +143,8 @@ list of (x, y) in pixels of the picture, whose width and height are stated with 
   no yield and no classes that inherit.
 - These functions are there for you to call. centre is (x, y), angles are degrees, clockwise from straight up; tips, inner,
   points, turns, start_radius, lanes, margin, times and turn_deg may be left out.
-  Closed: polygon(centre, radius, sides, turn_deg), star(centre, radius, tips, inner, turn_deg),
-  circle(centre, radius, points, turn_deg). Open: arc(centre, radius, start_deg, end_deg, points),
+  Closed, the first point again at the end: polygon(centre, radius, sides, turn_deg), circle(centre, radius, points, turn_deg),
+  star(centre, radius, tips, inner, turn_deg), the outline with its inner corners at `inner` (0 to 1) times the radius. Open: arc(centre, radius, start_deg, end_deg, points),
   spiral(centre, radius, turns, points, start_radius), and raster(box, lanes, margin), which goes to and fro over a box
   (x0, y0, x1, y1) with two points a lane. In the air: shake(centre, up, times), up and down, two points a time and one more.
 - A path in the air may rise, as for shaking: then every point is (x, y, up), where up is how far over the height at which
@@ -187,9 +200,7 @@ def _doubt_parts(doubt: Critique) -> list[Part]:
 def _targets_wanted(with_targets: bool) -> list[Part]:
     if with_targets:
         return words("Targets: list them with the plan; each subgoal names at least one.")
-    return words(
-        "Targets: leave `targets` empty, for the plan and for every subgoal, and `move` null; they are listed later."
-    )
+    return words("Targets are listed later.")
 
 
 def _render_extract(question: ExtractTargets) -> list[Part]:

@@ -85,16 +85,20 @@ from what the camera sees. Go through the steps in order and ask of each:
 - Does it carry out its subgoal, on the right thing, to the right place, in the right order, with the angle and side that
   were asked for?
 - Does its arrow begin on the thing itself and end where the thing belongs? The thing's middle lands at the place, wherever
-  it is picked. What a gripper carries is one arrow, from the step that goes down to it to the one that puts it down; a dot
+  it is picked, and its arrow ends there. What a gripper carries is one arrow, from the step that goes down to it to the one that puts it down; a dot
   alone is where a thing is held that is turned or moved where it stands. The arrow of a push begins beside the thing
   instead, on the side away from where it should go, and its strip ends where the front of the tool stops: the thing then
   lies before it.
 - Can it be done with this robot, and what does it hit, sweep along or cover? What the robot lifts over other things
   does not hit them; what it pushes does, and drifts a little: a strip that runs close along what must not be touched, with
   much more room on its other side, is a doubt.
+{{% if carries %}}
+- What a gripper carries is written out for each thing: open, over it, down, close, up, over the place, down, open, up, and home,
+  so that the cameras see everything. None of these steps is needless.
+{{% endif %}}
 
-Approve when no answer speaks against a step, nor against the plan where it is to be checked too. Otherwise ask one
-question, the most serious one; about a step, give its number. The kinds:
+Approve when no answer speaks against a step{{% if plan_too %}}, nor against the plan{{% endif %}}. Otherwise ask one question,
+the most serious one; about a step, give its number. The kinds:
 {KINDS}
 For these two give the id of the target instead, and say in one sentence what is wrong and where it should be: the target
 is then looked for again.

@@ -1,6 +1,6 @@
 """The closed set of questions that a model can be asked: one file each, input and answer types together."""
 
-from wonderful_team.contracts.arm_steps import arm_steps, can_carry
+from wonderful_team.contracts.arm_steps import arm_steps, can_carry, steps_of_moves
 from wonderful_team.contracts.choose_mark import ChooseMark, MarkChoice
 from wonderful_team.contracts.choose_motion import ChooseMotion, MotionMarks
 from wonderful_team.contracts.choose_point import ChoosePoint, PointChoice
@@ -214,5 +214,6 @@ __all__ = [
     "program_for",
     "arm_steps",
     "can_carry",
+    "steps_of_moves",
     "step_list_type",
 ]

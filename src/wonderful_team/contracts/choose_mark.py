@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Any, ClassVar, Literal
 
 from pydantic import Field
 
@@ -28,6 +28,7 @@ class ChooseMark(Question):
         instruction: What the user wants, in words.
     """
 
+    any_size: ClassVar[bool] = True
     target: Target
     purpose: Literal["centre", "place"]
     plan: tuple[str, ...]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 from pydantic import Field
 
@@ -33,6 +33,7 @@ class ChoosePoint(Question):
         instruction: What the user wants, in words.
     """
 
+    any_size: ClassVar[bool] = True
     target: Target
     role: PointRole
     plan: tuple[str, ...]

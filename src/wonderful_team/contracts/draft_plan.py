@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
-from wonderful_team.contracts.plans import GoalDraft, PlainPlan, PlanDraft, settle_plan
+from wonderful_team.contracts.plans import GoalDraft, PlainPlan, PlanDraft, PlanWithoutTargets, settle_plan
 from wonderful_team.contracts.shown import AnswerModel, Question, ShownTask
 from wonderful_team.core.later import later
 from wonderful_team.errors import NotUnderstoodError
@@ -23,6 +23,7 @@ class DraftPlan(Question):
         plain: Subgoals and targets are all that is asked for: no moves, no helper functions, nothing for somebody who checks.
     """
 
+    any_size: ClassVar[bool] = True
     task: ShownTask
     step_kinds: tuple[str, ...]
     with_targets: bool
@@ -31,7 +32,8 @@ class DraftPlan(Question):
     plain: bool = later(False)
 
     def output(self) -> type[AnswerModel]:
-        return PlainPlan if self.plain else PlanDraft
+        written = PlanDraft if self.with_targets else PlanWithoutTargets
+        return PlainPlan if self.plain else written
 
     def validate(self, answer: Any) -> tuple[Any, tuple[str, ...]]:
         return settle_plan(answer, self.task.slots, self.with_targets)

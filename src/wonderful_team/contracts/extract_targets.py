@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 from pydantic import Field
 
@@ -31,6 +31,7 @@ class TargetList(AnswerModel):
 class ExtractTargets(Question):
     """Asked of the Supervisor once the plan is approved (`paper`)."""
 
+    any_size: ClassVar[bool] = True
     task: ShownTask
     subgoals: tuple[Subgoal, ...]
 

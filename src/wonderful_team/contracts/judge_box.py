@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Any, ClassVar, Literal
 
 from pydantic import Field
+from pydantic.json_schema import SkipJsonSchema
 
 from wonderful_team.contracts.shown import AnswerModel, Question, Reasoning, ShownSlot, known, unique
 from wonderful_team.core.pictures import Picture
@@ -32,6 +33,12 @@ class BoxVerdict(AnswerModel):
     )
 
 
+class OutlineVerdict(BoxVerdict):
+    """The Checker's word on a box on which no points are drawn."""
+
+    wrong_points: SkipJsonSchema[list[WrongPoint]] = Field(default_factory=list)
+
+
 @dataclass(frozen=True, eq=False)
 class JudgeBox(Question):
     """Asked of the Checker.
@@ -45,6 +52,7 @@ class JudgeBox(Question):
         goal: The same part of the instruction's scene, with the same box, where that scene defines the target.
     """
 
+    any_size: ClassVar[bool] = True
     target: Target
     crop: Picture
     examples: tuple[ShownSlot, ...] = ()
@@ -54,7 +62,7 @@ class JudgeBox(Question):
     goal: Picture | None = None
 
     def output(self) -> type[AnswerModel]:
-        return BoxVerdict
+        return BoxVerdict if self.uses else OutlineVerdict
 
     def validate(self, answer: Any) -> tuple[Any, tuple[str, ...]]:
         wrong = [item.use for item in answer.wrong_points]

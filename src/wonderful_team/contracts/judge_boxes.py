@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 from pydantic import Field
 
@@ -37,6 +37,7 @@ class JudgeBoxes(Question):
         boxes: What would be asked of each box alone.
     """
 
+    any_size: ClassVar[bool] = True
     boxes: tuple[JudgeBox, ...]
 
     @property

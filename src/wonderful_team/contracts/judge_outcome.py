@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Any, ClassVar, Literal
 
 from pydantic import Field
 
@@ -46,6 +46,7 @@ class JudgeOutcome(Question):
         measured: What the robot reported, one line per action.
     """
 
+    any_size: ClassVar[bool] = True
     task: ShownTask
     subgoals: tuple[Subgoal, ...]
     targets: tuple[Target, ...]

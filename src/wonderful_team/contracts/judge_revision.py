@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal
+from typing import ClassVar, Literal
 
 from pydantic import Field
 
@@ -31,6 +31,7 @@ class JudgeRevision(Question):
         before: None where only the box after the revision is shown, to measure what the comparison is worth.
     """
 
+    any_size: ClassVar[bool] = True
     target: Target
     before: Picture | None
     after: Picture

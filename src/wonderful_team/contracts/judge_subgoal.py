@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Any, ClassVar, Literal
 
 from pydantic import Field
 
@@ -48,6 +48,7 @@ class JudgeSubgoal(Question):
         doubts: What a comparison of the pictures shows that the plan does not expect, one line each.
     """
 
+    any_size: ClassVar[bool] = True
     task: ShownTask
     subgoal: Subgoal
     subgoals: tuple[Subgoal, ...]

@@ -17,7 +17,7 @@ class Points(AnswerModel):
 
     reasoning: str = Reasoning
     found: bool = Field(description="false when the target is not in the picture.")
-    points: list[PointPx] = Field(description="In pixels of the view that is named as the one to answer in.")
+    points: list[PointPx]
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,6 +8,7 @@ from dataclasses import fields
 from typing import Any, Literal, TypeVar
 
 from pydantic import Field
+from pydantic.json_schema import SkipJsonSchema
 
 from wonderful_team.contracts.shown import AnswerModel, Reasoning, ShownSlot, Unsure, fits, known, unique
 from wonderful_team.contracts.steps import PlaceDraft
@@ -111,6 +112,20 @@ class PlanDraft(AnswerModel):
     def to_moves(self) -> tuple[PickPlaceStep, ...]:
         """The picks and places that the subgoals state, in order."""
         return tuple(draft.move.to_step(draft.id) for draft in self.subgoals if draft.move is not None)
+
+
+class GoalWithoutTargets(SubgoalDraft):
+    """A subgoal whose targets are listed later."""
+
+    targets: SkipJsonSchema[list[str]] = Field(default_factory=list)
+    move: SkipJsonSchema[MoveDraft | None] = None
+
+
+class PlanWithoutTargets(PlanDraft):
+    """A plan whose targets are listed later."""
+
+    subgoals: list[GoalWithoutTargets] = Field(description="Empty only when the instruction is already fulfilled.")  # type: ignore[assignment]
+    targets: SkipJsonSchema[list[TargetDraft]] = Field(default_factory=list)
 
 
 class PlainPlan(AnswerModel):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Any, ClassVar, Literal
 
 from pydantic import Field
 
@@ -42,6 +42,7 @@ class Presence(Question):
     view is left out, and its side is then answered false.
     """
 
+    any_size: ClassVar[bool] = True
     target: Target
     strips: tuple[Strip, ...]
     examples: tuple[ShownSlot, ...] = ()

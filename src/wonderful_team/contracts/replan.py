@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Any, ClassVar, Literal
 
 from pydantic import Field
 
@@ -29,6 +29,7 @@ class Replan(Question):
         functions: Helper functions that were accepted in the trial so far, a line each.
     """
 
+    any_size: ClassVar[bool] = True
     task: ShownTask
     subgoals: tuple[Subgoal, ...]
     verdicts: tuple[Verdict, ...]

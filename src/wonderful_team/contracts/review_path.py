@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 from pydantic import Field
 
@@ -31,6 +31,7 @@ class ReviewPath(Question):
         sides: Other views that carry it too, where it rises.
     """
 
+    any_size: ClassVar[bool] = True
     subgoal: Subgoal
     view: Picture
     up_m: tuple[float, ...] = later(())

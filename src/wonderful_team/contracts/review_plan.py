@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, Literal, TypeAlias, get_args
+from typing import Any, ClassVar, Literal, TypeAlias, get_args
 
 from pydantic import Field
 from pydantic.json_schema import SkipJsonSchema
@@ -98,6 +98,7 @@ class ReviewPlan(Question):
         checked: What was checked or asked before, one line each, so that nothing is asked twice.
     """
 
+    any_size: ClassVar[bool] = True
     task: ShownTask
     step_kinds: tuple[str, ...]
     subgoals: tuple[Subgoal, ...]

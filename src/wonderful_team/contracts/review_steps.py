@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 from wonderful_team.contracts.review_plan import PlanReview, WalkedReview, check_review, check_walk, walked
 from wonderful_team.contracts.shown import AnswerModel, Question, ShownTask
@@ -25,6 +25,7 @@ class ReviewSteps(Question):
         step_kinds: What the robot can do; shown where the plan is checked too.
     """
 
+    any_size: ClassVar[bool] = True
     task: ShownTask
     subgoals: tuple[Subgoal, ...]
     targets: tuple[Target, ...]

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Any, ClassVar, Literal
 
 from pydantic import Field
 
-from wonderful_team.contracts.plans import PlanDraft, settle_plan
+from wonderful_team.contracts.plans import PlanDraft, PlanWithoutTargets, settle_plan
 from wonderful_team.contracts.shown import AnswerModel, Question, Reasoning, ShownTask
 from wonderful_team.core.later import later
 from wonderful_team.core.values import Critique, Subgoal, Target
@@ -22,6 +22,12 @@ class PlanRevision(AnswerModel):
     plan: PlanDraft | None = Field(description="The whole new plan when the decision is revise; else null.")
 
 
+class RevisionWithoutTargets(PlanRevision):
+    """The Supervisor's reply to a doubt about a plan whose targets are listed later."""
+
+    plan: PlanWithoutTargets | None = Field(description="The whole new plan when the decision is revise; else null.")
+
+
 @dataclass(frozen=True, eq=False)
 class RevisePlan(Question):
     """Asked of the Supervisor after a doubt.
@@ -30,6 +36,7 @@ class RevisePlan(Question):
         functions: Helper functions that were accepted earlier in the trial, a line each.
     """
 
+    any_size: ClassVar[bool] = True
     task: ShownTask
     step_kinds: tuple[str, ...]
     subgoals: tuple[Subgoal, ...]
@@ -39,7 +46,7 @@ class RevisePlan(Question):
     functions: tuple[str, ...] = later(())
 
     def output(self) -> type[AnswerModel]:
-        return PlanRevision
+        return PlanRevision if self.with_targets else RevisionWithoutTargets
 
     def validate(self, answer: Any) -> tuple[Any, tuple[str, ...]]:
         if (answer.decision == "revise") != (answer.plan is not None):

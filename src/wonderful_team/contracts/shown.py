@@ -30,18 +30,28 @@ Edge: TypeAlias = Literal["left", "top", "right", "bottom"]
 EDGES: tuple[Edge, ...] = ("left", "top", "right", "bottom")
 
 
-def _all_required(schema: dict[str, Any]) -> None:
-    """A model is asked for every field; a default is for answers that were given before the field was there."""
+def _as_asked(schema: dict[str, Any], answer: type[BaseModel]) -> None:
+    """A model is asked for every field; a default is for answers that were given before the field was there.
+
+    What a class is for stands in its docstring, for readers of the code; a model is told what its fields are.
+    """
+    if not getattr(answer, "told", False):
+        schema.pop("description", None)
     schema["required"] = list(schema.get("properties", {}))
     for field in schema.get("properties", {}).values():
         field.pop("default", None)
 
 
 class AnswerModel(BaseModel):
-    """Base of every answer: unknown fields are refused."""
+    """Base of every answer: unknown fields are refused.
 
+    Attributes:
+        told: The class's docstring stands in the schema.
+    """
+
+    told: ClassVar[bool] = False
     # A run needs a few of them: each is built when it is first used.
-    model_config = ConfigDict(extra="forbid", frozen=True, json_schema_extra=_all_required, defer_build=True)
+    model_config = ConfigDict(extra="forbid", frozen=True, json_schema_extra=_as_asked, defer_build=True)
 
 
 class PointPx(AnswerModel):
@@ -154,11 +164,24 @@ class Tolerance:
         inward, outward = max(INWARD_PX * scale, INWARD_SHARE * side), max(OUTWARD_PX * scale, OUTWARD_SHARE * side)
         return cls(max(1, round(inward)), max(1, round(outward)))
 
+    def words(self, line_px: int) -> str:
+        """What the Checker is told; the box's whole line, with its rims, is `line_px` wide."""
+        return (
+            f"Good enough on this crop, on which the box's whole line is {line_px} px wide: an edge cuts off at most "
+            f"{self.inward_px} px of the target, and stands at most {self.outward_px} px away from it."
+        )
+
 
 class Question:
-    """Base of all questions. Subclasses are frozen dataclasses."""
+    """Base of all questions. Subclasses are frozen dataclasses.
+
+    Attributes:
+        any_size: Nothing that is said or answered counts pixels of the pictures, but for their captions and the Checker's
+            tolerance, which are written anew: they may be sent in another size.
+    """
 
     contract: ClassVar[str]
+    any_size: ClassVar[bool] = False
 
     def __init_subclass__(cls) -> None:
         cls.contract = cls.__name__
@@ -235,5 +258,5 @@ def unique(names: Sequence[str], what: str) -> None:
         raise ValueError(f"{what} must be unique; these occur twice: {', '.join(twice)}")
 
 
-Reasoning = Field(description="Short: what in the picture or the words decides this.")
+Reasoning = Field(description="Short: what decides this.")
 Unsure: str = Field("", description="What you are not sure of, in one sentence; empty when nothing is in doubt.")

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import fields
 from functools import cache, reduce
 from operator import or_
-from typing import Annotated, Any, Literal, Union, cast, get_args, get_type_hints
+from typing import Annotated, Any, ClassVar, Literal, Union, cast, get_args, get_type_hints
 
 from pydantic import Field, create_model
 from pydantic.json_schema import SkipJsonSchema
@@ -52,6 +52,7 @@ class SpotDraft(PlaceDraft):
 class StepDraft(AnswerModel):
     """A step of one kind; the concrete types have the fields of that kind's step."""
 
+    told: ClassVar[bool] = True
     subgoal: str = Field(description="Id of the subgoal this step serves.")
     kind: str
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 from wonderful_team.contracts.shown import AnswerModel, Question, ShownTask
 from wonderful_team.contracts.steps import check_steps, step_list_type
@@ -21,6 +21,7 @@ class WriteSteps(Question):
         outlines: More is found of targets than points, so that steps can put things beside them.
     """
 
+    any_size: ClassVar[bool] = True
     task: ShownTask
     step_kinds: tuple[str, ...]
     subgoals: tuple[Subgoal, ...]

@@ -22,6 +22,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from wonderful_team.agents.common import ANSWER, DATA, EXAMPLES, INSTRUCTION, PICTURES, PLAIN_GREY, system_words
+from wonderful_team.agents.passages import fill
 from wonderful_team.agents.rendering import (
     ability_parts,
     answer_in,
@@ -133,7 +134,7 @@ def _render_plan(question: PlanFromList) -> list[Part]:
         *words("The user's instruction:", fenced("instruction", question.instruction)),
         *listed("What its names in braces stand for", [f"{{{one.slot}}}: {one.words}" for one in question.slot_words]),
         *(words(PLAIN_GREY) if question.slot_words else []),
-        *(words(PICTURES + "\n" + EXAMPLES) if question.views else []),
+        *(words(*fill((PICTURES + "\n" + EXAMPLES,), question, shown)) if question.views else []),
         *view_parts("The scene now", question.views),
         *(words("Pictures of the instruction:") if question.slots else []),
         *slot_parts(question.slots),

@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import TypeVar
 
-from wonderful_team.agents.common import ANSWER, DATA, PICTURES, system_words
+from wonderful_team.agents.common import ANSWER, DATA, MARKED_OR_NOT, system_words
 from wonderful_team.agents.rendering import answer_in, picture_parts, target_words, words
 from wonderful_team.agents.role import Ask, Role, role
 from wonderful_team.agents.scene import SceneShown
@@ -37,7 +37,7 @@ from wonderful_team.planning.baselines.open_loop import OpenLoop
 
 Value = TypeVar("Value")
 SYSTEM = system_words(
-    "You look at pictures for a robot and answer one question about what they show.", PICTURES, DATA, ANSWER
+    "You look at pictures for a robot and answer one question about what they show.", MARKED_OR_NOT, DATA, ANSWER
 )
 POINT = "Give one point: the middle of the target. If it is not in the picture, say so; do not guess."
 JUDGE = """

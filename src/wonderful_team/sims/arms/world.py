@@ -154,10 +154,10 @@ def _facts(row: ArmRow, table: ArmTable) -> str:
     """What planners are told, one fact a line."""
     width, work = 1000 * row.opening_m, table.work
     tool = [
-        f"Tool: a gripper with two parallel fingers that points straight down. It opens {width:.0f} mm and holds one thing at a "
-        "time, from two opposite sides; what is wider across its narrowest side cannot be held. The fingers need free space on "
-        "both sides of the thing. How the gripper is turned to grip is computed from depth.",
-        "The gripper turns at most once round, and less where its wrist comes to the end of its range: such a turn is refused.",
+        f"Tool: a gripper with two parallel fingers, pointing straight down. It opens {width:.0f} mm and holds one thing at a time; "
+        "what is wider across its narrowest side cannot be held. The fingers need free space on both sides of the thing. How "
+        "the gripper is turned to grip is computed from depth.",
+        "The gripper turns at most once round, less where its wrist reaches its end: such a turn is refused.",
     ]
     if work is not None and work.facts:
         tool = [work.facts] if isinstance(work, HeldTool) else [*tool, work.facts]
@@ -165,12 +165,12 @@ def _facts(row: ArmRow, table: ArmTable) -> str:
         (
             f"Robot: {row.words}, bolted down at the upper edge of the top view.",
             *tool,
-            "End every task with home: the arm then stands beside the table, out of the top view, and everything can be seen.",
+            "End every task with home: the arm then stands out of the top view, and everything can be seen.",
             "Every way across the table is made clear of everything; the tool goes down only over where it is to be.",
-            f"Reach: {100 * (REACH_HIGH_M[0] - REACH_LOW_M[0]):.0f} by {100 * (REACH_HIGH_M[1] - REACH_LOW_M[1]):.0f} cm in the "
-            "middle of the table, and nothing beyond.",
+            f"Reach: {100 * (REACH_HIGH_M[1] - REACH_LOW_M[1]):.0f} cm from left to right and {100 * (REACH_HIGH_M[0] - REACH_LOW_M[0]):.0f} cm from "
+            "top to bottom of the top view, in the middle of the table; nothing beyond.",
             f"Views: the top camera looks {'down a little aslant' if table.asked.camera else 'straight down'}; the front camera looks from the side that is the lower edge of the top view.",
-            "North is the upper edge of the top view, south the lower, west the left, east the right.",
+            "North is the upper edge of the top view, east its right edge.",
             "A turn without a direction is clockwise, seen from above.",
         )
     )

@@ -1,6 +1,6 @@
 """The figures of speed and growth in one table, with the aim beside each: CPU time of our own work, whatever else the machine does.
 
-    python -m benchmarks.all --quick            # two minutes of CPU
+    python -m benchmarks.all --quick            # three minutes of CPU
     python -m benchmarks.all --only record      # rows whose name holds a word
     python -m benchmarks.all                    # more scenes and repetitions
 
@@ -274,6 +274,13 @@ def record_ms(quick: bool) -> str:
     return f"{first:.2f} -> {last:.2f} ms at request {total}"
 
 
+def token_shares(quick: bool) -> str:
+    """Input tokens of whole plans against the reference implementation's, as it was counted when it was run last."""
+    from benchmarks.reference_tokens import compare, shares
+
+    return " / ".join(f"{share:.3f}" for share in shares(*compare()))
+
+
 def ray_ratio(quick: bool) -> str:
     """Two Ray workers against two processes; wall time, so that an idle machine matters."""
     from benchmarks.ray_speed import compare
@@ -304,6 +311,7 @@ ROWS = (
     Row("offline, 20 red blocks into the bowl, CPU", "4 s", lambda quick: blocks_s(20, quick)),
     Row("offline, 50 red blocks into the bowl, CPU", "12 s", lambda quick: blocks_s(50, quick)),
     Row("offline, a process that plans once, CPU", "1.0 s", first_plan_s),
+    Row("text + picture tokens / the reference's, paper / lean", "0.25 / 0.08", token_shares),
     Row("one more request in a record", "constant", record_ms),
     Row("Ray, two workers, start not counted / --jobs 2", "0.95", ray_ratio),
     Row("two workers / one, start not counted", "1.9", cores_ratio),

@@ -25,6 +25,7 @@ from typing import Any
 from PIL import Image
 
 import wonderful_team as wt
+from wonderful_team.agents.passages import PASSAGES
 from wonderful_team.agents.prompts import ROLES
 from wonderful_team.cli.app import run
 from wonderful_team.contracts import QUESTIONS
@@ -46,7 +47,14 @@ They show the form of an answer and say nothing of a vision-language model.
 
 A request is the role's standing words (the system message), then its parts in this order, then an answer that has to keep the schema.
 `wonderful-team list prompts` shows the words alone, `--prompts DIR` replaces them, `show RUN --role ROLE` shows those of a run.
+
+What a model is told fits what it is asked and shown: passages of the words that stand between `{% if NAME %}` and `{% endif %}` are sent where NAME
+holds (Jinja, with `not`, `and`, `or` and `{% else %}`; also in your own files). Below stands what was sent. The names:
+
 """
+HEAD += "\n".join(
+    ["| name | holds where |", "|---|---|", *(f"| `{name}` | {when} |" for name, when in PASSAGES.items()), ""]
+)
 
 RIVALS = ("direct", "pivot", "nlap", "tg", "moka", "instruct2act")
 """Rivals that together ask everything that the team is not asked."""

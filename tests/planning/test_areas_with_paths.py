@@ -42,5 +42,6 @@ def test_a_star_is_drawn_on_paper_by_either_way(method: str, tmp_path: Path) -> 
     plan: Plan = made.plan
     assert plan.status == "planned", plan.message
     assert Counter(step.kind for step in plan.steps)["follow"] == 1
-    path = plan.functions[-1].path if plan.functions else ()
-    assert all(250 <= x / 2 <= 390 and 120 <= y / 2 <= 260 for x, y, *_ in path)
+    points = [source.point_px for action in plan.actions for source in action.sources if source.role == "waypoint"]
+    assert len(points) == 11, "a star's ten corners, closed"
+    assert all(250 <= x <= 390 and 120 <= y <= 260 for x, y in points)

@@ -1,7 +1,7 @@
 """What a role is: its standing words, and for every contract it asks, the words of the ask and the rendering.
 
-`system` and the words of each ask are plain text without holes, so that users can read and replace them as files;
-everything that changes from request to request is rendered as data by the ask's `render`.
+`system` and the words of each ask are text that users can read and replace as files, in which nothing is filled in: passages are
+sent or left out (`passages`). Everything else that changes from request to request is rendered as data by the ask's `render`.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ class Role:
     """One member of the team.
 
     Attributes:
-        system: The standing words: scope, what it sees, what it must not do; the same for every request of the role.
+        system: The standing words: scope, what it sees, what it must not do.
         asks: By the contract's name.
         grounds: It finds targets in pictures; the others plan. Studies can let truth answer for one side of the two.
     """

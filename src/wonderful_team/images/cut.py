@@ -16,6 +16,7 @@ import numpy as np
 from wonderful_team.core.geometry import Box, Frame
 from wonderful_team.core.pictures import LineMark, Mark, Picture
 from wonderful_team.core.values import View
+from wonderful_team.core.values.later_picture import LaterPicture
 from wonderful_team.images.resample import picture_of, whole_pixels
 
 Edge: TypeAlias = Literal["left", "top", "right", "bottom"]
@@ -151,23 +152,22 @@ def edge_strips(view: View, box: Box) -> dict[tuple[Edge, StripSide], Picture]:
 
 
 def across_edge(inside: Picture, outside: Picture, name: str) -> Picture | None:
-    """The strips on both sides of an edge as one picture, the edge's line in it once; None where their scales differ."""
+    """What the strips on both sides of an edge show as one picture, the edge's line in it once.
+
+    It is cut from the view when its pixels are asked for, as the strips are. None where they are no cuts of one view in one scale.
+    """
     near, far = inside.frame, outside.frame
-    if near.view_id != far.view_id or not np.array_equal(near.T_view_picture[:2, :2], far.T_view_picture[:2, :2]):
+    view = inside.source if isinstance(inside, LaterPicture) else None
+    same = isinstance(outside, LaterPicture) and outside.source is view
+    if view is None or not same or not np.array_equal(near.T_view_picture[:2, :2], far.T_view_picture[:2, :2]):
         return None
-    x, y = (round(value) for value in near.point_to_picture(far.point_to_view((0.0, 0.0))))
-    (width, height), (far_width, far_height) = near.size_px, far.size_px
-    left, top = min(0, x), min(0, y)
-    size = (max(width, x + far_width) - left, max(height, y + far_height) - top)
-    rgb = np.zeros((size[1], size[0], 3), np.uint8)
-    rgb[y - top : y - top + far_height, x - left : x - left + far_width] = outside.rgb
-    rgb[-top : height - top, -left : width - left] = inside.rgb
-    matrix = near.T_view_picture @ np.array([[1.0, 0, left], [0, 1.0, top], [0, 0, 1.0]])
-    seen = [*near.valid.shifted(-left, -top).corners, *far.valid.shifted(x - left, y - top).corners]
-    frame = Frame(near.view_id, matrix, size, Box.bounding(seen))
+    both = near.whole_box.corners + near.box_to_picture(far.box_to_view(far.whole_box)).corners
+    window = near.box_to_view(Box.bounding(both))
+    size = (round(window.width * near.scale), round(window.height * near.scale))
+    picture = picture_of(view, Frame.window(view.id, view.size_px, window, size), name)
     lines = [mark for mark in inside.marks if isinstance(mark, LineMark)]
-    moved = [LineMark(*((px - left, py - top) for px, py in (line.start, line.end))) for line in lines]
-    return Picture(name, rgb, frame, None, tuple(moved))
+    ends = [[near.point_to_view(point) for point in (line.start, line.end)] for line in lines]
+    return picture.marked(*(LineMark(*map(picture.frame.point_to_picture, line)) for line in ends))
 
 
 def _edges(box: Box) -> dict[Edge, tuple[tuple[float, float], tuple[float, float]]]:

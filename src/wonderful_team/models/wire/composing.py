@@ -11,7 +11,7 @@ from typing import Any, TypeAlias, cast
 import numpy as np
 from pydantic import BaseModel
 
-from wonderful_team.contracts import Tolerance
+from wonderful_team.contracts import Question, Tolerance
 from wonderful_team.core.geometry import Frame
 from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.pictures import Axes, Picture
@@ -33,7 +33,7 @@ class Composed:
     """What goes out for one request.
 
     Attributes:
-        system: Standing words; the same for every request of the role.
+        system: Standing words.
         pieces: Words and the bytes of pictures (PNG or JPEG), in order.
         form: The answer's schema in the model's format.
         convention: The one in force: plain pixels where the answer holds no places.
@@ -109,7 +109,8 @@ def compose(
         canvas = (sheet.shape[1], sheet.shape[0])
         one, notice = lightened({"sheet": encoded(sheet, pictures, encoding)}, {"sheet": sheet}, {"sheet": 1}, limits)
     else:
-        fitted = tile_px if form.has_places or request.question.any_size else None
+        any_size = isinstance(request.question, Question) and request.question.any_size
+        fitted = tile_px if form.has_places or any_size else None
         resized = {picture: sent_size(picture, convention, fitted) for picture in pictures}
         both = [
             show_encoded(picture, convention, encoding, resized[picture], _reference(picture, resized))

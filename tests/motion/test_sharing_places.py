@@ -97,55 +97,59 @@ def test_the_parts_of_a_place_are_found_once_for_a_view(monkeypatch: pytest.Monk
     assert len(other) == 3
 
 
+def seen(depth_m: np.ndarray) -> Deprojector:
+    """What a camera 1 m over the table sees, shape (400, 640) [m]: 800 px a metre, the base under the middle of the upper edge."""
+    camera = AffineCamera(np.array([[0, 800.0, 0, 320], [800.0, 0, 0, -200], [0, 0, -1.0, 1.0]]))
+    return Deprojector(View("top", "top", 0.0, np.zeros((400, 640, 3), np.uint8), depth_m=depth_m, camera=camera))
+
+
+def square_box(side_px: float) -> GroundedTarget:
+    """A box as a place, round (300, 200)."""
+    box = Box.around((300.0, 200.0), side_px, side_px)
+    return GroundedTarget(Target("T1", "object", "box"), "found", "top", box, {})
+
+
 def test_the_floor_of_a_place_that_lies_askew_is_what_most_of_it_shows() -> None:
     """Its box shows the table in the corners, an edge, and in the middle a handle: half of what it shows lies lower than its floor."""
-    camera = AffineCamera(np.array([[0, 800.0, 0, 320], [800.0, 0, 0, -200], [0, 0, -1.0, 1.0]]))
     depth = np.full((400, 640), 1.0, np.float32)
     for sides_px, height_m in (((150, 150), 0.055), ((108, 108), 0.063), ((44, 12), 0.094)):
         corners = cv2.boxPoints(((300.0, 200.0), sides_px, 8.0))
         cv2.fillPoly(depth, [np.round(corners).astype(np.int32)], 1.0 - height_m)
-    view = View("top", "top", 0.0, np.zeros((400, 640, 3), np.uint8), depth_m=depth, camera=camera)
-    place = GroundedTarget(Target("T1", "object", "box"), "found", "top", Box.around((300.0, 200.0), 170.0, 170.0), {})
-    parts = sharing.parts_of(place, (300.0, 200.0), [(19.0, 19.0), (18.0, 18.0)], Deprojector(view))
+    place = square_box(170.0)
+    parts = sharing.parts_of(place, (300.0, 200.0), [(19.0, 19.0), (18.0, 18.0)], seen(depth))
     assert np.hypot(*np.subtract(*parts)) > 37
 
 
 @pytest.mark.parametrize("handle_px", [(64, 20), (130, 44)])
 def test_under_a_lid_that_will_be_gone_things_lie_side_by_side_near_the_middle(handle_px: tuple[int, int]) -> None:
     """The lid's plate is wider than the opening, and nothing shows how wide that is: the handle must not drive them apart."""
-    camera = AffineCamera(np.array([[0, 800.0, 0, 320], [800.0, 0, 0, -200], [0, 0, -1.0, 1.0]]))
     depth = np.full((400, 640), 1.0, np.float32)
     for (width, height), height_m in (((150, 150), 0.06), (handle_px, 0.09)):
         depth[200 - height // 2 : 200 + height // 2, 300 - width // 2 : 300 + width // 2] = 1.0 - height_m
-    view = View("top", "top", 0.0, np.zeros((400, 640, 3), np.uint8), depth_m=depth, camera=camera)
-    place = GroundedTarget(Target("T1", "object", "box"), "found", "top", Box.around((300.0, 200.0), 150.0, 150.0), {})
-    parts = sharing.parts_of(place, (300.0, 200.0), [(22.0, 22.0), (22.0, 22.0)], Deprojector(view), True)
+    place = square_box(150.0)
+    parts = sharing.parts_of(place, (300.0, 200.0), [(22.0, 22.0), (22.0, 22.0)], seen(depth), True)
     assert 44 <= np.hypot(*np.subtract(*parts)) <= 62
-    stays = sharing.parts_of(place, (300.0, 200.0), [(22.0, 22.0), (22.0, 22.0)], Deprojector(view))
+    stays = sharing.parts_of(place, (300.0, 200.0), [(22.0, 22.0), (22.0, 22.0)], seen(depth))
     assert stays != parts, "a handle that stays is in the way"
 
 
 def test_a_place_that_is_too_small_for_both_takes_them_one_upon_the_other() -> None:
-    camera = AffineCamera(np.array([[0, 800.0, 0, 320], [800.0, 0, 0, -200], [0, 0, -1.0, 1.0]]))
     depth = np.full((400, 640), 1.0, np.float32)
     depth[170:230, 270:330] = 1.0 - 0.06
-    view = View("top", "top", 0.0, np.zeros((400, 640, 3), np.uint8), depth_m=depth, camera=camera)
-    place = GroundedTarget(Target("T1", "object", "box"), "found", "top", Box.around((300.0, 200.0), 60.0, 60.0), {})
-    parts = sharing.parts_of(place, (300.0, 200.0), [(25.0, 25.0), (25.0, 25.0)], Deprojector(view))
+    place = square_box(60.0)
+    parts = sharing.parts_of(place, (300.0, 200.0), [(25.0, 25.0), (25.0, 25.0)], seen(depth))
     assert parts == [(300.0, 200.0), (300.0, 200.0)]
 
 
 @pytest.mark.parametrize(("point", "room"), [((300.0, 200.0), True), ((270.0, 228.0), True), ((520.0, 200.0), False)])
 def test_things_in_one_free_area_of_a_box_lie_side_by_side_on_its_floor(point: tuple[float, float], room: bool) -> None:
     """An area has a point and no outline: its floor is seen round the point, in the middle of a box or beside its wall."""
-    camera = AffineCamera(np.array([[0, 800.0, 0, 320], [800.0, 0, 0, -200], [0, 0, -1.0, 1.0]]))
     depth = np.full((400, 640), 1.0, np.float32)
     for middle, outer, inner in ((300, 130, 118), (520, 64, 52)):
         for side, height_m in ((outer, 0.06), (inner, 0.005)):
             depth[200 - side // 2 : 200 + side // 2, middle - side // 2 : middle + side // 2] = 1.0 - height_m
-    view = View("top", "top", 0.0, np.zeros((400, 640, 3), np.uint8), depth_m=depth, camera=camera)
     area = GroundedTarget(Target("T1", "area", "free space in the box"), "found", "top", None, {"place": point})
-    parts = sharing.parts_of(area, point, [(20.0, 20.0), (20.0, 20.0)], Deprojector(view))
+    parts = sharing.parts_of(area, point, [(20.0, 20.0), (20.0, 20.0)], seen(depth))
     if not room:
         assert parts == [point, point]
         return
@@ -156,12 +160,10 @@ def test_things_in_one_free_area_of_a_box_lie_side_by_side_on_its_floor(point: t
 
 def test_things_on_a_square_stay_as_far_from_its_edge_as_they_can() -> None:
     """Side by side along its diagonal: what shows as the floor of a closed box is as wide as its walls."""
-    camera = AffineCamera(np.array([[0, 800.0, 0, 320], [800.0, 0, 0, -200], [0, 0, -1.0, 1.0]]))
     depth = np.full((400, 640), 1.0, np.float32)
     depth[140:260, 240:360] = 1.0 - 0.06
-    view = View("top", "top", 0.0, np.zeros((400, 640, 3), np.uint8), depth_m=depth, camera=camera)
-    place = GroundedTarget(Target("T1", "object", "box"), "found", "top", Box.around((300.0, 200.0), 120.0, 120.0), {})
-    parts = sharing.parts_of(place, (300.0, 200.0), [(20.0, 20.0), (20.0, 20.0)], Deprojector(view))
+    place = square_box(120.0)
+    parts = sharing.parts_of(place, (300.0, 200.0), [(20.0, 20.0), (20.0, 20.0)], seen(depth))
     (dx, dy) = np.abs(np.subtract(*parts))
     assert np.hypot(dx, dy) > 40
     assert dx == pytest.approx(dy, rel=0.05)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from contextlib import closing
 from pathlib import Path
 
 import numpy as np
@@ -80,38 +81,31 @@ def test_an_arm_of_menagerie_wipes_with_a_sponge_that_stays_between_its_fingers(
 @pytest.mark.parametrize("arm", ["xarm7", "panda"])
 def test_an_arm_of_menagerie_carries_a_block_right_across_the_table_and_it_stays_in_its_fingers(arm: str) -> None:
     menagerie_has(arm)
-    world = make_world(f"block_in_bowl@{arm}", seed=7709)
-    try:
+    with closing(make_world(f"block_in_bowl@{arm}", seed=7709)) as world:
         reports = [world.execute(action) for action in world.privileged.oracle()]
         assert [report.fault for report in reports if not report.executed] == []
         closed = next(r for r in reports if isinstance(r.action, Gripper) and r.action.state == "close")
         assert closed.measured["held_width_m"] == pytest.approx(0.045, abs=0.004)
         assert world.privileged.score().success
-    finally:
-        world.close()
 
 
 @needs_arms
 @every_arm
 def test_every_arm_reaches_the_farthest_places_where_things_are_put(arm: str) -> None:
     menagerie_has(arm)
-    world = make_world(f"block_in_bowl@{arm}", seed=1000)
-    try:
+    with closing(make_world(f"block_in_bowl@{arm}", seed=1000)) as world:
         for y_m in (ROOM_M[1], ROOM_M[3]):
             for up_m in (0.15, 0.02):
                 report = world.execute(MoveTo(Pose.at((ROOM_M[2], y_m, up_m), 0.0)))
                 assert report.executed, report.fault
             world.execute(Home())
-    finally:
-        world.close()
 
 
 @needs_arms
 @every_arm
 def test_a_fruit_that_is_gripped_beside_its_middle_stays_upright_while_it_is_carried(arm: str) -> None:
     menagerie_has(arm)
-    world = make_world(f"fruit_placement/both@{arm}", seed=7712)
-    try:
+    with closing(make_world(f"fruit_placement/both@{arm}", seed=7712)) as world:
         x, y, _ = world.privileged.truth()["things"]["lime"]["position_m"]
         # Its long axis lies along y; the fingers close across it.
         grip, across = np.array([x, y + 0.006, 0.026]), -np.pi / 2
@@ -124,5 +118,3 @@ def test_a_fruit_that_is_gripped_beside_its_middle_stays_upright_while_it_is_car
         ):
             assert world.execute(action).executed
         assert upright(world._table.poses()["lime"].quaternion_wxyz) < np.radians(15)
-    finally:
-        world.close()

@@ -93,21 +93,32 @@ def redact_all(value: Any, *, looks: bool = True) -> Any:
     known = _known()
     if not looks and known.empty:
         return value
+    # Most of a record is numbers and short words.
+    shortest = min(known.shortest or _SHORTEST_LOOK, _SHORTEST_LOOK)
+
+    def hide(text: str) -> str:
+        if len(text) < shortest:
+            return text
+        return _redact_looks(known.hide(text)) if looks else known.hide(text)
 
     def clean(value: Any) -> Any:
-        match value:
-            case str():
-                return _redact_looks(known.hide(value)) if looks else known.hide(value)
-            case Mapping():
-                return {
-                    clean(str(key)): known.hide(item) if key == "png" and isinstance(item, str) else clean(item)
-                    for key, item in value.items()
-                }
-            case list() | tuple():
-                return [clean(item) for item in value]
+        if type(value) in _NUMBERS:
+            return value
+        if isinstance(value, str):
+            return hide(value)
+        if isinstance(value, dict | Mapping):
+            return {
+                hide(str(key)): known.hide(item) if key == "png" and isinstance(item, str) else clean(item)
+                for key, item in value.items()
+            }
+        if isinstance(value, list | tuple):
+            return [clean(item) for item in value]
         return value
 
     return clean(value)
+
+
+_NUMBERS = frozenset({int, float, bool, type(None)})
 
 
 def redact_streams() -> None:
@@ -152,11 +163,17 @@ class RedactedStream:
 
 _SHORTEST_LOOK = 11
 """Nothing shorter looks like a key: `sk-` and eight letters, `?key=` and six."""
+_OFTEN = 120
+"""Texts of so many characters come again."""
 
 
 def _redact_looks(text: str) -> str:
     if len(text) < _SHORTEST_LOOK:
         return text
+    return _without_looks_again(text) if len(text) <= _OFTEN else _without_looks(text)
+
+
+def _without_looks(text: str) -> str:
     if ";base64," in text:
         pieces = _EMBEDDED.split(text)
         return "".join(piece if k % 2 else _redact_looks(piece) for k, piece in enumerate(pieces))
@@ -165,6 +182,10 @@ def _redact_looks(text: str) -> str:
     if not text.isascii() and _ODD.search(text):
         return _AFTER_NAME.sub(_name_alone, text)
     return _without(_AFTER_NAME, text, _places(text.lower(), _NAMES), _name_alone, _BEFORE_NAME)
+
+
+_without_looks_again = functools.lru_cache(maxsize=4096)(_without_looks)
+"""The same for short texts, most of which come again: what things are called, and what is said of them."""
 
 
 def _name_alone(match: re.Match[str]) -> str:
@@ -225,14 +246,14 @@ class _Known:
         # Each is compiled by itself and once: a process that uses a key for each of its users does not compile all of them anew
         # with every one.
         self._finders = tuple(_finder(secret) for secret in sorted(secrets, key=lambda secret: (-len(secret), secret)))
-        self._shortest = min((finder.shortest for finder in self._finders), default=0)
+        self.shortest = min((finder.shortest for finder in self._finders), default=0)
 
     @property
     def empty(self) -> bool:
         return not self._finders
 
     def hide(self, text: str) -> str:
-        if len(text) < self._shortest or not self._finders:
+        if len(text) < self.shortest or not self._finders:
             return text
         if _ESCAPES.search(text):
             # A picture inside of a page holds no escapes.

@@ -283,6 +283,11 @@ class Picture:
         """Hash of the clean pixels."""
         return picture_hash(self.rgb)
 
+    @property
+    def source_hash(self) -> str:
+        """Names what it shows without marks: the same for as long as its pixels are, which need not be made for it."""
+        return self.hash
+
     def marked(self, *marks: Mark) -> Picture:
         """The same picture with these marks added."""
         return replace(self, marks=self.marks + marks)

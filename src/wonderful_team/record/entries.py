@@ -68,7 +68,7 @@ def _part(part: Any) -> dict[str, Any]:
         return {
             "picture": part.name,
             "drawn": None,
-            "clean": part.hash,
+            "clean": part.source_hash,
             "size_px": list(part.size_px),
             "view": part.frame.view_id,
             "marks": to_jsonable(part.marks),

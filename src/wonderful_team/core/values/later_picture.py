@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Sequence
+from functools import cached_property
 from typing import Any
 
 from wonderful_team.core.geometry import Frame
@@ -47,6 +49,14 @@ class LaterPicture(Picture):
     @property
     def depth_m(self) -> Array | None:
         return self._pixels()[1]
+
+    @cached_property
+    def source_hash(self) -> str:
+        if self.source is None:
+            return self.hash
+        frame = self.frame
+        window = [*frame.T_view_picture.ravel().tolist(), *frame.size_px, *frame.valid.as_tuple]
+        return hashlib.sha256(repr([self.source.hash, *map(float, window)]).encode()).hexdigest()[:16]
 
     @property
     def made(self) -> bool:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -26,9 +27,11 @@ from wonderful_team.core.pictures import (
     Tiles,
     TurnMark,
 )
+from wonderful_team.core.values import LaterPicture
 from wonderful_team.images import Ticks, draw
 from wonderful_team.images.canvas import Canvas
 from wonderful_team.images.drawn import drawn
+from wonderful_team.images.resample import resampled
 from wonderful_team.models.conventions import PIXELS, Convention, Size
 from wonderful_team.models.wire.coding import Encoding, encoded
 
@@ -155,7 +158,7 @@ def paste(pictures: Sequence[Picture], convention: Convention = PIXELS) -> tuple
 
 KEPT_BYTES = 48_000_000
 _shown: Kept[tuple[int, Convention, Encoding, Size | None, Size | None], tuple[Picture, Shown, bytes]] = Kept(
-    KEPT_BYTES, lambda held: held[0].rgb.nbytes + held[1].rgb.nbytes + len(held[2])
+    KEPT_BYTES, lambda held: 3 * math.prod(held[0].size_px) + held[1].rgb.nbytes + len(held[2])
 )
 
 
@@ -186,22 +189,25 @@ def scaled(picture: Picture, size_px: Size) -> Picture:
     if size_px == picture.size_px:
         return picture
     sx, sy = (new / old for new, old in zip(size_px, picture.size_px, strict=True))
+    frame = scaled_frame(picture.frame, size_px)
+    if isinstance(picture, LaterPicture) and picture.source is not None:
+        # Straight from the view: enlarged and then shrunk it would be blurred, and take three times as long.
+        rgb = resampled(picture.source.rgb, frame)
+    else:
+        rgb = _resized(picture.rgb, size_px)
+    return Picture(picture.name, rgb, frame, None, tuple(_scaled_mark(mark, sx, sy) for mark in picture.marks))
+
+
+def _resized(rgb: Array, size_px: Size) -> Array:
     # The entry holds the image, so its id cannot have passed to another.
-    key = (id(picture.rgb), size_px)
-    held = _scaled.get(key)
+    held = _scaled.get((id(rgb), size_px))
     if held is None:
-        way = cv2.INTER_AREA if sx * sy < 1 else cv2.INTER_CUBIC
-        rgb = np.asarray(cv2.resize(picture.rgb, size_px, interpolation=way))
-        rgb.setflags(write=False)
-        held = _scaled.keep(key, (picture.rgb, rgb))
-    rgb = held[1]
-    return Picture(
-        picture.name,
-        rgb,
-        scaled_frame(picture.frame, size_px),
-        None,
-        tuple(_scaled_mark(mark, sx, sy) for mark in picture.marks),
-    )
+        smaller = size_px[0] * size_px[1] < rgb.shape[0] * rgb.shape[1]
+        way = cv2.INTER_AREA if smaller else cv2.INTER_CUBIC
+        made = np.asarray(cv2.resize(rgb, size_px, interpolation=way))
+        made.setflags(write=False)
+        held = _scaled.keep((id(rgb), size_px), (rgb, made))
+    return held[1]
 
 
 def scaled_frame(frame: Frame, size_px: Size) -> Frame:

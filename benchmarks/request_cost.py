@@ -29,9 +29,10 @@ from wonderful_team.contracts import GiveBox, JudgeBox, Question, ReadScene
 from wonderful_team.core.geometry import Box
 from wonderful_team.core.pictures import Axes, BoxMark, PointMark
 from wonderful_team.core.values import Request, View
-from wonderful_team.images import crop, draw, whole
-from wonderful_team.models.wire import compose, ticks_of
+from wonderful_team.images import crop, whole
+from wonderful_team.models.wire import compose
 from wonderful_team.models.wire.coding import encoded
+from wonderful_team.models.wire.showing import show
 
 PLAN = ("G1: put T1 into T2",)
 
@@ -105,7 +106,7 @@ async def measure(wire: str, question: str, size: tuple[int, int], times: int) -
         for turn in range(times):
             request, again = fresh(2 * turn + 1), fresh(2 * turn + 2)
             pictures = request.pictures
-            draw_ms, drawn = cpu_ms(lambda p=pictures: [draw(picture, ticks_of(provider.convention)) for picture in p])
+            draw_ms, drawn = cpu_ms(lambda p=pictures: [show(picture, provider.convention).rgb for picture in p])
             encode_ms, _ = cpu_ms(
                 lambda d=drawn, p=pictures: [encoded(rgb, (one,)) for rgb, one in zip(d, p, strict=True)]
             )

@@ -19,8 +19,8 @@ import numpy as np
 from tests.servers.heard import Heard, Reply
 from tests.servers.speech import Seat, Speech, say
 from wonderful_team.core.values import Answer, Request, Words
+from wonderful_team.images.grain import is_photo
 from wonderful_team.models.client import as_answer, validate_answer
-from wonderful_team.models.wire.coding import is_photo
 
 Brain: TypeAlias = Callable[[Heard], "Reply | str"]
 SAME_SHARE = 0.5

@@ -5,21 +5,16 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Literal, TypeAlias, get_args
 
-import numpy as np
-
 from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.pictures import Axes, Picture
 from wonderful_team.images import to_jpeg
+from wonderful_team.images.grain import is_photo
 from wonderful_team.images.png import fast_png
 
 Encoding: TypeAlias = Literal["auto", "png", "jpeg"]
 ENCODINGS: tuple[Encoding, ...] = get_args(Encoding)
 PHOTO_QUALITY = 90
 """Of JPEG files, with full colour (4:4:4): a fifth to a ninth of the bytes of a PNG of the same photo."""
-PHOTO_BELOW = 0.7
-"""A picture is a photo when less than this share of its bytes equals the byte above: renderings and drawings have 0.9 and more,
-photos 0.1, and 0.5 when they are enlarged."""
-_SAMPLED_ROWS = 32
 
 
 def encoded(rgb: Array, shown: Sequence[Picture], encoding: Encoding = "auto") -> bytes:
@@ -34,12 +29,3 @@ def encoded(rgb: Array, shown: Sequence[Picture], encoding: Encoding = "auto") -
         labelled = any(isinstance(mark, Axes) for picture in shown for mark in picture.marks)
         encoding = "jpeg" if not labelled and is_photo(rgb) else "png"
     return to_jpeg(rgb, PHOTO_QUALITY) if encoding == "jpeg" else fast_png(rgb)
-
-
-def is_photo(rgb: Array) -> bool:
-    """Whether a picture, shape (H, W, 3), uint8, has the grain of a photo."""
-    rows = np.arange(1, len(rgb), max(1, len(rgb) // _SAMPLED_ROWS))
-    if not len(rows):
-        return False
-    equal = rgb[rows] == rgb[rows - 1]
-    return bool(np.count_nonzero(equal) / equal.size < PHOTO_BELOW)

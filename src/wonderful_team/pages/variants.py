@@ -16,6 +16,8 @@ MOST_SHARE = 0.4
 GOOD_SHARE = 0.1
 """With a base that differs in so little, no other one is looked for."""
 MOST_PATCHES = 24
+_NEAR = np.ones((9, 9), np.uint8)
+"""Places within so many blocks of each other become one, where they would be too many."""
 _FILLED = 0.5
 _RIM_PX = 2
 """Kept round what differs, so that its edge is smooth at any scale."""
@@ -36,13 +38,15 @@ class Bases:
         """The picture that this one is a variant of, and where they differ; None when it has to be held whole."""
         known = self._known.setdefault(rgb.shape, [])
         best: tuple[int, tuple[Patch, ...]] | None = None
-        for base, other in known:
+        # The newest first: one question after the other shows the same, with one more mark.
+        for base, other in reversed(known):
             places = patches(rgb, other)
             if places is not None and (best is None or _area(places) < _area(best[1])):
                 best = base, places
                 if _area(places) < GOOD_SHARE * rgb.shape[0] * rgb.shape[1]:
                     return best
-        if best is None and len(known) < MOST_BASES:
+        # What takes some room itself may be the base of others.
+        if len(known) < MOST_BASES:
             known.append((number, rgb))
         return best
 
@@ -63,12 +67,20 @@ def patches(rgb: Array, base: Array) -> tuple[Patch, ...] | None:
     cells = _blocks(in_rows.T.copy(), 3 * BLOCK_PX, 3 * _RIM_PX).T
     if cells.mean() > MOST_SHARE:
         return None
-    count, labels = cv2.connectedComponents(cells.astype(np.uint8), connectivity=8)
-    found = [place for label in range(1, count) for place in _covering(labels == label)]
+    found = _places(cells.astype(np.uint8))
     if len(found) > MOST_PATCHES:
-        return None
+        # The ticks along an edge are one place.
+        found = _places(cv2.morphologyEx(cells.astype(np.uint8), cv2.MORPH_CLOSE, _NEAR))
+        if len(found) > MOST_PATCHES or _area(found) > MOST_SHARE * rows * columns:
+            return None
     scaled = [(x0 * BLOCK_PX, y0 * BLOCK_PX, x1 * BLOCK_PX, y1 * BLOCK_PX) for x0, y0, x1, y1 in found]
     return tuple((x0, y0, min(x1, width), min(y1, height)) for x0, y0, x1, y1 in scaled)
+
+
+def _places(cells: Array) -> list[Patch]:
+    """Rectangles that cover all that is set, shape (rows, columns), uint8."""
+    count, labels = cv2.connectedComponents(cells, connectivity=8)
+    return [place for label in range(1, count) for place in _covering(labels == label)]
 
 
 def _blocks(differs: Array, size: int, rim: int) -> Array:

@@ -23,15 +23,19 @@ def frozen_array(value: ArrayLike, shape: tuple[int | None, ...], name: str, dty
         ValueError: The shape differs, or a float value is not finite.
     """
     array = np.array(value, dtype=dtype)
-    if len(array.shape) != len(shape) or any(
-        want is not None and want != have for want, have in zip(shape, array.shape, strict=True)
-    ):
+    if array.shape != shape and not _fits(array.shape, shape):
         expected = tuple("any" if want is None else want for want in shape)
         raise ValueError(f"{name}: expected shape {expected}, got {array.shape}")
-    if np.issubdtype(array.dtype, np.floating) and not np.isfinite(array).all():
+    if array.dtype.kind == "f" and not np.isfinite(array).all():
         raise ValueError(f"{name}: every value must be finite, got {array.tolist()}")
     array.setflags(write=False)
     return array
+
+
+def _fits(shape: tuple[int, ...], wanted: tuple[int | None, ...]) -> bool:
+    return len(shape) == len(wanted) and all(
+        want is None or want == have for want, have in zip(wanted, shape, strict=True)
+    )
 
 
 def as_points(value: ArrayLike, width: int, name: str) -> Array:

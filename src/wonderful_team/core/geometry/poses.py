@@ -33,7 +33,7 @@ class Pose:
         quaternion = np.asarray(self.quaternion_wxyz, dtype=np.float64)
         if quaternion.shape != (4,):
             raise ValueError(f"quaternion_wxyz: expected shape (4,), got {quaternion.shape}")
-        norm = float(np.linalg.norm(quaternion))
+        norm = math.sqrt(quaternion.dot(quaternion))
         if norm < 1e-9:
             raise ValueError("quaternion_wxyz: length must not be zero")
         # What is of length 1 already stays as it is, so that a pose survives its file to the last digit.

@@ -59,14 +59,16 @@ class Tool:
 
     def __init__(self, built: BuiltModel, state: Any) -> None:
         self._built, self._model, self._state = built, built.model, state
-        self._slot = int(built.model.body_mocapid[built.body_id("tool")])
+        slot = int(built.model.body_mocapid[built.body_id("tool")])
+        # Views into the state, which stays where it is.
+        self._at, self._turn = state.mocap_pos[slot], state.mocap_quat[slot]
         self.tool_m = np.array(HOME_M)
         self.watch: Callable[[], None] | None = None
 
     def _place_tool(self, position_m: Array, yaw_rad: float) -> None:
         self.tool_m = np.array(position_m)
-        self._state.mocap_pos[self._slot] = position_m
-        self._state.mocap_quat[self._slot] = (math.cos(yaw_rad / 2), 0.0, 0.0, math.sin(yaw_rad / 2))
+        self._at[:] = position_m
+        self._turn[:] = (math.cos(yaw_rad / 2), 0.0, 0.0, math.sin(yaw_rad / 2))
 
     def _step(self) -> None:
         mj.mj_step(self._model, self._state)

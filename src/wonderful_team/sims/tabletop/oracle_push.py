@@ -164,11 +164,21 @@ def _costs(job: _Job, starts: Array, yaws: Array, ends: Array) -> Array:
     back = starts[:, None] - (along + BEHIND_M)[..., None] * way
     tip = ends[None] + job.corners[:, 0].max() * way
     tail, side = back - 2 * BLADE_HALF_M[0] * way, half[..., None] * across
-    lanes = shapely.polygons(np.stack([tail - side, tail + side, tip + side, tip - side], axis=-2))
-    clear = shapely.distance(lanes, job.obstacles)
     inside = ((back > TABLE_LOW_M[:2]) & (back < TABLE_HIGH_M[:2])).all(axis=2)
-    cost = PUSH_COST_M + length - 5 * np.minimum(clear, ENOUGH_M)
-    return np.where((clear > 0) & inside & (length > SHORTEST_M), cost, np.inf)
+    lanes = np.stack([tail - side, tail + side, tip + side, tip - side], axis=-2)
+    clear = np.zeros(length.shape)
+    possible = inside & (length > SHORTEST_M)
+    clear[possible] = _clearance(shapely.polygons(lanes[possible]), job.obstacles)
+    return np.where(clear > 0, PUSH_COST_M + length - 5 * clear, np.inf)
+
+
+def _clearance(lanes: Array, obstacles: BaseGeometry) -> Array:
+    """How far each lane keeps from all obstacles, at most `ENOUGH_M`, shape (N,) [m]; which ones they cross is told sooner than how far off they are."""
+    shapely.prepare(obstacles)
+    clear = np.zeros(len(lanes))
+    free = ~shapely.intersects(obstacles, lanes)
+    clear[free] = np.minimum(shapely.distance(lanes[free], obstacles), ENOUGH_M)
+    return clear
 
 
 def _reach(job: _Job, yaws: Array, way: Array) -> Array:

@@ -46,6 +46,7 @@ class Suction(Tool):
         super().__init__(built, state)
         self._names = {built.body_id(thing.name): thing.name for thing in built.things}
         self._movable = {built.body_id(thing.name) for thing in built.things if thing.body.movable}
+        self._body_of = built.model.geom_bodyid
         self._groups = np.zeros(6, dtype=np.uint8)
         self._groups[[THING_GROUP, TABLE_GROUP]] = 1
 
@@ -157,6 +158,5 @@ class Suction(Tool):
 
     def _touches(self, body: int) -> bool:
         contact = self._state.contact
-        pairs = self._model.geom_bodyid[contact.geom]
-        with_another = (pairs == body).sum(axis=1) == 1
-        return bool((with_another & (contact.dist < 0.0)).any())
+        ours = self._body_of[contact.geom[contact.dist < 0.0]] == body
+        return bool((ours[:, 0] != ours[:, 1]).any())

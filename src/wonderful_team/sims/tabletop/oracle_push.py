@@ -31,6 +31,8 @@ SHORTEST_M = 0.02
 EDGE_M = 0.03
 PUSH_COST_M = 1.0
 """What one more push costs, as metres of way."""
+AT_ONCE = 400
+"""So many pushes are measured at once, the cheapest first."""
 ENOUGH_M = 0.02
 OPEN_M = 0.12
 DEPTH_WORTH = 3.0
@@ -132,7 +134,7 @@ def _grid(frame: Pose, zone: BaseGeometry) -> Array:
 def _ways(job: _Job) -> tuple[float, list[Push], Pose] | None:
     """The cheapest one or two pushes that bring a thing to one of its goals."""
     start, yaw = job.pose.position_m[:2], np.array([job.pose.yaw_rad])
-    direct = _costs(job, start[None], yaw, job.goals)[0] - job.worth
+    direct = _costs_to_goals(job, start[None], yaw, np.zeros(1))[0]
     if np.isfinite(direct).any():
         goal = job.goals[int(direct.argmin())]
         return float(direct.min()), [_push(job, start, yaw[0], goal)], _ended(start, goal)
@@ -141,7 +143,7 @@ def _ways(job: _Job) -> tuple[float, list[Push], Pose] | None:
     if not len(stops) or not len(job.goals):
         return None
     turned = np.arctan2(*(stops - start).T[::-1])
-    both = first[np.isfinite(first)][:, None] + _costs(job, stops, turned, job.goals) - job.worth
+    both = _costs_to_goals(job, stops, turned, first[np.isfinite(first)])
     if not np.isfinite(both).any():
         return None
     k, m = np.unravel_index(int(both.argmin()), both.shape)
@@ -152,33 +154,75 @@ def _ways(job: _Job) -> tuple[float, list[Push], Pose] | None:
 
 def _costs(job: _Job, starts: Array, yaws: Array, ends: Array) -> Array:
     """What straight pushes cost from each start to each end, shape (S, E); infinite where something is in the way."""
-    way = ends[None] - starts[:, None]
-    length = np.linalg.norm(way, axis=2)
-    way = way / np.maximum(length, 1e-9)[..., None]
-    across = np.stack([-way[..., 1], way[..., 0]], axis=-1)
-    along, wide = _reach(job, yaws, way), _reach(job, yaws, across)
-    off = np.arctan2(way[..., 1], way[..., 0]) - yaws[:, None]
-    off = np.abs((off + math.pi / 4) % (math.pi / 2) - math.pi / 4)
-    radius = float(np.linalg.norm(job.corners, axis=1).max()) + DRIFT_M
-    half = np.maximum(np.where(off < SQUARE_RAD, wide, radius), BLADE_HALF_M[1]) + MARGIN_M
-    back = starts[:, None] - (along + BEHIND_M)[..., None] * way
-    tip = ends[None] + job.corners[:, 0].max() * way
-    tail, side = back - 2 * BLADE_HALF_M[0] * way, half[..., None] * across
-    inside = ((back > TABLE_LOW_M[:2]) & (back < TABLE_HIGH_M[:2])).all(axis=2)
-    lanes = np.stack([tail - side, tail + side, tip + side, tip - side], axis=-2)
-    clear = np.zeros(length.shape)
-    possible = inside & (length > SHORTEST_M)
-    clear[possible] = _clearance(shapely.polygons(lanes[possible]), job.obstacles)
-    return np.where(clear > 0, PUSH_COST_M + length - 5 * clear, np.inf)
+    pushes = _Pushes(job, starts, yaws, ends)
+    at = pushes.possible
+    found = np.full(pushes.length.shape, np.inf)
+    found[at] = pushes.costs(at, pushes.clearance(at))
+    return found
 
 
-def _clearance(lanes: Array, obstacles: BaseGeometry) -> Array:
-    """How far each lane keeps from all obstacles, at most `ENOUGH_M`, shape (N,) [m]; which ones they cross is told sooner than how far off they are."""
-    shapely.prepare(obstacles)
-    clear = np.zeros(len(lanes))
-    free = ~shapely.intersects(obstacles, lanes)
-    clear[free] = np.minimum(shapely.distance(lanes[free], obstacles), ENOUGH_M)
-    return clear
+def _costs_to_goals(job: _Job, starts: Array, yaws: Array, before: Array) -> Array:
+    """The same to the goals, less what each of them is worth, with what came `before` each start, shape (S,).
+
+    The cheapest ones are worked out first; infinite too is what can be no cheaper than one that was found.
+    """
+    pushes = _Pushes(job, starts, yaws, job.goals)
+    found = np.full(pushes.length.shape, np.inf)
+    rows, columns = pushes.possible
+
+    def total(at: tuple[Array, Array], clear: Array | float) -> Array:
+        return np.asarray(before[at[0]] + pushes.costs(at, clear) - job.worth[at[1]])
+
+    least = total((rows, columns), ENOUGH_M)
+    order = np.argsort(least)
+    for first in range(0, len(order), AT_ONCE):
+        some = order[first : first + AT_ONCE]
+        if least[some[0]] > found.min():
+            break
+        at = rows[some], columns[some]
+        found[at] = total(at, pushes.clearance(at))
+    return found
+
+
+class _Pushes:
+    """Straight pushes of a thing from each of some starts to each of some ends.
+
+    Attributes:
+        length: Of each, shape (S, E) [m].
+        possible: Rows and columns of those that are long enough and begin over the table.
+    """
+
+    def __init__(self, job: _Job, starts: Array, yaws: Array, ends: Array) -> None:
+        way = ends[None] - starts[:, None]
+        self.length = np.linalg.norm(way, axis=2)
+        way = way / np.maximum(self.length, 1e-9)[..., None]
+        across = np.stack([-way[..., 1], way[..., 0]], axis=-1)
+        along, wide = _reach(job, yaws, way), _reach(job, yaws, across)
+        off = np.arctan2(way[..., 1], way[..., 0]) - yaws[:, None]
+        off = np.abs((off + math.pi / 4) % (math.pi / 2) - math.pi / 4)
+        radius = float(np.linalg.norm(job.corners, axis=1).max()) + DRIFT_M
+        half = np.maximum(np.where(off < SQUARE_RAD, wide, radius), BLADE_HALF_M[1]) + MARGIN_M
+        back = starts[:, None] - (along + BEHIND_M)[..., None] * way
+        tip = ends[None] + job.corners[:, 0].max() * way
+        tail, side = back - 2 * BLADE_HALF_M[0] * way, half[..., None] * across
+        inside = ((back > TABLE_LOW_M[:2]) & (back < TABLE_HIGH_M[:2])).all(axis=2)
+        self.possible = np.nonzero(inside & (self.length > SHORTEST_M))
+        self._lanes = np.stack([tail - side, tail + side, tip + side, tip - side], axis=-2)
+        self._obstacles = job.obstacles
+
+    def costs(self, at: tuple[Array, ...], clear: Array | float) -> Array:
+        """What some of them cost that keep so far from all obstacles, shape (N,)."""
+        return np.where(np.asarray(clear) > 0, PUSH_COST_M + self.length[at] - 5 * np.asarray(clear), np.inf)
+
+    def clearance(self, at: tuple[Array, ...]) -> Array:
+        """How far some of them keep from all obstacles, at most `ENOUGH_M`, shape (N,) [m]."""
+        lanes = shapely.polygons(self._lanes[at])
+        shapely.prepare(self._obstacles)
+        clear = np.zeros(len(lanes))
+        # Which ones cross an obstacle is told sooner than how far off it is.
+        free = ~shapely.intersects(self._obstacles, lanes)
+        clear[free] = np.minimum(shapely.distance(lanes[free], self._obstacles), ENOUGH_M)
+        return clear
 
 
 def _reach(job: _Job, yaws: Array, way: Array) -> Array:

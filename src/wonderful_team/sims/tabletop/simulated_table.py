@@ -45,11 +45,28 @@ class Snapshot:
 
 def poses_of(built: BuiltModel, names: Iterable[str], state: Any) -> Poses:
     """Where some things stand in a state."""
-    found = {}
-    for name in names:
-        body = built.body_id(name)
-        found[name] = Pose(state.xpos[body].copy(), state.xquat[body].copy())
-    return found
+    return PoseReader(built, names, state)()
+
+
+class PoseReader:
+    """Where some things stand in a state, again and again: the pose of what did not move is the same object as before."""
+
+    def __init__(self, built: BuiltModel, names: Iterable[str], state: Any) -> None:
+        self._names = tuple(names)
+        self._bodies = [built.body_id(name) for name in self._names]
+        self._state = state
+        self._values = np.full((len(self._names), 7), np.nan)
+        self._poses: dict[str, Pose] = {}
+
+    def __call__(self) -> Poses:
+        values = np.hstack([self._state.xpos[self._bodies], self._state.xquat[self._bodies]])
+        moved = (values != self._values).any(axis=1)
+        self._poses = {
+            name: Pose(value[:3], value[3:]) if move else self._poses[name]
+            for name, move, value in zip(self._names, moved, values, strict=True)
+        }
+        self._values = values
+        return self._poses
 
 
 class Mover(Protocol):

@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy as np
 import shapely
-from shapely import Polygon
 from shapely.geometry.base import BaseGeometry
 
 from wonderful_team.core.actions import Push
@@ -65,21 +64,18 @@ class Spatula(Tool):
         """Where the blade can come down: at the start, or a little behind it."""
         things = self._things()
         taken = shapely.unary_union([footprint_of(t, p) for t, p in things if t.body.kind != "area"])
-        for back in np.arange(0.0, BACK_OFF_M, LOOK_M):
-            at = start - back * way
-            if not blade_outline(at, way).intersects(taken):
-                return np.asarray(at)
-        return None
+        places = start - np.arange(0.0, BACK_OFF_M, LOOK_M)[:, None] * way
+        free = np.flatnonzero(~shapely.intersects(blade_outlines(places, way), taken))
+        return np.asarray(places[free[0]]) if len(free) else None
 
     def _free_way(self, start: Array, way: Array, wanted: float) -> float:
         """How far the blade can go before it meets something fixed [m]."""
         walls: BaseGeometry = shapely.unary_union(
             [footprint_of(t, p) for t, p in self._things() if not t.body.movable and t.body.kind != "area"]
         )
-        for reach in np.arange(0.0, wanted, LOOK_M):
-            if blade_outline(start + reach * way, way).intersects(walls):
-                return float(max(0.0, reach - LOOK_M))
-        return wanted
+        reaches = np.arange(0.0, wanted, LOOK_M)
+        met = np.flatnonzero(shapely.intersects(blade_outlines(start + reaches[:, None] * way, way), walls))
+        return float(max(0.0, reaches[met[0]] - LOOK_M)) if len(met) else wanted
 
     def _sweep(self, start: Array, way: Array, reach: float) -> tuple[list[Poses], float]:
         yaw = math.atan2(way[1], way[0])
@@ -118,8 +114,9 @@ class Spatula(Tool):
         }
 
 
-def blade_outline(front: Array, way: Array) -> Polygon:
-    """What the blade covers of the table when the middle of its front is at a point, moving along a unit vector."""
+def blade_outlines(fronts: Array, way: Array) -> Array:
+    """What the blade covers of the table when the middle of its front is at each of the points, shape (N, 2), moving along a unit vector."""
     across = np.array([-way[1], way[0]]) * BLADE_HALF_M[1]
-    back = front - 2 * BLADE_HALF_M[0] * way
-    return Polygon([front + across, front - across, back - across, back + across])
+    backs = fronts - 2 * BLADE_HALF_M[0] * way
+    corners = [fronts + across, fronts - across, backs - across, backs + across]
+    return np.asarray(shapely.polygons(np.stack(corners, axis=1)))

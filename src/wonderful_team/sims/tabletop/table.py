@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import weakref
 from collections.abc import Mapping
-from functools import cached_property, partial
+from functools import cached_property
 from typing import Any
 
 from wonderful_team.core.actions import PickPlace, Push
@@ -23,7 +23,7 @@ from wonderful_team.sims.tabletop.registering import TabletopTask, filled
 from wonderful_team.sims.tabletop.renderer import Renderer
 from wonderful_team.sims.tabletop.rules import Rules
 from wonderful_team.sims.tabletop.showing import Studio
-from wonderful_team.sims.tabletop.simulated_table import SimulatedTable, poses_of
+from wonderful_team.sims.tabletop.simulated_table import PoseReader, SimulatedTable
 from wonderful_team.sims.tabletop.spatula import Spatula
 from wonderful_team.sims.tabletop.suction import Picked, Suction
 
@@ -68,7 +68,7 @@ class Table(SimulatedTable):
         self._state = mj.MjData(self.built.model)
         mj.mj_forward(self.built.model, self._state)
         self.tool: Suction | Spatula = (
-            Spatula(self.built, self._state, partial(poses_of, self.built, tuple(self.things), self._state))
+            Spatula(self.built, self._state, PoseReader(self.built, self.things, self._state))
             if self.built.tool == "spatula"
             else Suction(self.built, self._state)
         )

@@ -6,6 +6,7 @@ Pixel coordinates are continuous: the top-left pixel covers 0..1, so its centre 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Protocol, runtime_checkable
 
 import numpy as np
@@ -124,30 +125,56 @@ class AffineCamera:
         # A row for each number, as the solver wants them: copying points into rows takes as long as a fifth of the solving.
         seen = np.stack([*points.T, _checked_depth(points, depth_m)])
         seen -= self.matrix[:, 3:]
-        return _solved(self.matrix[:, :3], seen).T
+        return self._seen.solved(seen).T
 
     def on_plane(self, points_px: ArrayLike, z_m: float) -> Array:
         points = as_points(points_px, 2, "points_px")
-        system = np.vstack([self.matrix[:2, :3], (0.0, 0.0, 1.0)])
-        if abs(np.linalg.det(system)) < 1e-12:
+        if self._level is None:
             raise ValueError("this camera looks along the plane: pixels do not fix a point on it")
-        right = np.column_stack([points - self.matrix[:2, 3], np.full(len(points), z_m)])
-        return np.asarray(np.linalg.solve(system, right.T).T)
+        right = np.empty((3, len(points)))
+        right[:2], right[2] = (points - self.matrix[:2, 3]).T, z_m
+        return self._level.solved(right).T
+
+    @cached_property
+    def _seen(self) -> _System:
+        return _System(self.matrix[:, :3])
+
+    @cached_property
+    def _level(self) -> _System | None:
+        """Pixels and a height; None where pixels do not fix a point of a level plane."""
+        matrix = np.vstack([self.matrix[:2, :3], (0.0, 0.0, 1.0)])
+        return None if abs(np.linalg.det(matrix)) < 1e-12 else _System(matrix)
 
 
-def _solved(matrix: Array, right: Array) -> Array:
-    """The solution of `matrix` x = `right`, shapes (3, 3) and (3, N).
+class _System:
+    """Three linear equations, solved again and again.
 
-    A camera that looks along an axis of the base gives each coordinate by one number alone: ten times as fast for a whole picture. Like
-    LAPACK for several points, it multiplies by the inverse, so that the results are the same to the last bit.
+    A camera that looks along an axis of the base gives each coordinate by one number alone: ten times as fast for a whole picture and for
+    a point. As LAPACK does, it divides for one point and multiplies by the inverse for several, so that the results are the same to the
+    last bit.
     """
-    rows, columns = np.nonzero(matrix)
-    if right.shape[1] == 1 or len(rows) != 3 or len(set(columns)) != 3:  # noqa: PLR2004  one number for each coordinate
-        return np.asarray(np.linalg.solve(matrix, right))
-    found = np.empty_like(right)
-    for row, column in zip(rows, columns, strict=True):
-        np.multiply(right[row], 1 / matrix[row, column], out=found[column])
-    return found
+
+    def __init__(self, matrix: Array) -> None:
+        self._matrix = matrix
+        rows, columns = (axis.tolist() for axis in np.nonzero(matrix))
+        each = len(rows) == 3 and len(set(rows)) == len(set(columns)) == 3  # noqa: PLR2004  one number for each coordinate
+        self._numbers = (
+            [(row, column, float(matrix[row, column])) for row, column in zip(rows, columns, strict=True)]
+            if each
+            else None
+        )
+
+    def solved(self, right: Array) -> Array:
+        """The solution for what stands on the right, shape (3, N)."""
+        if self._numbers is None:
+            return np.asarray(np.linalg.solve(self._matrix, right))
+        found = np.empty_like(right)
+        for row, column, number in self._numbers:
+            if right.shape[1] == 1:
+                found[column, 0] = right[row, 0] / number
+            else:
+                np.multiply(right[row], 1 / number, out=found[column])
+        return found
 
 
 @dataclass(frozen=True, eq=False)

@@ -14,6 +14,7 @@ import wonderful_team as wt
 from tests.desk import WORDS, draw_desk, read_record
 from wonderful_team.api.replay import branch, replay
 from wonderful_team.cli.app import run
+from wonderful_team.core.values import LaterPicture
 from wonderful_team.errors import ConfigError, NotUnderstoodError, ReplayError, UnknownNameError
 from wonderful_team.offline import OfflineModel
 from wonderful_team.record.stored import stored_instruction, stored_observation
@@ -215,6 +216,13 @@ def test_another_picture_is_named(photo_run):
     _edit(photo_run.folder, change)
     with pytest.raises(ReplayError, match=r"JudgeBoxes/1 \(try 1\) .* has other pixels"):
         replay(photo_run.folder)
+
+
+def test_pictures_that_an_earlier_release_named_by_their_pixels_are_known(desk, tmp_path, monkeypatch):
+    with monkeypatch.context() as earlier:
+        earlier.setattr(LaterPicture, "source_hash", property(lambda picture: picture.hash))
+        made = wt.Team(out=tmp_path / "runs").plan(wt.Observation.from_files(desk / "desk.png"), WORDS)
+    assert replay(made.folder).same
 
 
 def test_a_request_that_was_never_asked_is_named(photo_run):

@@ -49,6 +49,20 @@ def test_a_changed_picture_has_its_own_pixels() -> None:
         replace(picture, frame=crop(Drawn().view, Box(10, 10, 40, 40), "crop").frame)
 
 
+def test_a_picture_is_named_by_its_view_and_its_window_without_being_made() -> None:
+    one, same, other = (Drawn(seed).view for seed in (0, 0, 1))
+    picture = whole(one, "top view")
+    assert picture.source_hash == whole(same, "main view").marked(PointMark((3.0, 4.0))).source_hash
+    assert not picture.made  # type: ignore[attr-defined]
+    others = [whole(other, "a"), whole(one, "a", min_side_px=700), crop(one, Box(10, 10, 40, 40), "a")]
+    sheet = side_by_side((("now", (crop(one, Box(10, 10, 40, 40), "crop"),)),), "both")
+    named = {picture.source_hash, sheet.source_hash, *(item.source_hash for item in others)}
+    assert len(named) == 5
+    assert sheet.source_hash == sheet.hash
+    own = replace(picture, rgb=picture.rgb)
+    assert own.source_hash == own.hash == picture.hash
+
+
 def test_pictures_of_one_window_are_the_same_without_being_drawn() -> None:
     one = Drawn()
     first, second = whole(one.view, "a"), whole(one.view.without_depth(), "b")

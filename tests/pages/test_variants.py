@@ -122,6 +122,24 @@ def test_a_single_pixel_is_not_lost_and_no_change_is_none() -> None:
     assert patches(view, view) == ()
 
 
+def test_ticks_along_the_edges_are_few_places_and_the_base_of_what_has_them_too(tmp_path: Path) -> None:
+    view = noise()
+    ticked = view.copy()
+    ticked[:6, 4::32] = ticked[-6:, 4::32] = ticked[4::32, :6] = ticked[4::32, -6:] = 0
+    places = patches(ticked, view)
+    assert places is not None
+    assert len(places) <= 8
+    changed = (ticked != view).any(axis=2)
+    for x0, y0, x1, y1 in places:
+        changed[y0:y1, x0:x1] = False
+    assert not changed.any()
+    shown = [view, ticked, framed(ticked, 100, 90, 200, 190)]
+    text, seen = page_of(tmp_path, *shown)
+    assert text.count('<use href="#p1"/>') == text.count('<use href="#p2"/>') == 1
+    for number, one in enumerate(shown):
+        assert np.abs(seen[number].astype(int) - one).mean() < 8
+
+
 def test_changes_in_too_many_places_are_no_variant() -> None:
     view = noise()
     other = view.copy()

@@ -183,6 +183,9 @@ def test_an_affine_camera_gives_the_same_metres_as_the_system_that_it_stands_for
     seen = np.column_stack([pixels, depth]) - camera.matrix[:, 3]
     expected = np.linalg.solve(camera.matrix[:, :3], seen.T).T
     assert camera.deproject(pixels, depth) == pytest.approx(expected, rel=1e-12, abs=1e-12)
+    level = camera.on_plane(pixels, 0.1)
+    assert level[:, 2] == pytest.approx(0.1)
+    assert camera.project(level) == pytest.approx(pixels)
 
 
 def test_an_affine_camera_that_looks_along_the_table_fixes_no_point_of_it() -> None:

@@ -11,6 +11,8 @@ from hypothesis import strategies as st
 from tests.models.wire.scenes import picture
 from wonderful_team.core.geometry import Box
 from wonderful_team.core.pictures import BoxMark, Candidates, LineMark, PathMark, PointMark
+from wonderful_team.core.values import LaterPicture, View
+from wonderful_team.images import whole
 from wonderful_team.images.png import fast_png
 from wonderful_team.models.conventions import CONVENTIONS
 from wonderful_team.models.wire.showing import paste, scaled, show, show_encoded
@@ -53,6 +55,20 @@ def test_claude_is_sent_what_it_looks_at_and_marks_move_along() -> None:
 def test_a_scaled_picture_still_knows_its_place_in_the_view() -> None:
     small = scaled(picture((640, 480)), (320, 120))
     assert small.frame.point_to_view((160, 60)) == pytest.approx((320, 240))
+
+
+def test_an_enlarged_view_is_sent_straight_from_its_own_pixels() -> None:
+    rgb = cv2.GaussianBlur(np.random.default_rng(0).integers(0, 255, (480, 640, 3), dtype=np.uint8), (0, 0), 3)
+    enlarged = whole(View("top", "top", 0.0, rgb), "top view", long_side_px=1200, marks=(PointMark((1000, 600)),))
+    assert enlarged.size_px == (1280, 960)
+    shown = scaled(enlarged, (1024, 768))
+    assert isinstance(enlarged, LaterPicture)
+    assert not enlarged.made
+    assert shown.marks == (PointMark((800, 480)),)
+    assert shown.frame.point_to_view((800, 480)) == pytest.approx((500, 300))
+    apart = np.abs(shown.rgb.astype(int) - cv2.resize(enlarged.rgb, (1024, 768), interpolation=cv2.INTER_AREA))
+    assert apart.mean() < 1
+    assert apart.max() <= 6
 
 
 def test_small_pictures_are_sent_as_they_are() -> None:

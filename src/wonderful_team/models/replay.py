@@ -192,7 +192,7 @@ def _part_differences(part: Part, then: Mapping[str, Any]) -> list[str]:
     if part.name != then["picture"]:
         found.append(f"picture {part.name!r}, was {then['picture']!r}")
     # Earlier releases named a picture by its pixels alone.
-    if then["clean"] not in (part.source_hash, part.hash):
+    if then["clean"] != part.source_hash and then["clean"] != part.hash:
         size = "" if list(part.size_px) == then["size_px"] else f" ({part.size_px} px, was {tuple(then['size_px'])} px)"
         found.append(f"picture {part.name!r} has other pixels{size}")
     if json.loads(json.dumps(to_jsonable(part.marks))) != then["marks"]:

@@ -19,6 +19,7 @@ from wonderful_team.images.axes import SPANS, axis_step, axis_ticks, round_step
 from wonderful_team.images.canvas import INK, Canvas, Rectangle
 from wonderful_team.images.draw import candidate_radius, draw_box
 from wonderful_team.images.lettering import plain
+from wonderful_team.images.overview import MOST_IN_WORDS
 from wonderful_team.images.placing import PointLabel, label_box, label_points
 
 MARKS: dict[str, Mark] = {
@@ -216,6 +217,22 @@ def test_overview_puts_metres_and_pixels_in_one_picture() -> None:
     assert not changed[2 * 120, 2 * 160]
     without_camera = overview(View("top", "top", 0.0, rgb), workspace=limits)
     assert (without_camera == 128).all()
+
+
+def test_in_a_crowd_targets_are_named_by_their_ids_alone() -> None:
+    """Words of six blocks a row would lie over the blocks beside."""
+
+    def drawn(words: str, count: int) -> Array:
+        places = [
+            Box(10 + 90 * (k % 6), 20 + 90 * (k // 6), 50 + 90 * (k % 6), 60 + 90 * (k // 6)) for k in range(count)
+        ]
+        found = [
+            GroundedTarget(Target(f"T{k + 1}", "object", words), "found", "top", box) for k, box in enumerate(places)
+        ]
+        return overview(View("top", "top", 0.0, np.full((480, 640, 3), 200, np.uint8)), found)
+
+    assert np.array_equal(drawn("red block", MOST_IN_WORDS + 1), drawn("a much longer name", MOST_IN_WORDS + 1))
+    assert not np.array_equal(drawn("red block", MOST_IN_WORDS), drawn("a much longer name", MOST_IN_WORDS))
 
 
 def test_overview_leaves_out_what_was_not_found() -> None:

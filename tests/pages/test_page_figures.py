@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 import re
 from types import SimpleNamespace
@@ -51,6 +52,30 @@ def test_the_cross_of_left_of_a_thing_lies_beside_the_thing() -> None:
     found = re.findall(rf'd="M({NUMBER}) ({NUMBER})L({NUMBER}) ({NUMBER})M[^"]*" class="cross t1"', drawing)
     middles = [((float(a) + float(c)) / 2, (float(b) + float(d)) / 2) for a, b, c, d in found]
     assert middles == [(80.0, 60.0)]
+
+
+def test_names_of_things_that_stand_close_cover_neither_each_other_nor_the_things() -> None:
+    boxes = [
+        (10 + 45 * column, 12 + 22 * row, 24 + 45 * column, 26 + 22 * row) for column in range(4) for row in range(3)
+    ]
+    things = {f"T{k}": grounded(f"T{k}", box, "pick") for k, box in enumerate(boxes)}
+    # What moves down has its name above it, what moves up below: between two rows they meet.
+    ends = [
+        {"sources": [{"target": name, "point_px": [0, 50]}, {"target": None, "point_px": [0, 90 if k % 3 else 10]}]}
+        for k, name in enumerate(things)
+    ]
+    plan = {"subgoals": [1], "scene_hash": "s", "grounded": things, "actions": ends}
+    record = {"planner": {"plans": [{"id": "p", "plan": plan}], "observations": [SCENE], "outlines": []}}
+    drawing = str(overviews(record, Album())[0]["drawing"])  # type: ignore[arg-type]
+    plates = re.findall(
+        rf'<rect x="({NUMBER})" y="({NUMBER})" width="({NUMBER})" height="({NUMBER})"[^>]*class="tag', drawing
+    )
+    taken = [tuple(map(float, box)) for box in boxes]
+    taken += [(x, y, x + width, y + height) for x, y, width, height in (map(float, plate) for plate in plates)]
+    assert len(taken) == 2 * len(boxes)
+    for one, other in itertools.combinations(taken, 2):
+        wide, high = (min(one[k + 2], other[k + 2]) - max(one[k], other[k]) for k in (0, 1))
+        assert wide < 1 or high < 1
 
 
 def test_a_turn_is_an_arc_with_its_degrees() -> None:

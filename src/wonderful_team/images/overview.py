@@ -38,6 +38,8 @@ from wonderful_team.images.turn_marks import draw_turn, stays
 
 TARGET_COLOURS: tuple[Colour, ...] = (ORANGE, SKY, YELLOW, PURPLE, GREEN, VERMILLION)
 """Taken in turn by the targets of a plan."""
+MOST_IN_WORDS = 12
+"""More targets are named by their ids alone."""
 
 
 def overview(
@@ -78,11 +80,13 @@ def overview(
             named += [_Named(Box.bounding(on_picture), name, VERMILLION, WHITE, is_region=True)] if name else []
     targets = grounded.values() if isinstance(grounded, Mapping) else grounded
     found = [(item, TARGET_COLOURS[k % len(TARGET_COLOURS)]) for k, item in enumerate(_found(targets))]
+    # In a crowd, words would lie over the things that they name.
+    called = {item.target.id: item.target.id if len(found) > MOST_IN_WORDS else _name(item, names) for item, _ in found}
     for item, colour in found:
         if item.box is not None:
             box = picture.frame.box_to_picture(item.box)
             draw_box(canvas, box.corners, "target", colour)
-            named.append(_Named(box, _name(item, names), colour, INK))
+            named.append(_Named(box, called[item.target.id], colour, INK))
     paths = [_points(picture, arrow) for arrow in arrows if len(arrow) > 1]
     scale = 1 / float(picture.frame.T_view_picture[0, 0])
     strips = [width * scale for width, arrow in zip(widths, arrows, strict=True) if len(arrow) > 1] if widths else []
@@ -97,7 +101,7 @@ def overview(
     for turn in turned:
         labels += draw_turn(canvas, turn)
     for item, colour in found:
-        labels += _draw_points(canvas, picture, item, colour, _name(item, names), bool(paths))
+        labels += _draw_points(canvas, picture, item, colour, called[item.target.id], bool(paths))
     for number, move in moves.items():
         canvas.cross(move[-1], point_reach(canvas), step_colour(number))
     paint_plates(canvas, label_points(canvas, labels))

@@ -105,24 +105,42 @@ def _tags(
     grounded: Sequence[dict[str, Any]], moves: Sequence[Any], size: float, size_px: Sequence[int]
 ) -> list[Markup]:
     """Names beside the boxes and points, on the side where no arrow leaves or arrives."""
-    tags = []
+    tags, taken = (
+        [],
+        [tuple(item["box"][edge] for edge in ("x0", "y0", "x1", "y1")) for item in grounded if item["box"] is not None],
+    )
     upward = {sources[0]["target"] for sources in moves if sources[-1]["point_px"][1] < sources[0]["point_px"][1]}
     upward |= {sources[-1]["target"] for sources in moves if sources[-1]["point_px"][1] > sources[0]["point_px"][1]}
     for position, item in enumerate(grounded):
+        name, box = item["target"]["id"], item["box"]
+        width = 0.68 * size * len(name) + 0.5 * size
         point = next(iter(item["points"].values()), None)
-        if item["box"] is not None:
-            above = item["target"]["id"] not in upward or item["box"]["y1"] + 1.5 * size > size_px[1]
-            x = item["box"]["x0"]
-            y = item["box"]["y0"] - 0.15 * size if above else item["box"]["y1"] + 1.45 * size
+        if box is not None:
+            above, below = (box["x0"], box["y0"] - 0.15 * size), (box["x0"], box["y1"] + 1.45 * size)
+            middle = (box["y0"] + box["y1"]) / 2 + 0.65 * size
+            beside = [(box["x1"] + 0.15 * size, middle), (box["x0"] - width - 0.15 * size, middle)]
+            places = [*((below, above) if name in upward else (above, below)), *beside]
         elif point is not None:
-            x, y = point[0] + 0.6 * size, point[1] - 0.5 * size
+            places = [(point[0] + 0.6 * size, point[1] - 0.5 * size)]
         else:
             continue
-        name = item["target"]["id"]
-        width = 0.68 * size * len(name) + 0.5 * size
-        x, y = min(max(x, 0.0), size_px[0] - width), max(y, 1.3 * size)
-        tags.append(tag_layer(x, y, name, size, shade(position)))
+        held = [
+            (min(max(x, 0.0), size_px[0] - width), min(max(y, 1.3 * size), size_px[1] - 0.15 * size)) for x, y in places
+        ]
+        spots = [(x, y - 1.3 * size, x + width, y) for x, y in held]
+        best = min(range(len(spots)), key=lambda k: (round(_covered(spots[k], taken)), k))
+        taken.append(spots[best])
+        tags.append(tag_layer(*held[best], name, size, shade(position)))
     return tags
+
+
+def _covered(spot: tuple[float, ...], taken: Sequence[tuple[float, ...]]) -> float:
+    """How much of a rectangle (x0, y0, x1, y1) others cover [px squared], twice where two do."""
+    return sum(
+        max(0.0, min(spot[2], other[2]) - max(spot[0], other[0]))
+        * max(0.0, min(spot[3], other[3]) - max(spot[1], other[1]))
+        for other in taken
+    )
 
 
 def _words(target: dict[str, Any]) -> str:

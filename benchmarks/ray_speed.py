@@ -73,7 +73,7 @@ def course(ray: str | None, trials: int, folder: Path, jobs: int = 2) -> Course:
             while not over.wait(LOOK_S):
                 done = opened.count(study.plan.name, "done")
                 if done > marks[-1][2]:
-                    # To look through all processes takes as long as a tenth of a trial: only where it is needed.
+                    # To look through all processes takes a few milliseconds of the cores that are measured: only where it is needed.
                     wanted = marks[-1][2] < WARM or done >= total - NEAR_THE_END
                     marks.append((time.monotonic(), descendants_cpu_s() if wanted else math.nan, done))
 

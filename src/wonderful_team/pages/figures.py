@@ -83,9 +83,14 @@ def cross_layer(point: Corner, reach: float, css: str) -> Markup:
     return Markup('<path d="{}" class="cross-rim"/><path d="{}" class="cross {}"/>').format(path, path, css)
 
 
+def tag_size(text: str, size: float) -> tuple[float, float]:
+    """Width and height of a label's plate."""
+    return 0.68 * size * len(text) + 0.5 * size, 1.3 * size
+
+
 def tag_layer(x: float, y: float, text: str, size: float, css: str) -> Markup:
     """A label on a plate; (x, y) is its lower left corner."""
-    width, height = 0.68 * size * len(text) + 0.5 * size, 1.3 * size
+    width, height = tag_size(text, size)
     return Markup(
         '<rect x="{}" y="{}" width="{}" height="{}" rx="{}" class="tag {}"/>'
     ).format(f"{x:.2f}", f"{y - height:.2f}", f"{width:.2f}", f"{height:.2f}", f"{0.2 * size:.2f}", css) + text_in_svg(

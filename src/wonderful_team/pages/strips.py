@@ -7,6 +7,7 @@ from typing import Any
 
 from markupsafe import Markup
 
+from wonderful_team.core.geometry import Box
 from wonderful_team.core.text import counted, recorded_names
 from wonderful_team.pages.figures import (
     arrow_layer,
@@ -18,6 +19,7 @@ from wonderful_team.pages.figures import (
     point_layer,
     shade,
     tag_layer,
+    tag_size,
     turn_layer,
     view_drawing,
     window_round,
@@ -26,6 +28,7 @@ from wonderful_team.pages.look_up import chapters, main_key, scene_of
 from wonderful_team.pages.pictures import Album
 from wonderful_team.pages.requests import Asked
 
+_EDGES = ("x0", "y0", "x1", "y1")
 _GOES_THERE = ("place", "push_end")
 
 
@@ -105,15 +108,13 @@ def _tags(
     grounded: Sequence[dict[str, Any]], moves: Sequence[Any], size: float, size_px: Sequence[int]
 ) -> list[Markup]:
     """Names beside the boxes and points, on the side where no arrow leaves or arrives."""
-    tags, taken = (
-        [],
-        [tuple(item["box"][edge] for edge in ("x0", "y0", "x1", "y1")) for item in grounded if item["box"] is not None],
-    )
+    tags: list[Markup] = []
+    taken = [Box(*(item["box"][edge] for edge in _EDGES)) for item in grounded if item["box"] is not None]
     upward = {sources[0]["target"] for sources in moves if sources[-1]["point_px"][1] < sources[0]["point_px"][1]}
     upward |= {sources[-1]["target"] for sources in moves if sources[-1]["point_px"][1] > sources[0]["point_px"][1]}
     for position, item in enumerate(grounded):
         name, box = item["target"]["id"], item["box"]
-        width = 0.68 * size * len(name) + 0.5 * size
+        width, height = tag_size(name, size)
         point = next(iter(item["points"].values()), None)
         if box is not None:
             above, below = (box["x0"], box["y0"] - 0.15 * size), (box["x0"], box["y1"] + 1.45 * size)
@@ -124,23 +125,23 @@ def _tags(
             places = [(point[0] + 0.6 * size, point[1] - 0.5 * size)]
         else:
             continue
-        held = [
-            (min(max(x, 0.0), size_px[0] - width), min(max(y, 1.3 * size), size_px[1] - 0.15 * size)) for x, y in places
-        ]
-        spots = [(x, y - 1.3 * size, x + width, y) for x, y in held]
-        best = min(range(len(spots)), key=lambda k: (round(_covered(spots[k], taken)), k))
-        taken.append(spots[best])
-        tags.append(tag_layer(*held[best], name, size, shade(position)))
+        plates = [_plate(place, (width, height), size_px) for place in places]
+        plate = min(plates, key=lambda one: round(_covered(one, taken)))
+        taken.append(plate)
+        tags.append(tag_layer(plate.x0, plate.y1, name, size, shade(position)))
     return tags
 
 
-def _covered(spot: tuple[float, ...], taken: Sequence[tuple[float, ...]]) -> float:
-    """How much of a rectangle (x0, y0, x1, y1) others cover [px squared], twice where two do."""
-    return sum(
-        max(0.0, min(spot[2], other[2]) - max(spot[0], other[0]))
-        * max(0.0, min(spot[3], other[3]) - max(spot[1], other[1]))
-        for other in taken
-    )
+def _plate(corner: Sequence[float], own: tuple[float, float], size_px: Sequence[int]) -> Box:
+    """A plate of a size with its lower left corner at a point, held inside the picture."""
+    (x, y), (width, height) = corner, own
+    x, y = min(max(x, 0.0), size_px[0] - width), min(max(y, height), size_px[1])
+    return Box(x, y - height, x + width, y)
+
+
+def _covered(plate: Box, taken: Sequence[Box]) -> float:
+    """How much of a plate others cover [px squared], twice where two do."""
+    return sum(shared.area for shared in map(plate.intersection, taken) if shared is not None)
 
 
 def _words(target: dict[str, Any]) -> str:

@@ -21,6 +21,26 @@ def give_back_free_memory() -> bool:
     return trim is not None and bool(trim(0))
 
 
+HIGH_BYTES = 256_000_000
+"""What a process may hold before free memory is given back in the middle of its work."""
+STEP_BYTES = 32_000_000
+_left_bytes = 0
+
+
+def stay_low() -> None:
+    """Give free memory back in the middle of work that makes many large pictures: where the process holds much, at every so many bytes more.
+
+    Of a hundred crops that threads make at a time, no more than a few are held at once; glibc would keep room for most of them.
+    """
+    global _left_bytes
+    held = _held_bytes() or 0
+    _left_bytes = min(_left_bytes, held)
+    if held < max(HIGH_BYTES, _left_bytes + STEP_BYTES):
+        return
+    give_back_free_memory()
+    _left_bytes = _held_bytes() or 0
+
+
 class Growth:
     """When free memory is given back in a process that does one piece of work after another.
 

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import threading
+import weakref
 from collections import OrderedDict
 from collections.abc import Callable, Hashable
 from typing import Generic, TypeVar
 
 K = TypeVar("K", bound=Hashable)
 V = TypeVar("V")
+S = TypeVar("S")
 
 
 class Kept(Generic[K, V]):
@@ -49,8 +51,46 @@ class Kept(Generic[K, V]):
                     self._dropped(oldest, gone)
             return known
 
+    def drop(self, key: K) -> None:
+        """Let go of what is kept under a key, if anything is; nobody is told."""
+        with self._lock:
+            if key in self._held:
+                self.bytes -= self._size(self._held.pop(key))
+
     def clear(self) -> None:
         """Let go of everything; nobody is told."""
         with self._lock:
             self._held.clear()
             self.bytes = 0
+
+
+class KeptFor(Generic[S, K, V]):
+    """The last values that were made of objects, such as of an image: within a number of bytes, and without keeping the objects alive.
+
+    Args:
+        most_bytes: Of all values together.
+        size: How many bytes a value has.
+    """
+
+    def __init__(self, most_bytes: int, size: Callable[[V], int]) -> None:
+        self._kept: Kept[tuple[int, K], tuple[weakref.ref[S], V]] = Kept(most_bytes, lambda held: size(held[1]))
+
+    @property
+    def bytes(self) -> int:
+        """Of all that is kept."""
+        return self._kept.bytes
+
+    def get(self, source: S, key: K) -> V | None:
+        """What was made of this very object; it then counts as just used."""
+        held = self._kept.get((id(source), key))
+        return held[1] if held is not None and held[0]() is source else None
+
+    def keep(self, source: S, key: K, value: V) -> V:
+        """Keep a value, and return what is kept: the first of several that were made at once."""
+        place, own = (id(source), key), (weakref.ref(source), value)
+        held = self._kept.keep(place, own)
+        if held[0]() is not source:
+            # The id was that of an object that is gone.
+            self._kept.drop(place)
+            held = self._kept.keep(place, own)
+        return held[1]

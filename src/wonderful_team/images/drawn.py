@@ -6,28 +6,30 @@ import threading
 from weakref import WeakKeyDictionary
 
 from wonderful_team.core.geometry.arrays import Array
+from wonderful_team.core.heap import stay_low
+from wonderful_team.core.kept import KeptFor
 from wonderful_team.core.pictures import Picture, picture_hash
 from wonderful_team.images.axes import Ticks
 from wonderful_team.images.draw import draw
 from wonderful_team.images.png import fast_png
 
+_KEPT_BYTES = 32_000_000
+_drawn: KeptFor[Picture, Ticks, Array] = KeptFor(_KEPT_BYTES, lambda rgb: rgb.nbytes)
 _lock = threading.Lock()
-_drawn: WeakKeyDictionary[Picture, dict[Ticks, Array]] = WeakKeyDictionary()
 _hashes: WeakKeyDictionary[Picture, dict[Ticks, str]] = WeakKeyDictionary()
 
 
 def drawn(picture: Picture, ticks: Ticks = Ticks.PIXELS) -> Array:
-    """What `draw` makes of the picture, read-only, shape (H, W, 3), uint8; kept for as long as the picture lives."""
+    """What `draw` makes of the picture, read-only, shape (H, W, 3), uint8; the last ones are kept."""
     if not picture.marks:
         return picture.rgb
-    with _lock:
-        known = _drawn.setdefault(picture, {}).get(ticks)
+    known = _drawn.get(picture, ticks)
     if known is not None:
         return known
+    stay_low()
     made = draw(picture, ticks)
     made.setflags(write=False)
-    with _lock:
-        return _drawn.setdefault(picture, {}).setdefault(ticks, made)
+    return _drawn.keep(picture, ticks, made)
 
 
 def drawn_png(picture: Picture, ticks: Ticks = Ticks.PIXELS) -> bytes:

@@ -10,9 +10,8 @@ import numpy as np
 from wonderful_team.core.geometry import Frame
 from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.kept import Kept
-from wonderful_team.core.once import Once
 from wonderful_team.core.pictures import Panel, Picture, checked_rgb
-from wonderful_team.core.values import LaterPicture
+from wonderful_team.core.values import LaterPicture, Pixels
 from wonderful_team.images.canvas import INK, WHITE, Canvas
 from wonderful_team.images.lettering import plain
 
@@ -73,7 +72,7 @@ def _beside(groups: tuple[Group, ...], name: str) -> Picture:
         top += high + _STRIP_PX
     first = pictures[0].frame
     frame = Frame(first.view_id, first.T_view_picture, size, first.valid)
-    return LaterPicture(name, frame, Once(lambda: (_drawn(size, panels, names), None)), panels=panels)
+    return LaterPicture(name, frame, Pixels(lambda: (_drawn(size, panels, names), None)), panels=panels)
 
 
 def _drawn(size: tuple[int, int], panels: list[Panel], names: list[tuple[str, int, int]]) -> Array:

@@ -7,10 +7,9 @@ import numpy as np
 
 from wonderful_team.core.geometry import Box, Frame
 from wonderful_team.core.geometry.arrays import Array
-from wonderful_team.core.kept import Kept
-from wonderful_team.core.once import Once
+from wonderful_team.core.kept import KeptFor
 from wonderful_team.core.pictures import Picture, checked_depth, checked_rgb
-from wonderful_team.core.values import LaterPicture, View
+from wonderful_team.core.values import LaterPicture, Pixels, View
 
 _PAD_LIGHT, _PAD_DARK = 150, 118  # the two greys of the padding's stripes
 _ROUNDS = 2  # of giving a pixel its colour back that enlarging took
@@ -25,8 +24,8 @@ _EVEN_FROM = (
 _PAD_PERIOD_PX = 16  # width of a light and a dark stripe together
 
 _KEPT_BYTES = 32_000_000
-_kept: Kept[tuple[int, bytes, tuple[int, int], tuple[float, ...]], tuple[Array, Array]] = Kept(
-    _KEPT_BYTES, lambda held: held[1].nbytes
+_kept: KeptFor[Array, tuple[bytes, tuple[int, int], tuple[float, ...]], Array] = KeptFor(
+    _KEPT_BYTES, lambda made: made.nbytes
 )
 """The last windows of views: one question after the other shows the same one, with other marks."""
 
@@ -49,7 +48,7 @@ def picture_of(view: View, frame: Frame, name: str) -> Picture:
         depth_m = None if view.depth_m is None else resampled_depth(view.depth_m, frame)
         return checked_rgb(rgb), checked_depth(depth_m, rgb.shape[:2])
 
-    return LaterPicture(name, frame, Once(make), source=view)
+    return LaterPicture(name, frame, Pixels(make), source=view)
 
 
 def same_pixels(one: Picture, other: Picture) -> bool:
@@ -75,12 +74,9 @@ def resampled(rgb: Array, frame: Frame) -> Array:
     """Colours of the frame's window, shape (height, width, 3), uint8, read-only; padding is striped grey."""
     if rgb.flags.writeable:
         return _colours(rgb, frame)
-    # The entry holds the image, so its id cannot have passed to another.
-    key = (id(rgb), frame.T_view_picture.tobytes(), frame.size_px, frame.valid.as_tuple)
-    held = _kept.get(key)
-    if held is None:
-        held = _kept.keep(key, (rgb, _colours(rgb, frame)))
-    return held[1]
+    key = (frame.T_view_picture.tobytes(), frame.size_px, frame.valid.as_tuple)
+    held = _kept.get(rgb, key)
+    return held if held is not None else _kept.keep(rgb, key, _colours(rgb, frame))
 
 
 def _colours(rgb: Array, frame: Frame) -> Array:

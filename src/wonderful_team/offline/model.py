@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import os
+import threading
+
 from wonderful_team.core.caps import Estimate
 from wonderful_team.core.pictures import with_pictures
 from wonderful_team.core.values import Answer, Request, Usage
@@ -10,6 +13,8 @@ from wonderful_team.offline.answers import ANSWERS, SAMPLED
 from wonderful_team.offline.vision import NotSeen, in_plain_light
 
 MODEL_ID = "offline"
+_turns = threading.BoundedSemaphore(max(2, min(8, os.cpu_count() or 2)))
+"""As many look at pictures at once as there are processors: more would only hold more memory."""
 
 
 class OfflineModel:
@@ -37,9 +42,10 @@ class OfflineModel:
             raise UnsupportedQuestion(
                 self.name, request.contract, "classical vision has no answer to questions of this kind"
             )
-        question = with_pictures(request.question, in_plain_light)
         try:
-            value = ANSWERS[kind](question, request.sample) if kind in SAMPLED else ANSWERS[kind](question)
+            with _turns:
+                question = with_pictures(request.question, in_plain_light)
+                value = ANSWERS[kind](question, request.sample) if kind in SAMPLED else ANSWERS[kind](question)
         except NotSeen as error:
             raise ModelOutputError(f"model 'offline' could not answer {request.contract}: {error}") from error
         value, repairs = request.question.validate(value)

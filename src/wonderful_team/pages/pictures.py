@@ -11,11 +11,13 @@ from functools import partial
 from pathlib import Path
 from typing import Any, TypeAlias
 
+import cv2
 import numpy as np
 from markupsafe import Markup, escape
 from PIL import Image
 
 from wonderful_team.core.geometry.arrays import Array
+from wonderful_team.core.heap import stay_low
 from wonderful_team.core.text import PLACEHOLDER, recorded_names
 from wonderful_team.images import OWN_FORMATS, open_picture, to_jpeg
 from wonderful_team.pages.variants import Bases, Patch
@@ -25,7 +27,7 @@ MOST_BYTES = PAGE_BYTES
 """Beyond, pictures get coarser, not fewer."""
 _LEVELS = ((2000, 92), (1400, 82), (1000, 72), (640, 60), (400, 45), (240, 35))
 _LOSSLESS_BELOW_PX = 300 * 300
-_OPENED_BYTES = 48_000_000
+_OPENED_BYTES = 24_000_000
 """So much of what was decoded is kept until it is coded."""
 _SAMPLED = 10
 """About so many pictures tell how large all will be."""
@@ -138,8 +140,10 @@ class Album:
         if rgb is None:
             rgb = self._at_hand.pixels.get(shown.file)
         if rgb is None:
+            stay_low()
             with open_picture(self._folder / shown.file, OWN_FORMATS) as opened:
-                rgb = np.asarray(opened.convert("RGB"))
+                # Nothing is copied that need not be: a page of a long run decodes many.
+                rgb = np.asarray(opened if opened.mode == "RGB" else opened.convert("RGB"))
             while self._opened and sum(one.nbytes for one in self._opened.values()) + rgb.nbytes > _OPENED_BYTES:
                 self._opened.pop(next(iter(self._opened)))
             self._opened[shown.number] = rgb
@@ -169,13 +173,15 @@ class Album:
 
     def _coarser(self, most_px: int, quality: int, part: _Part) -> tuple[str, bytes]:
         shown, patch = part
-        image = Image.fromarray(np.ascontiguousarray(self._pixels(shown, patch)))
+        rgb = self._pixels(shown, patch)
         lossless = shown.size_px[0] * shown.size_px[1] < _LOSSLESS_BELOW_PX and quality > 70
         # A changed place as coarse as the picture that it belongs to.
         scale = min(1.0, most_px / max(shown.size_px))
-        image.thumbnail((max(1, round(scale * image.width)), max(1, round(scale * image.height))))
+        if scale < 1:
+            size = max(1, round(scale * rgb.shape[1])), max(1, round(scale * rgb.shape[0]))
+            rgb = np.asarray(cv2.resize(rgb, size, interpolation=cv2.INTER_AREA))
         buffer = io.BytesIO()
-        image.save(buffer, format="WEBP", quality=quality, lossless=lossless, method=0)
+        Image.fromarray(np.ascontiguousarray(rgb)).save(buffer, format="WEBP", quality=quality, lossless=lossless, method=0)
         return "webp", buffer.getvalue()
 
 

@@ -4,19 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from itertools import groupby
 from typing import Any
 
 from markupsafe import Markup
 
 from wonderful_team.core.text import recorded_names, spoken
-from wonderful_team.pages.pictures import Album
+from wonderful_team.pages.pictures import Album, pictured
 
 
 @dataclass(frozen=True, eq=False)
 class Part:
     """Words or a picture, as shown to the model."""
 
-    words: str = ""
+    words: Markup | None = None
     picture: Markup | None = None
     caption: str = ""
 
@@ -102,12 +103,13 @@ def in_order(record: dict[str, Any], album: Album) -> tuple[Asked, ...]:
 
     asked = []
     for number, entry in enumerate(sorted(record["planner"]["requests"], key=sent), start=1):
-        parts = tuple(_part(part, album, names) for part in entry["parts"])
         drawn = tuple(part["drawn"] for part in entry["parts"] if part.get("drawn"))
         answered = times.get(entry["key"], {}).get("answered_s")
         words = "\n\n".join(_sent_words(part) for part in entry["parts"])
         exact = words if spoken(words, names) != words else ""
-        asked.append(Asked(number, entry, parts, drawn, sent(entry), answered, exact))
+        asked.append(
+            Asked(number, entry, _parts(entry["parts"], record, album, names), drawn, sent(entry), answered, exact)
+        )
     return tuple(asked)
 
 
@@ -115,9 +117,28 @@ def _sent_words(part: dict[str, Any]) -> str:
     return str(part["words"]) if "words" in part else f"[picture] {part['picture']}"
 
 
-def _part(part: dict[str, Any], album: Album, names: Mapping[str, str]) -> Part:
-    if "words" in part:
-        return Part(words=part["words"])
+def _parts(
+    parts: list[dict[str, Any]], record: dict[str, Any], album: Album, names: Mapping[str, str]
+) -> tuple[Part, ...]:
+    """Words that follow each other in one block: a page of a thousand requests should not hold ten times as many."""
+    made: list[Part] = []
+    seen: set[str] = set()
+
+    def slot(key: str, name: str) -> Markup:
+        # The picture where it is spoken of first: some questions name one in every second line.
+        picture = Markup("") if name in seen else album.image(key, name, "inline")
+        seen.add(name)
+        return Markup("{}[{}]").format(picture, name)
+
+    for in_words, together in groupby(parts, key=lambda part: "words" in part):
+        if in_words:
+            made.append(Part(pictured("\n\n".join(part["words"] for part in together), record, album, slot)))
+        else:
+            made += (_picture(part, album, names) for part in together)
+    return tuple(made)
+
+
+def _picture(part: dict[str, Any], album: Album, names: Mapping[str, str]) -> Part:
     width, height = part.get("sent_px") or part["size_px"]
     name, on_sheet = spoken(part["picture"], names), part.get("on_sheet")
     if on_sheet is None:

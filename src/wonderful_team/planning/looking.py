@@ -7,11 +7,16 @@ A thing that was picked lies where it was put, so plans of picking and placing r
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from dataclasses import replace
+from itertools import groupby
 
 from wonderful_team.agents import step_words
 from wonderful_team.core.actions import PushStep
 from wonderful_team.core.values import Plan
+
+MOST_DONE = 30
+"""Most lines of what was carried out that a question holds: what is left to do is seen in the new picture, and words cost with every question."""
 
 
 def is_uncertain(plan: Plan) -> bool:
@@ -31,6 +36,14 @@ def done_lines(plan: Plan) -> tuple[str, ...]:
         f"{_named(step_words(step).partition('] ')[2], plan)}, for '{subgoals.get(step.subgoal, step.subgoal)}'"
         for step in plan.steps
     )
+
+
+def told_once(lines: Sequence[str]) -> tuple[str, ...]:
+    """What was carried out, for a question: what ran several times in a row stands once with its number; of many lines the last ones."""
+    runs = [(line, len(list(same))) for line, same in groupby(lines)]
+    left_out = sum(count for _, count in runs[:-MOST_DONE])
+    told = [line if count == 1 else f"{line} ({count} times)" for line, count in runs[-MOST_DONE:]]
+    return (f"{left_out} steps before these", *told) if left_out else tuple(told)
 
 
 def _named(text: str, plan: Plan) -> str:

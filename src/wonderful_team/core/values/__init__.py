@@ -5,7 +5,7 @@ from wonderful_team.core.values.content import content_hash, file_hash
 from wonderful_team.core.values.detection import Detection, DetectorRun, mask_from_runs, mask_to_runs
 from wonderful_team.core.values.function import FunctionBox, HelperFunction
 from wonderful_team.core.values.ground_truth import GroundTruthView, TrueThing
-from wonderful_team.core.values.later_picture import LaterPicture
+from wonderful_team.core.values.later_picture import LaterPicture, Pixels
 from wonderful_team.core.values.limits import NO_WORKSPACE, Fingers, KeepOut, Limits
 from wonderful_team.core.values.observation import Instruction, LaterView, Observation, RobotState, Slot, SlotKind, View
 from wonderful_team.core.values.plan import (
@@ -69,6 +69,7 @@ __all__ = [
     "NumberSource",
     "Observation",
     "Part",
+    "Pixels",
     "Plan",
     "PlannedAction",
     "PointRole",

@@ -3,27 +3,56 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Sequence
+import threading
+from collections.abc import Callable, Sequence
 from functools import cached_property
 from typing import Any
 
 from wonderful_team.core.geometry import Frame
 from wonderful_team.core.geometry.arrays import Array
-from wonderful_team.core.once import Once
+from wonderful_team.core.heap import stay_low
+from wonderful_team.core.kept import KeptFor
 from wonderful_team.core.pictures import Mark, Panel, Picture
 from wonderful_team.core.values.observation import View
+
+
+class Pixels:
+    """Colours and depth of a picture, made when they are asked for. The last ones are kept; others are made again.
+
+    Args:
+        make: Gives rgb and depth_m of `Picture`, read-only, of the frame's size, the same every time.
+    """
+
+    def __init__(self, make: Callable[[], tuple[Array, Array | None]]) -> None:
+        self._make = make
+        self._lock = threading.Lock()
+        self.made = False
+
+    def __call__(self) -> tuple[Array, Array | None]:
+        with self._lock:
+            held = _kept.get(self, None)
+            if held is None:
+                stay_low()
+                held, self.made = _kept.keep(self, None, self._make()), True
+            return held
+
+
+KEPT_BYTES = 48_000_000
+_kept: KeptFor[Pixels, None, tuple[Array, Array | None]] = KeptFor(
+    KEPT_BYTES, lambda held: sum(array.nbytes for array in held if array is not None)
+)
 
 
 class LaterPicture(Picture):
     """A picture that is made when its pixels are first asked for: a simulated model knows what it shows without them.
 
     Args:
-        pixels: rgb and depth_m of `Picture`, read-only, of the frame's size.
+        pixels: Of the frame's size.
         source: The view that it shows through its frame; None for pictures side by side.
     """
 
     source: View | None
-    _pixels: Once[tuple[Array, Array | None]]
+    _pixels: Pixels
 
     def __new__(cls, *args: Any, **fields: Any) -> Any:
         # `dataclasses.replace` hands over the fields of a picture: what it makes has its pixels.
@@ -33,7 +62,7 @@ class LaterPicture(Picture):
         self,
         name: str,
         frame: Frame,
-        pixels: Once[tuple[Array, Array | None]],
+        pixels: Pixels,
         *,
         source: View | None = None,
         marks: Sequence[Mark] = (),
@@ -60,7 +89,7 @@ class LaterPicture(Picture):
 
     @property
     def made(self) -> bool:
-        """Whether its pixels were asked for."""
+        """Whether its pixels were ever asked for."""
         return self._pixels.made
 
     def marked(self, *marks: Mark) -> Picture:

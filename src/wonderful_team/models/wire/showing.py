@@ -11,7 +11,7 @@ import numpy as np
 
 from wonderful_team.core.geometry import Box, Frame
 from wonderful_team.core.geometry.arrays import Array
-from wonderful_team.core.kept import Kept
+from wonderful_team.core.kept import KeptFor
 from wonderful_team.core.pictures import (
     Axes,
     BoxMark,
@@ -117,6 +117,9 @@ def show(
     scale = (sent.size_px[0] / picture.size_px[0], sent.size_px[1] / picture.size_px[1])
     # At its own size it may have been drawn before: the cache looks at it too.
     rgb = drawn(sent, ticks_of(convention)) if sent is picture else draw(sent, ticks_of(convention))
+    if isinstance(sent, LaterPicture):
+        # What was shown is kept for a while; a view of many megapixels that it was cut from need not be.
+        sent = Picture(sent.name, sent.rgb, sent.frame, None, sent.marks)
     return Shown(sent, rgb, scale=scale)
 
 
@@ -157,8 +160,8 @@ def paste(pictures: Sequence[Picture], convention: Convention = PIXELS) -> tuple
 
 
 KEPT_BYTES = 48_000_000
-_shown: Kept[tuple[int, Convention, Encoding, Size | None, Size | None], tuple[Picture, Shown, bytes]] = Kept(
-    KEPT_BYTES, lambda held: 3 * math.prod(held[0].size_px) + held[1].rgb.nbytes + len(held[2])
+_shown: KeptFor[Picture, tuple[Convention, Encoding, Size | None, Size | None], tuple[Shown, bytes]] = KeptFor(
+    KEPT_BYTES, lambda held: 3 * math.prod(held[0].picture.size_px) + held[0].rgb.nbytes + len(held[1])
 )
 
 
@@ -170,17 +173,16 @@ def show_encoded(
     reference: Frame | None = None,
 ) -> tuple[Shown, bytes]:
     """`show` and its file; the last ones are kept, for samples and second tries that show the same again."""
-    # The entry holds the picture, so its id cannot have passed to another.
-    key = (id(picture), convention, encoding, size_px, None if reference is None else reference.size_px)
-    held = _shown.get(key)
+    key = (convention, encoding, size_px, None if reference is None else reference.size_px)
+    held = _shown.get(picture, key)
     if held is None:
         shown = show(picture, convention, size_px, reference)
-        held = _shown.keep(key, (picture, shown, encoded(shown.rgb, (picture,), encoding)))
-    return held[1], held[2]
+        held = _shown.keep(picture, key, (shown, encoded(shown.rgb, (picture,), encoding)))
+    return held
 
 
 SCALED_BYTES = 24_000_000
-_scaled: Kept[tuple[int, Size], tuple[Array, Array]] = Kept(SCALED_BYTES, lambda held: held[0].nbytes + held[1].nbytes)
+_scaled: KeptFor[Array, Size, Array] = KeptFor(SCALED_BYTES, lambda made: made.nbytes)
 """The last ones: one question after the other shows the same view, with other marks."""
 
 
@@ -199,15 +201,14 @@ def scaled(picture: Picture, size_px: Size) -> Picture:
 
 
 def _resized(rgb: Array, size_px: Size) -> Array:
-    # The entry holds the image, so its id cannot have passed to another.
-    held = _scaled.get((id(rgb), size_px))
-    if held is None:
-        smaller = size_px[0] * size_px[1] < rgb.shape[0] * rgb.shape[1]
-        way = cv2.INTER_AREA if smaller else cv2.INTER_CUBIC
-        made = np.asarray(cv2.resize(rgb, size_px, interpolation=way))
-        made.setflags(write=False)
-        held = _scaled.keep((id(rgb), size_px), (rgb, made))
-    return held[1]
+    held = _scaled.get(rgb, size_px)
+    if held is not None:
+        return held
+    smaller = size_px[0] * size_px[1] < rgb.shape[0] * rgb.shape[1]
+    way = cv2.INTER_AREA if smaller else cv2.INTER_CUBIC
+    made = np.asarray(cv2.resize(rgb, size_px, interpolation=way))
+    made.setflags(write=False)
+    return _scaled.keep(rgb, size_px, made)
 
 
 def scaled_frame(frame: Frame, size_px: Size) -> Frame:

@@ -37,7 +37,7 @@ _GAPS = 0.1
 """Share of a thing from which gaps in it may be white parts that melt into the background."""
 
 
-@recent(64)
+@recent
 def study_example(picture: Picture) -> Example:
     """Describe the one thing that a picture shows on an empty background.
 

@@ -71,7 +71,7 @@ def in_plain_light(picture: Picture) -> Picture:
     return picture if plain is None else replace(picture, rgb=plain)
 
 
-@recent(64)
+@recent
 def _relit(picture: Picture) -> Array | None:
     """A picture's pixels in plain light; None where they are so already or nothing tells."""
     rgb, depth, valid = _small(picture)

@@ -60,7 +60,7 @@ def _crisp(rgb: Array, size: tuple[int, int]) -> Array:
     return np.asarray(cv2.resize(pixels, size, interpolation=cv2.INTER_NEAREST_EXACT))
 
 
-@recent(96)
+@recent
 def see(picture: Picture) -> Scene:
     """Find the things in a picture of a table.
 
@@ -99,7 +99,7 @@ def _thing(
 ) -> Thing:
     view = window(segment.mask, margin=0)
     y0, y1, x0, x1 = view[0].start, view[0].stop, view[1].start, view[1].stop
-    mask = segment.mask[view]
+    mask = segment.mask[view].copy()  # a part of it would hold on to all of it, for every thing
     whole = filled(mask)
     moments = cv2.moments(whole.astype(np.uint8), True)
     shown = mask if lying is None else mask & ~lying[view]

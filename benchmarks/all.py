@@ -279,6 +279,13 @@ def record_ms(quick: bool) -> str:
     return f"{first:.2f} -> {last:.2f} ms at request {total}"
 
 
+def growth(way: str, quick: bool) -> str:
+    """What a long or large run comes to: CPU, memory at most, its page and how long that takes to open."""
+    from benchmarks.growth import WAYS
+
+    return WAYS[way](quick)
+
+
 def token_shares(quick: bool) -> str:
     """Input tokens of whole plans against the reference implementation's, as it was counted when it was run last."""
     from benchmarks.reference_tokens import compare, shares
@@ -318,6 +325,9 @@ ROWS = (
     Row("offline, a process that plans once, CPU", "1.0 s", first_plan_s),
     Row("text + picture tokens / the reference's, paper / lean", "0.25 / 0.08", token_shares),
     Row("one more request in a record", "constant", record_ms),
+    Row("20 replans and more, offline", "600 MB, 1 s", lambda quick: growth("replans", quick)),
+    Row("100 looks and 20 replans, offline", "600 MB, 1 s", lambda quick: growth("looks", quick)),
+    Row("12 megapixels and 50 things, offline", "600 MB, 1 s", lambda quick: growth("photo", quick)),
     Row("Ray, two workers, start not counted / --jobs 2", "0.95", ray_ratio),
     Row("two workers / one, start not counted", "1.9", cores_ratio),
 )

@@ -49,6 +49,23 @@ def test_memory_is_given_back_once_a_process_has_grown(monkeypatch):
     assert given == [100, 130]
 
 
+def test_large_work_gives_memory_back_at_every_step_once_much_is_held(monkeypatch):
+    mega, held, given = 10**6, [100 * 10**6], []
+    monkeypatch.setattr(heap, "_left_bytes", 0)
+    monkeypatch.setattr(heap, "_held_bytes", lambda: held[0])
+
+    def give_back():
+        given.append(held[0] // mega)
+        held[0] -= 10 * mega
+        return True
+
+    monkeypatch.setattr(heap, "give_back_free_memory", give_back)
+    for now in (200, 250, 260, 270, 281, 282, 290, 305, 400):
+        held[0] = now * mega
+        heap.stay_low()
+    assert given == [260, 282, 305, 400]
+
+
 def test_what_each_piece_of_work_needs_again_is_not_given_back_after_each(monkeypatch):
     held, given, clock_s = [100], [], [0.0]
     monkeypatch.setattr(heap, "_held_bytes", lambda: held[0])

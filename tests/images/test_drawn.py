@@ -8,6 +8,7 @@ import weakref
 import numpy as np
 
 from wonderful_team.core.geometry import Frame
+from wonderful_team.core.kept import KeptFor
 from wonderful_team.core.pictures import Axes, Picture, picture_hash
 from wonderful_team.images import Ticks, draw
 from wonderful_team.images.drawn import drawn, drawn_hash
@@ -25,7 +26,7 @@ def test_it_is_what_draw_makes_for_each_kind_of_tick():
     assert drawn_hash(picture, Ticks.PIXELS) != drawn_hash(picture, Ticks.THOUSANDTHS)
 
 
-def test_it_is_drawn_once_read_only_and_forgotten_with_the_picture(monkeypatch):
+def test_it_is_drawn_once_read_only_and_does_not_keep_the_picture(monkeypatch):
     calls = []
     monkeypatch.setattr("wonderful_team.images.drawn.draw", lambda *args: calls.append(args) or draw(*args))
     picture = _picture(Axes())
@@ -33,11 +34,21 @@ def test_it_is_drawn_once_read_only_and_forgotten_with_the_picture(monkeypatch):
     assert drawn(picture) is first
     assert len(calls) == 1
     assert not first.flags.writeable
-    kept = weakref.ref(first)
+    left = weakref.ref(picture)
     calls.clear()
-    del picture, first
+    del picture
     gc.collect()
-    assert kept() is None
+    assert left() is None
+
+
+def test_no_more_is_kept_than_fits(monkeypatch):
+    monkeypatch.setattr("wonderful_team.images.drawn._drawn", KeptFor(500_000, lambda rgb: rgb.nbytes))
+    pictures = [_picture(Axes()) for _ in range(6)]
+    first = [drawn(picture) for picture in pictures]
+    assert drawn(pictures[-1]) is first[-1]
+    again = drawn(pictures[0])
+    assert again is not first[0]
+    assert np.array_equal(again, first[0])
 
 
 def test_a_picture_without_marks_is_not_drawn():

@@ -9,8 +9,9 @@ import pytest
 
 from wonderful_team.core.geometry import Box
 from wonderful_team.core.geometry.arrays import Array
+from wonderful_team.core.kept import KeptFor
 from wonderful_team.core.pictures import Picture, PointMark
-from wonderful_team.core.values import LaterView, View
+from wonderful_team.core.values import LaterView, View, later_picture
 from wonderful_team.images import crop, same_pixels, whole
 from wonderful_team.images.panels import side_by_side
 
@@ -37,6 +38,20 @@ def test_nothing_is_drawn_for_a_picture_that_nobody_looks_at() -> None:
     assert picture.rgb is picture.marked(PointMark((9.0, 9.0))).rgb
     assert np.ptp(sheet.rgb[:100, :100]) > 50
     assert one.count == 1
+
+
+def test_pixels_that_no_longer_fit_are_made_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(later_picture, "_kept", KeptFor(80_000, lambda held: held[0].nbytes))
+    view = Drawn().view
+    pictures = [crop(view, Box(x, 10, x + 30, 40), "crop", min_side_px=48) for x in range(6)]
+    first = [picture.rgb for picture in pictures]
+    assert pictures[-1].rgb is first[-1]
+    assert later_picture._kept.bytes <= 80_000
+    assert all(np.array_equal(picture.rgb, rgb) for picture, rgb in zip(pictures, first, strict=True))
+    sheet = side_by_side((("now", (pictures[0],)),), "both")
+    before = sheet.rgb
+    assert [picture.rgb for picture in pictures]
+    assert np.array_equal(sheet.rgb, before)
 
 
 def test_a_changed_picture_has_its_own_pixels() -> None:

@@ -13,7 +13,7 @@ from PIL import Image
 
 from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.images.png import fast_png
-from wonderful_team.pages import pictures
+from wonderful_team.pages import pictures, variants
 from wonderful_team.pages.pictures import Album
 from wonderful_team.pages.variants import MOST_PATCHES, patches
 
@@ -146,3 +146,18 @@ def test_changes_in_too_many_places_are_no_variant() -> None:
     other[8::48, 8::32] = 0
     assert len(other[8::48, 8::32].reshape(-1, 3)) > MOST_PATCHES
     assert patches(other, view) is None
+
+
+def test_no_more_pictures_are_compared_with_than_fit(monkeypatch: pytest.MonkeyPatch) -> None:
+    rgb = noise()
+    monkeypatch.setattr(variants, "MOST_BYTES", 2 * rgb.nbytes)
+    bases = variants.Bases()
+    assert bases.place(1, rgb) is None
+    assert bases.place(2, noise(1)) is None
+    assert bases.place(3, noise(2)) is None
+    assert bases._held.bytes == 2 * rgb.nbytes
+    for number, base in ((1, rgb), (3, noise(2))):
+        found = bases.place(9, framed(base, 20, 20, 90, 80))
+        assert found is not None
+        assert found[0] == number
+    assert bases.place(4, framed(noise(1), 20, 20, 90, 80)) is None, "what it is like had to go"

@@ -9,7 +9,7 @@ from wonderful_team.core.protocols import Act
 from wonderful_team.core.values import Instruction, Plan, Subgoal, Target
 from wonderful_team.offline import OfflineModel
 from wonderful_team.planning import TeamPolicy
-from wonderful_team.planning.looking import done_lines, first_part, is_uncertain
+from wonderful_team.planning.looking import MOST_DONE, done_lines, first_part, is_uncertain, told_once
 from wonderful_team.runtime import rollout
 from wonderful_team.sims.tabletop import make_world
 
@@ -28,6 +28,17 @@ def test_only_plans_of_pushes_are_cut() -> None:
     assert line == "push from T1 to T2, for 'push the block into the frame'"
     named = replace(first, targets=(Target("T1", "object", "red block"), Target("T2", "area", "open side")))
     assert done_lines(named) == ("push from the red block to the open side, for 'push the block into the frame'",)
+
+
+def test_what_ran_again_and_again_is_told_once_and_of_much_the_last() -> None:
+    assert told_once(()) == ()
+    assert told_once(("a", "b", "b", "b", "a")) == ("a", "b (3 times)", "a")
+    assert told_once(["push"] * 100) == ("push (100 times)",)
+    many = [f"push {number // 2}" for number in range(200)]
+    told = told_once(many)
+    assert len(told) == MOST_DONE + 1
+    assert told[0] == f"{200 - 2 * MOST_DONE} steps before these"
+    assert told[-1] == "push 99 (2 times)"
 
 
 class Watched(TeamPolicy):

@@ -181,7 +181,9 @@ class Album:
             size = max(1, round(scale * rgb.shape[1])), max(1, round(scale * rgb.shape[0]))
             rgb = np.asarray(cv2.resize(rgb, size, interpolation=cv2.INTER_AREA))
         buffer = io.BytesIO()
-        Image.fromarray(np.ascontiguousarray(rgb)).save(buffer, format="WEBP", quality=quality, lossless=lossless, method=0)
+        Image.fromarray(np.ascontiguousarray(rgb)).save(
+            buffer, format="WEBP", quality=quality, lossless=lossless, method=0
+        )
         return "webp", buffer.getvalue()
 
 

@@ -8,6 +8,7 @@ import cv2
 import numpy as np
 
 from wonderful_team.core.geometry.arrays import Array
+from wonderful_team.core.kept import Kept
 
 BLOCK_PX = 16
 """Places are made of JPEG's blocks: coded alone they come out as they do in the whole picture."""
@@ -23,6 +24,8 @@ _RIM_PX = 2
 """Kept round what differs, so that its edge is smooth at any scale."""
 MOST_BASES = 6
 """So many pictures of one size are compared with."""
+MOST_BYTES = 48_000_000
+"""Of the pictures that are compared with, of all sizes: those whose size came up last."""
 
 Patch = tuple[int, int, int, int]
 """x0, y0, x1, y1 [px]."""
@@ -32,22 +35,27 @@ class Bases:
     """Pictures so far that others may be variants of."""
 
     def __init__(self) -> None:
-        self._known: dict[tuple[int, ...], list[tuple[int, Array]]] = {}
+        self._numbers: dict[tuple[int, ...], list[int]] = {}
+        self._held: Kept[tuple[tuple[int, ...], int], Array] = Kept(
+            MOST_BYTES, lambda rgb: rgb.nbytes, lambda key, _: self._numbers[key[0]].remove(key[1])
+        )
 
     def place(self, number: int, rgb: Array) -> tuple[int, tuple[Patch, ...]] | None:
         """The picture that this one is a variant of, and where they differ; None when it has to be held whole."""
-        known = self._known.setdefault(rgb.shape, [])
+        known = self._numbers.setdefault(rgb.shape, [])
         best: tuple[int, tuple[Patch, ...]] | None = None
         # The newest first: one question after the other shows the same, with one more mark.
-        for base, other in reversed(known):
-            places = patches(rgb, other)
+        for base in reversed(known):
+            other = self._held.get((rgb.shape, base))
+            places = None if other is None else patches(rgb, other)
             if places is not None and (best is None or _area(places) < _area(best[1])):
                 best = base, places
                 if _area(places) < GOOD_SHARE * rgb.shape[0] * rgb.shape[1]:
                     return best
         # What takes some room itself may be the base of others.
         if len(known) < MOST_BASES:
-            known.append((number, rgb))
+            known.append(number)
+            self._held.keep((rgb.shape, number), rgb)
         return best
 
 

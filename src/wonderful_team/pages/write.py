@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -22,8 +23,12 @@ from wonderful_team.redaction import redact
 
 PAGE_NAME = "page.html"
 _HERE = Path(__file__).parent
-_PICTURES = "<!-- pictures -->"
-"""Stands for them while the page is made; words on a page are escaped, so none of them reads so."""
+_PICTURES, _BODY = "<!-- pictures -->", "<!-- body -->"
+"""Stand for them while the page is made; words on a page are escaped, so none of them reads so."""
+_ENDS = ("<section>", '<details class="request"')
+"""Where the body may be cut: no words go on beyond the begin of these."""
+_PIECE = 500_000
+"""About so many letters of the body are worked on at once: a run of hundreds of plans has a body of tens of millions."""
 
 
 def write_page(folder: Path, at_hand: AtHand | None = None) -> Path:
@@ -42,12 +47,9 @@ def write_page(folder: Path, at_hand: AtHand | None = None) -> Path:
     folder = Path(folder)
     record = read_record(folder)
     with reading(f"{folder}: the record"):
-        html, pictures = _html(folder, record, at_hand)
-    # Pictures are not searched for keys: their letters may look like anything, and are most of the page.
-    parts = redact(visible(html, layout=True)).partition(_PICTURES)
+        html = b"".join(_html(folder, record, at_hand))
     path = folder / PAGE_NAME
-    # Apart from each other: beside a letter that is not ASCII, every one of a picture's would take twice the room.
-    write_private(path, b"".join(_coded(part) for part in (parts[0], pictures, parts[2])))
+    write_private(path, html)
     return path
 
 
@@ -55,16 +57,44 @@ def _coded(text: str) -> bytes:
     return text.encode("utf-8", errors="xmlcharrefreplace")
 
 
-def _html(folder: Path, record: dict[str, Any], at_hand: AtHand | None) -> tuple[str, str]:
-    """The page, and the pictures that belong in the place of `_PICTURES`."""
+def _safe(text: str) -> bytes:
+    return _coded(redact(visible(text, layout=True)))
+
+
+def _html(folder: Path, record: dict[str, Any], at_hand: AtHand | None) -> Iterator[bytes]:
+    """The page, part by part."""
     album = Album(folder, record["files"], at_hand)
     content = _content(record, album)
     style = Markup((_HERE / "page.css").read_text(encoding="utf-8"))
     # The body comes first: it decides which pictures the page has to hold.
-    body = _environment().get_template("body.html.j2").render(**content)
-    page = _environment().get_template("page.html.j2")
-    held = {"title": content["title"], "style": style, "body": Markup(body), "pictures": Markup(_PICTURES)}
-    return page.render(**held), album.definitions()
+    body = [_safe(piece) for piece in _pieces(_environment().get_template("body.html.j2").generate(**content))]
+    held = {"title": content["title"], "style": style, "body": Markup(_BODY), "pictures": Markup(_PICTURES)}
+    page = _environment().get_template("page.html.j2").render(**held)
+    head, _, rest = page.partition(_PICTURES)
+    middle, _, end = rest.partition(_BODY)
+    yield _safe(head)
+    # Pictures are not searched for keys: their letters may look like anything, and are most of the page.
+    yield _coded(album.definitions())
+    yield _safe(middle)
+    yield from body
+    yield _safe(end)
+
+
+def _pieces(parts: Iterable[str]) -> Iterator[str]:
+    """A text in pieces that end before a section or a request."""
+    held, length = list[str](), 0
+    for part in parts:
+        held.append(part)
+        length += len(part)
+        if length < _PIECE:
+            continue
+        text = "".join(held)
+        end = max(text.rfind(mark) for mark in _ENDS)
+        if end > 0:
+            yield text[:end]
+            text = text[end:]
+        held, length = [text], len(text) if end > 0 else 0
+    yield "".join(held)
 
 
 @cache

@@ -28,6 +28,7 @@ from wonderful_team.core.geometry import Frame
 from wonderful_team.core.pictures import Picture
 from wonderful_team.offline.description import Description
 from wonderful_team.offline.vision import Thing, resolve, see
+from wonderful_team.offline.vision.recent import array_bytes
 
 
 def at(picture: Picture, x: float, y: float) -> Thing:
@@ -179,3 +180,15 @@ def test_a_flat_line_of_tiles_is_one_thing_whatever_shows_between_them(width: fl
     (thing,) = see(drawing.picture(depth=True)).things
     assert thing.flat
     assert thing.box.height == pytest.approx(109, abs=4)
+
+
+def test_what_was_seen_holds_on_to_no_whole_pictures() -> None:
+    """A thing's mask is its own; as a part of one of the whole picture it would keep a megabyte, for each of fifty things."""
+    drawing = Drawing(600, 400)
+    for row in range(3):
+        for column in range(5):
+            drawing.add(box_shape((80 + 110 * column, 80 + 120 * row), 40, 40, 10 * column), plain(RED))
+    seen = see(drawing.picture())
+    assert len(seen.things) == 15
+    assert all(thing.mask.base is None for thing in seen.things)
+    assert array_bytes(seen) < 2_500_000

@@ -21,7 +21,7 @@ def give_back_free_memory() -> bool:
     return trim is not None and bool(trim(0))
 
 
-HIGH_BYTES = 256_000_000
+HIGH_BYTES = 400_000_000
 """What a process may hold before free memory is given back in the middle of its work."""
 STEP_BYTES = 32_000_000
 _left_bytes = 0

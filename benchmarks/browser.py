@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import contextlib
+import fcntl
 import json
 import os
 import select
-import shlex
 import shutil
 import signal
 import statistics
@@ -67,15 +67,18 @@ class _Pipe:
             *(program, "--headless", "--no-sandbox", "--disable-gpu", "--no-first-run", "--window-size=1280,900"),
             *("--disable-background-networking", "--remote-debugging-pipe", f"--user-data-dir={profile}"),
         )
+        # Out of the way of 3 and 4 first: either may be one of them.
+        held = [fcntl.fcntl(one, fcntl.F_DUPFD, 10) for one in (commands, answers)]
         self._process = subprocess.Popen(
-            ["sh", "-c", f"exec {shlex.join(words)} 3<&{commands} 4>&{answers}"],
-            pass_fds=(commands, answers),
+            words,
+            pass_fds=(3, 4),
+            preexec_fn=lambda: [os.dup2(one, as_file) for one, as_file in zip(held, (3, 4), strict=True)],
             stdout=subprocess.DEVNULL,
             stderr=subprocess.DEVNULL,
             start_new_session=True,
         )
-        os.close(commands)
-        os.close(answers)
+        for one in (commands, answers, *held):
+            os.close(one)
         self._number, self._read = 0, b""
 
     def __enter__(self) -> _Pipe:

@@ -26,7 +26,7 @@ from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from wonderful_team.evals.processes import one_thread_each
 
@@ -195,6 +195,7 @@ def arm_s(quick: bool) -> str:
 def blocks_s(count: int, quick: bool) -> str:
     """CPU of a plan by `offline` for "every red block into the bowl"."""
     import wonderful_team as wt
+    from benchmarks.growth import blocks
 
     with tempfile.TemporaryDirectory() as out:
         start = time.process_time()
@@ -217,6 +218,8 @@ def first_plan_s(quick: bool) -> str:
     """CPU of a new process that plans once by `offline`, imports included; our modules are compiled once before."""
     import numpy as np
 
+    from benchmarks.growth import blocks
+
     with tempfile.TemporaryDirectory() as out:
         photo = Path(out) / "photo.npy"
         np.save(photo, blocks(1))
@@ -235,23 +238,6 @@ def first_plan_s(quick: bool) -> str:
             for _ in range(4 if quick else 10)
         ]
     return f"{statistics.median(used[1:]):.2f} s"
-
-
-def blocks(count: int) -> Any:
-    """A photo of so many red blocks and a blue bowl on a table, shape (960, 1280, 3), uint8."""
-    import cv2
-    import numpy as np
-
-    rng = np.random.default_rng(7)
-    rgb = np.full((960, 1280, 3), (214, 208, 196), np.uint8)
-    cv2.circle(rgb, (1080, 480), 130, (40, 80, 190), -1, cv2.LINE_AA)
-    cv2.circle(rgb, (1080, 480), 104, (30, 60, 150), -1, cv2.LINE_AA)
-    places = [(90 + 105 * column, 80 + 115 * row) for column in range(8) for row in range(8)]
-    for number in rng.permutation(len(places))[:count]:
-        x, y = places[int(number)]
-        box = cv2.boxPoints(((x, y), (46, 46), float(rng.uniform(0, 90))))
-        cv2.fillPoly(rgb, [np.round(box * 16).astype(np.int32)], (196, 44, 40), cv2.LINE_AA, 4)
-    return rgb
 
 
 def record_ms(quick: bool) -> str:

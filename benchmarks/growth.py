@@ -20,11 +20,13 @@ from pathlib import Path
 from typing import Any
 
 import cv2
+import numpy as np
 
 import wonderful_team as wt
 from benchmarks.browser import opening_s
 from wonderful_team.api.rollout import make_world, rollout
 from wonderful_team.core.actions import Action
+from wonderful_team.core.geometry.arrays import Array
 from wonderful_team.core.values import Observation, StepReport
 
 PHOTO_PX = (4000, 3000)
@@ -78,8 +80,6 @@ def _rollout(scene: str, method: str, most_replans: int, most_looks: int) -> str
 
 def photo(quick: bool) -> str:
     """Every red block into the bowl, fifty of them, on a large photo."""
-    from benchmarks.all import blocks
-
     rgb = cv2.resize(blocks(20 if quick else 50), PHOTO_PX, interpolation=cv2.INTER_CUBIC)
     rgb.setflags(write=False)
     with tempfile.TemporaryDirectory() as out:
@@ -87,6 +87,20 @@ def photo(quick: bool) -> str:
         made = wt.Team(model="offline", out=Path(out), cache="off").plan(rgb, "put every red block into the blue bowl")
         seconds = time.process_time() - before
         return f"{seconds:.1f} s, {len(made.plan.actions)} actions; {_memory_and_page(made.page)}"
+
+
+def blocks(count: int) -> Array:
+    """A photo of so many red blocks and a blue bowl on a table, shape (960, 1280, 3), uint8."""
+    rng = np.random.default_rng(7)
+    rgb = np.full((960, 1280, 3), (214, 208, 196), np.uint8)
+    cv2.circle(rgb, (1080, 480), 130, (40, 80, 190), -1, cv2.LINE_AA)
+    cv2.circle(rgb, (1080, 480), 104, (30, 60, 150), -1, cv2.LINE_AA)
+    places = [(90 + 105 * column, 80 + 115 * row) for column in range(8) for row in range(8)]
+    for number in rng.permutation(len(places))[:count]:
+        x, y = places[int(number)]
+        box = cv2.boxPoints(((x, y), (46, 46), float(rng.uniform(0, 90))))
+        cv2.fillPoly(rgb, [np.round(box * 16).astype(np.int32)], (196, 44, 40), cv2.LINE_AA, 4)
+    return rgb
 
 
 def _memory_and_page(page: Path | None) -> str:

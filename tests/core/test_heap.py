@@ -51,9 +51,8 @@ def test_memory_is_given_back_once_a_process_has_grown(monkeypatch):
 
 def test_large_work_gives_memory_back_at_every_step_once_much_is_held(monkeypatch):
     mega, held, given = 10**6, [100 * 10**6], []
-    monkeypatch.setattr(heap, "_left_bytes", 0)
-    monkeypatch.setattr(heap, "HIGH_BYTES", 256 * mega)
-    monkeypatch.setattr(heap, "STEP_BYTES", 32 * mega)
+    middle = heap.Growth(32 * mega, apart_s=0.0, circles=False, floor_bytes=256 * mega)
+    monkeypatch.setattr(heap, "_in_the_middle", middle)
     monkeypatch.setattr(heap, "_held_bytes", lambda: held[0])
 
     def give_back():

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import pytest
+
+from wonderful_team.contracts import DraftPlan
 from wonderful_team.core.actions import At, PickPlaceStep, PushStep
 from wonderful_team.core.protocols import Act
-from wonderful_team.core.values import Instruction, Plan, Subgoal, Target
+from wonderful_team.core.values import Answer, Instruction, Plan, Request, StepReport, Subgoal, Target
 from wonderful_team.offline import OfflineModel
 from wonderful_team.planning import TeamPolicy
-from wonderful_team.planning.looking import MOST_DONE, done_lines, first_part, is_uncertain, told_once
+from wonderful_team.planning.looking import MOST_DONE, condensed, done_lines, first_part, is_uncertain
 from wonderful_team.runtime import rollout
 from wonderful_team.sims.tabletop import make_world
 
@@ -30,12 +33,12 @@ def test_only_plans_of_pushes_are_cut() -> None:
     assert done_lines(named) == ("push from the red block to the open side, for 'push the block into the frame'",)
 
 
-def test_what_ran_again_and_again_is_told_once_and_of_much_the_last() -> None:
-    assert told_once(()) == ()
-    assert told_once(("a", "b", "b", "b", "a")) == ("a", "b (3 times)", "a")
-    assert told_once(["push"] * 100) == ("push (100 times)",)
+def test_what_ran_again_and_again_is_condensed_and_of_much_the_last() -> None:
+    assert condensed(()) == ()
+    assert condensed(("a", "b", "b", "b", "a")) == ("a", "b (3 times)", "a")
+    assert condensed(["push"] * 100) == ("push (100 times)",)
     many = [f"push {number // 2}" for number in range(200)]
-    told = told_once(many)
+    told = condensed(many)
     assert len(told) == MOST_DONE + 1
     assert told[0] == f"{200 - 2 * MOST_DONE} steps before these"
     assert told[-1] == "push 99 (2 times)"
@@ -80,3 +83,21 @@ def test_picking_and_placing_runs_whole() -> None:
     team, outcome = run("visual_manipulation", 505, reobserve=5)
     assert outcome == "success"
     assert [act.reobserve for act in team.acts] == [False]
+
+
+def test_a_push_that_ran_again_and_again_is_one_line_of_the_next_question(monkeypatch: pytest.MonkeyPatch) -> None:
+    world, drafts = make_world("sweep_without_exceeding", seed=3), list[DraftPlan]()
+
+    class Heard(OfflineModel):
+        def answer(self, request: Request) -> Answer:
+            if isinstance(request.question, DraftPlan):
+                drafts.append(request.question)
+            return super().answer(request)
+
+    monkeypatch.setattr(world, "execute", lambda action: StepReport(action, True, {}))
+    try:
+        rollout(TeamPolicy(Heard()), world, reobserve=4)
+    finally:
+        world.close()
+    assert [len(draft.task.done) for draft in drafts] == [0, 1, 1, 1, 1]
+    assert drafts[-1].task.done[0] == f"{drafts[1].task.done[0]} (4 times)"

@@ -21,26 +21,6 @@ def give_back_free_memory() -> bool:
     return trim is not None and bool(trim(0))
 
 
-HIGH_BYTES = 400_000_000
-"""What a process may hold before free memory is given back in the middle of its work."""
-STEP_BYTES = 32_000_000
-_left_bytes = 0
-
-
-def stay_low() -> None:
-    """Give free memory back in the middle of work that makes many large pictures: where the process holds much, at every so many bytes more.
-
-    Of a hundred crops that threads make at a time, no more than a few are held at once; glibc would keep room for most of them.
-    """
-    global _left_bytes
-    held = _held_bytes() or 0
-    _left_bytes = min(_left_bytes, held)
-    if held < max(HIGH_BYTES, _left_bytes + STEP_BYTES):
-        return
-    give_back_free_memory()
-    _left_bytes = _held_bytes() or 0
-
-
 class Growth:
     """When free memory is given back in a process that does one piece of work after another.
 
@@ -53,6 +33,7 @@ class Growth:
         own_process: Whether the process does nothing else: then what its first piece of work leaves behind, modules and
             caches, is not looked through again, which takes longest.
         circles: Whether objects that hold each other in circles are looked for first, which takes a tenth of a second.
+        floor_bytes: A process that holds less gives nothing back.
     """
 
     def __init__(
@@ -61,16 +42,20 @@ class Growth:
         apart_s: float = 5.0,
         own_process: bool = False,
         circles: bool = True,
+        floor_bytes: int = 0,
     ) -> None:
         self._most, self._apart_s, self._own_process, self._circles = most_bytes, apart_s, own_process, circles
+        self._floor = floor_bytes
         self._left = 0
         self._last_s: float | None = None
 
     def give_back(self) -> bool:
         """Give free memory back if the process has grown; whether it was worth it and there was a way."""
         held = _held_bytes()
-        if held is not None and not self._is_due(held - self._left):
-            return False
+        if held is not None:
+            self._left = min(self._left, held)
+            if held < self._floor or not self._is_due(held - self._left):
+                return False
         # A piece of work may end with objects in circles: their pictures are free only once those are found.
         if self._circles:
             gc.collect()
@@ -83,6 +68,20 @@ class Growth:
     def _is_due(self, grown_bytes: int) -> bool:
         recent = self._last_s is not None and time.process_time() - self._last_s < self._apart_s
         return grown_bytes >= (3 if recent else 1) * self._most
+
+
+HIGH_BYTES = 400_000_000
+"""What a process may hold before free memory is given back in the middle of its work; getting the pages again takes time."""
+STEP_BYTES = 32_000_000
+_in_the_middle = Growth(STEP_BYTES, apart_s=0.0, circles=False, floor_bytes=HIGH_BYTES)
+
+
+def stay_low() -> None:
+    """Give free memory back in the middle of work that makes many large pictures, at every so many bytes more.
+
+    Of a hundred crops that threads make at a time, no more than a few are held at once; glibc would keep room for most of them.
+    """
+    _in_the_middle.give_back()
 
 
 def _held_bytes() -> int | None:

@@ -38,7 +38,7 @@ def done_lines(plan: Plan) -> tuple[str, ...]:
     )
 
 
-def told_once(lines: Sequence[str]) -> tuple[str, ...]:
+def condensed(lines: Sequence[str]) -> tuple[str, ...]:
     """What was carried out, for a question: what ran several times in a row stands once with its number; of many lines the last ones."""
     runs = [(line, len(list(same))) for line, same in groupby(lines)]
     left_out = sum(count for _, count in runs[:-MOST_DONE])

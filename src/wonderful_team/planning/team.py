@@ -29,7 +29,7 @@ from wonderful_team.planning import judging
 from wonderful_team.planning.checking import SubgoalChecks, done_subgoals
 from wonderful_team.planning.clarifying import clarify
 from wonderful_team.planning.config import TeamConfig
-from wonderful_team.planning.looking import done_lines, first_part, is_uncertain, told_once
+from wonderful_team.planning.looking import condensed, done_lines, first_part, is_uncertain
 from wonderful_team.planning.making import UNTIL, Progress, Until, make
 from wonderful_team.planning.notes import one_line
 from wonderful_team.planning.session import AgentSession, needed_detector, settle
@@ -259,7 +259,7 @@ class TeamPolicy:
             situation.limits,
             keep_out=situation.limits.keep_out,
             advice=advice,
-            done=told_once(self._done),
+            done=condensed(self._done),
             facts=situation.facts,
             parent=before.id if before is not None else None,
         )

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import concurrent.futures.thread
 import os
+import signal
 import subprocess
 import sys
 from concurrent.futures import ThreadPoolExecutor
@@ -10,8 +12,10 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 import pytest
 
+from wonderful_team.core.interrupts import Interrupted, ends_on_signal
 from wonderful_team.errors import ConfigError
 from wonderful_team.sims.tabletop import make_world
+from wonderful_team.sims.tabletop.drawing_gl import _DrawingThread
 
 LOOK = """
 from wonderful_team.sims.tabletop import make_world
@@ -116,3 +120,24 @@ def test_pictures_of_an_instruction_and_what_they_show_open_one_renderer(monkeyp
     world.close()
     world.close()
     assert len(closed) == 1
+
+
+def test_an_interrupt_while_the_drawing_thread_starts_comes_once_it_has_started(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """A pool notes its thread after the start; one that it could not note is waited for without end when the program ends."""
+    start = ThreadPoolExecutor._adjust_thread_count
+
+    def interrupted(pool: ThreadPoolExecutor) -> None:
+        os.kill(os.getpid(), signal.SIGINT)
+        start(pool)
+
+    monkeypatch.setattr(ThreadPoolExecutor, "_adjust_thread_count", interrupted)
+    drawing = _DrawingThread()
+    with pytest.raises(Interrupted), ends_on_signal(force=True):
+        drawing.run(lambda: 1)
+    monkeypatch.undo()
+    (thread,) = drawing._pool._threads
+    assert thread in concurrent.futures.thread._threads_queues
+    assert drawing.run(lambda: 2) == 2
+    drawing._pool.shutdown()

@@ -13,6 +13,7 @@ from typing import Any, TypeVar
 import numpy as np
 
 from wonderful_team.core.geometry.arrays import Array
+from wonderful_team.core.interrupts import held
 from wonderful_team.sims.tabletop.engine import find_context, mj
 from wonderful_team.sims.tabletop.model import FLOOR_GROUP, TABLE_GROUP, THING_GROUP, WHITE_GROUP, BuiltModel
 from wonderful_team.sims.tabletop.renderer import Drawn
@@ -41,7 +42,11 @@ class _DrawingThread:
             self._free_waiting()
             return work()
 
-        return self._pool.submit(after_freeing).result()
+        # The pool starts its thread at the first piece of work, and notes only then that it has to be told of the program's end: an
+        # interrupt in between left a thread that the end waited for without end.
+        with held():
+            submitted = self._pool.submit(after_freeing)
+        return submitted.result()
 
     def free_later(self, context: Any) -> None:
         """Free what a renderer holds before anything is drawn next.
@@ -53,7 +58,7 @@ class _DrawingThread:
     def free_now(self) -> None:
         """Free what waits for it; at the end of the process the graphics card has done so already."""
         with contextlib.suppress(RuntimeError):
-            self._pool.submit(self._free_waiting).result()
+            self.run(lambda: None)
 
     def _free_waiting(self) -> None:
         while self._to_free:
